@@ -47,25 +47,7 @@ struct DressingSettings {
   std::uint32_t correction_sweeps = 2;  ///< over all springs, forwards and backwards by turns
 };
 
-/// Two panels of a garment that may touch each other: `inner` lies between the body and `outer`.
-struct PanelPair {
-  std::uint32_t inner = 0;  ///< index into Garment::panels
-  std::uint32_t outer = 0;
-
-  bool operator==(const PanelPair&) const = default;
-};
-
-/// Which panels may touch each other, and which way they face.
-///
-/// A panel's right side is where its nodes are seen as the pattern is drawn, columns to the right and rows
-/// upwards: its normal is (direction of the columns) x (direction of the rows), and it points away from the
-/// body, unless the panel is listed as mirrored, like the left half of a pattern that is drawn for the right.
-struct ClothLayers {
-  std::vector<PanelPair> pairs;
-  std::vector<std::uint32_t> mirrored;  ///< panels whose normal points towards the body
-};
-
-/// How layers of cloth keep apart.
+/// How layers of cloth keep apart (garment/layers/cloth_cloth.h).
 struct ClothClothSettings {
   double thickness = 0.003;  ///< m, the distance that layers keep; more than what they approach in a step
   double friction = 0.3;     ///< Coulomb's coefficient, not negative
@@ -76,14 +58,9 @@ struct ClothClothSettings {
       2;  ///< over all contacts in a step, at least 1: more follow stacks of contacts farther
 };
 
-/// Layers of cloth that collide with each other (garment/layers/cloth_cloth.h).
-struct TouchingLayers {
-  ClothLayers layers;
-  ClothClothSettings settings;
-};
-
 /// A pattern piece as a grid: rows x columns nodes, row-major, row 0 at its lower edge, column 0 at its left
-/// one as the pattern is drawn, joined by the 12-neighbour stencil (grid_stencil).
+/// one as the pattern is drawn, joined by the 12-neighbour stencil (grid_stencil). It is drawn as it is seen
+/// from outside: (direction of the columns) x (direction of the rows) points away from the body.
 struct GarmentPanel {
   std::string name;
   std::uint32_t rows = 0;
@@ -126,8 +103,8 @@ struct Garment {
   /// [layers] The body as the panels of each layer meet it; layers beyond the last one meet it as that does.
   /// Empty: nothing to dress.
   std::vector<std::shared_ptr<const BodyMaps>> body_maps;
-  CloseCloth close;                        ///< to the body; no nodes: anywhere else it may hang as it likes
-  std::optional<TouchingLayers> touching;  ///< none: layers go through each other
+  CloseCloth close;  ///< to the body; no nodes: anywhere else it may hang as it likes
+  std::optional<ClothClothSettings> touching;  ///< none: layers go through each other
 
   /// The panel that a node belongs to.
   const GarmentPanel& panel_of(std::uint32_t node) const {

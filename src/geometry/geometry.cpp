@@ -19,11 +19,9 @@ namespace {
 template <class Iterator>
 double half_perimeter(Iterator begin, Iterator end) {
   std::vector<PlanPoint> chain;
-  const auto turns_left = [](const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
-    return (b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x) > 0;
-  };
   for (auto point = begin; point != end; ++point) {
-    while (chain.size() >= 2 && !turns_left(chain[chain.size() - 2], chain.back(), *point)) chain.pop_back();
+    while (chain.size() >= 2 && !(side_of(chain[chain.size() - 2], chain.back(), *point) > 0))
+      chain.pop_back();
     chain.push_back(*point);
   }
   double sum = 0;
@@ -38,8 +36,7 @@ double half_perimeter(Iterator begin, Iterator end) {
 }  // namespace
 
 double hull_perimeter(std::vector<PlanPoint> points) {
-  std::sort(points.begin(), points.end(),
-            [](const PlanPoint& a, const PlanPoint& b) { return std::pair(a.x, a.z) < std::pair(b.x, b.z); });
+  std::ranges::sort(points, {}, [](const PlanPoint& point) { return std::pair(point.x, point.z); });
   return half_perimeter(points.begin(), points.end()) + half_perimeter(points.rbegin(), points.rend());
 }
 

@@ -110,6 +110,11 @@ struct PlanPoint {
   bool operator==(const PlanPoint&) const = default;
 };
 
+/// On which side of the line from `a` to `b` a point lies: twice the area of the triangle.
+inline double side_of(const PlanPoint& a, const PlanPoint& b, const PlanPoint& point) {
+  return (b.x - a.x) * (point.z - a.z) - (b.z - a.z) * (point.x - a.x);
+}
+
 /// The length of a string around the points, m: the perimeter of their convex hull (Andrew, "Another
 /// efficient algorithm for convex hulls in two dimensions", 1979). 0 for a single point or none, twice the
 /// distance for points on a line.

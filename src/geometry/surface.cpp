@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -37,9 +38,8 @@ std::vector<SurfaceSide> sides_by_edge(const Surface& surface) {
       const std::uint32_t to = surface.triangles[t][(corner + 1) % 3];
       sides.push_back({std::min(from, to), std::max(from, to), from < to, t});
     }
-  std::sort(sides.begin(), sides.end(), [](const SurfaceSide& a, const SurfaceSide& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
+  std::ranges::sort(sides, {},
+                    [](const SurfaceSide& side) { return std::tuple(side.low, side.high, side.triangle); });
   return sides;
 }
 
@@ -134,17 +134,6 @@ class Check {
 };
 
 constexpr std::uint32_t unknown = UINT32_MAX;
-
-/// For each point, one point of the part that it belongs to, the same for the whole part.
-std::vector<std::uint32_t> representatives(const Surface& surface) {
-  DisjointSets parts(surface.points.size());
-  for (const auto& [a, b, c] : surface.triangles)
-    for (const std::uint32_t other : {b, c}) parts.unite(a, other);
-  std::vector<std::uint32_t> representative(surface.points.size());
-  for (std::uint32_t point = 0; point < representative.size(); ++point)
-    representative[point] = parts.root(point);
-  return representative;
-}
 
 /// The edges that belong to one triangle only, as that triangle runs, by the point where they begin.
 class FreeEdges {
@@ -330,11 +319,13 @@ double volume_of(const Surface& surface) {
 }
 
 std::vector<Surface> closed_parts(const Surface& surface) {
-  const std::vector<std::uint32_t> representative = representatives(surface);
+  DisjointSets joined(surface.points.size());
+  for (const auto& [a, b, c] : surface.triangles)
+    for (const std::uint32_t other : {b, c}) joined.unite(a, other);
   std::vector<Surface> parts;
   std::vector<std::uint32_t> part_of(surface.points.size(), unknown);
   for (const auto& triangle : surface.triangles) {
-    std::uint32_t& part = part_of[representative[triangle[0]]];
+    std::uint32_t& part = part_of[joined.root(triangle[0])];
     if (part == unknown) {
       part = static_cast<std::uint32_t>(parts.size());
       parts.emplace_back();
@@ -342,8 +333,8 @@ std::vector<Surface> closed_parts(const Surface& surface) {
     parts[part].triangles.push_back(triangle);
   }
   std::vector<std::uint32_t> number(surface.points.size(), unknown);
-  for (std::size_t point = 0; point < surface.points.size(); ++point) {
-    const std::uint32_t part = part_of[representative[point]];
+  for (std::uint32_t point = 0; point < surface.points.size(); ++point) {
+    const std::uint32_t part = part_of[joined.root(point)];
     if (part == unknown) continue;  // of no triangle
     number[point] = static_cast<std::uint32_t>(parts[part].points.size());
     parts[part].points.push_back(surface.points[point]);
@@ -394,8 +385,7 @@ std::vector<Opening> openings_of(const Surface& surface) {
       if (way.size() > 1) openings.push_back({std::move(way), false, {}, 0});
     }
   for (Opening& opening : openings) measure(surface, opening);
-  std::stable_sort(openings.begin(), openings.end(),
-                   [](const Opening& a, const Opening& b) { return a.size > b.size; });
+  std::ranges::stable_sort(openings, std::greater(), &Opening::size);
   return openings;
 }
 

@@ -50,10 +50,8 @@ std::optional<MeshDefect> node_twice(const TetMesh& mesh) {
   const auto key = [&](std::size_t n) {
     return std::tuple(mesh.nodes[n].x, mesh.nodes[n].y, mesh.nodes[n].z, n);
   };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-  const auto same = std::adjacent_find(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return mesh.nodes[a] == mesh.nodes[b];
-  });
+  std::ranges::sort(order, {}, key);
+  const auto same = std::ranges::adjacent_find(order, {}, [&](std::size_t n) { return mesh.nodes[n]; });
   if (same == order.end()) return std::nullopt;
   return MeshDefect{MeshDefect::node, *(same + 1),
                     fmt::format("another node is at {} too; merge the two", place(mesh.nodes[*same]))};
@@ -90,27 +88,6 @@ std::optional<MeshDefect> crowded_face(const TetMesh& mesh) {
   }
   return std::nullopt;
 }
-
-/// Meshes that were made before, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME
-/// or ~/.cache). A file's name is INPUT-PROGRAM: the hash of what TetGen was given and that of the TetGen
-/// that made it. The cache only saves time: an entry that is missing, damaged or cannot be written is no
-/// error, and several processes may use it at once.
-class MeshCache {
- public:
-  MeshCache();
-
-  /// The mesh that this TetGen made of this input.
-  std::optional<TetMesh> find(std::uint64_t input, std::uint64_t program) const;
-
-  /// The newest mesh that any TetGen made of this input: for machines without TetGen.
-  std::optional<TetMesh> find_of_any_program(std::uint64_t input) const;
-
-  /// Keeps a mesh; the file appears as a whole or not at all.
-  void store(std::uint64_t input, std::uint64_t program, const TetMesh& mesh) const;
-
- private:
-  std::filesystem::path folder_;  ///< empty when the user has neither variable nor home
-};
 
 namespace fs = std::filesystem;
 
@@ -150,9 +127,58 @@ std::optional<TetMesh> read_entry(const fs::path& file) {
   }
 }
 
-std::string file_name(std::uint64_t input, std::uint64_t program) {
-  return to_hex(input) + '-' + to_hex(program) + std::string(extension);
-}
+/// Meshes that were made before, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME
+/// or ~/.cache). A file's name is INPUT-PROGRAM: the hash of what TetGen was given and that of the TetGen
+/// that made it. The cache only saves time: an entry that is missing, damaged or cannot be written is no
+/// error, and several processes may use it at once.
+class MeshCache {
+ public:
+  /// The mesh that this TetGen made of this input.
+  std::optional<TetMesh> find(std::uint64_t input, std::uint64_t program) const {
+    if (folder_.empty()) return std::nullopt;
+    return read_entry(entry(input, program));
+  }
+
+  /// The newest mesh that any TetGen made of this input: for machines without TetGen.
+  std::optional<TetMesh> find_of_any_program(std::uint64_t input) const {
+    if (folder_.empty()) return std::nullopt;
+    std::optional<TetMesh> newest;
+    fs::file_time_type newest_time = fs::file_time_type::min();
+    std::error_code error;
+    for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+      const std::string name = entry->path().filename().string();
+      if (!name.starts_with(to_hex(input) + '-') || !name.ends_with(extension)) continue;
+      std::error_code no_time;
+      const fs::file_time_type time = entry->last_write_time(no_time);
+      if (no_time || (newest && time <= newest_time)) continue;
+      if (auto mesh = read_entry(entry->path())) {
+        newest = std::move(mesh);
+        newest_time = time;
+      }
+    }
+    return newest;
+  }
+
+  /// Keeps a mesh; the file appears as a whole or not at all.
+  void store(std::uint64_t input, std::uint64_t program, const TetMesh& mesh) const {
+    if (folder_.empty()) return;
+    std::error_code ignored;
+    fs::create_directories(folder_, ignored);
+    const std::string nodes = node_text(mesh.nodes), tetrahedra = ele_text(mesh.tetrahedra);
+    try {
+      write_file_atomically(entry(input, program), header_of(nodes, tetrahedra) + nodes + tetrahedra);
+    } catch (const WriteError&) {
+      // The mesh is made anew next time; or another process is storing the same.
+    }
+  }
+
+ private:
+  fs::path entry(std::uint64_t input, std::uint64_t program) const {
+    return folder_ / fmt::format("{}-{}{}", to_hex(input), to_hex(program), extension);
+  }
+
+  fs::path folder_ = cache_folder();  ///< empty when the user has neither variable nor home
+};
 
 Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }
 Vec3d half_size(const SphereShape& sphere) { return {sphere.radius_m, sphere.radius_m, sphere.radius_m}; }
@@ -301,13 +327,6 @@ double smallest_dihedral_angle(const TetMesh& mesh) {
   return std::acos(std::clamp(largest_cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-std::int64_t euler_characteristic(const TetMesh& mesh) {
-  auto faces = faces_of(mesh);
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  return static_cast<std::int64_t>(mesh.nodes.size()) - static_cast<std::int64_t>(edges_of(mesh).size()) +
-         static_cast<std::int64_t>(faces.size()) - static_cast<std::int64_t>(mesh.tetrahedra.size());
-}
-
 std::optional<MeshDefect> find_defect(const TetMesh& mesh) {
   for (const auto find : {unused_node, node_twice, bad_volume, crowded_face})
     if (auto defect = find(mesh)) return defect;
@@ -320,46 +339,6 @@ void turn_if_mirrored(TetMesh& mesh) {
   };
   if (!std::all_of(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), is_negative)) return;
   for (Tetrahedron& nodes : mesh.tetrahedra) std::swap(nodes[2], nodes[3]);
-}
-
-MeshCache::MeshCache() : folder_(cache_folder()) {}
-
-std::optional<TetMesh> MeshCache::find(std::uint64_t input, std::uint64_t program) const {
-  if (folder_.empty()) return std::nullopt;
-  return read_entry(folder_ / file_name(input, program));
-}
-
-std::optional<TetMesh> MeshCache::find_of_any_program(std::uint64_t input) const {
-  if (folder_.empty()) return std::nullopt;
-  std::optional<TetMesh> newest;
-  fs::file_time_type newest_time = fs::file_time_type::min();
-  std::error_code error;
-  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(to_hex(input) + '-') || !name.ends_with(extension)) continue;
-    std::error_code no_time;
-    const fs::file_time_type time = entry->last_write_time(no_time);
-    if (no_time || (newest && time <= newest_time)) continue;
-    if (auto mesh = read_entry(entry->path())) {
-      newest = std::move(mesh);
-      newest_time = time;
-    }
-  }
-  return newest;
-}
-
-void MeshCache::store(std::uint64_t input, std::uint64_t program, const TetMesh& mesh) const {
-  if (folder_.empty()) return;
-  std::error_code ignored;
-  fs::create_directories(folder_, ignored);
-  const std::string nodes = node_text(mesh.nodes);
-  const std::string tetrahedra = ele_text(mesh.tetrahedra);
-  const fs::path file = folder_ / file_name(input, program);
-  try {
-    write_file_atomically(file, header_of(nodes, tetrahedra) + nodes + tetrahedra);
-  } catch (const WriteError&) {
-    // The mesh is made anew next time; or another process is storing the same.
-  }
 }
 
 TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
@@ -414,15 +393,15 @@ TetMesh surface_mesh(const SurfaceShape& body) {
   auto [surface, note] = read_surface(body.file);
   for (Vec3d& point : surface.points) point = body.unit_m * point;
   validate_surface(surface, name);
-  // A limit far below the body's volume would fill the memory.
-  constexpr double most_tetrahedra = 1e7;
+  const double volume = volume_of(surface);
+  const double tetrahedra = body.largest_volume_m3 > 0 ? volume / body.largest_volume_m3 : 0;  // at least
   constexpr double tetrahedra_a_node = 7;  // of a fine mesh, a little fewer
-  if (body.largest_volume_m3 > 0 && volume_of(surface) / body.largest_volume_m3 > most_tetrahedra)
-    throw InputError(name + ": tetrahedra of at most " + decimal(body.largest_volume_m3) +
-                     " m^3 in a body of " + shown(volume_of(surface)) +
-                     " m^3 would be more than ten million; give a larger volume");
-  const double tetrahedra =
-      body.largest_volume_m3 > 0 ? volume_of(surface) / body.largest_volume_m3 : 0;  // at least
+  // A limit far below the body's volume would fill the memory.
+  if (tetrahedra > 1e7)
+    throw InputError(
+        "{}: tetrahedra of at most {} m^3 in a body of {} m^3 would be more than ten million; give a larger "
+        "volume",
+        name, decimal(body.largest_volume_m3), shown(volume));
   const auto nodes = std::max(std::uint64_t{surface.points.size()},
                               static_cast<std::uint64_t>(tetrahedra / tetrahedra_a_node));
   try {

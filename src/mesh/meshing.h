@@ -37,9 +37,6 @@ double volume_of(const TetMesh& mesh);
 /// The smallest angle between two faces of a tetrahedron, degrees; 180 for a mesh without tetrahedra.
 double smallest_dihedral_angle(const TetMesh& mesh);
 
-/// Nodes - edges + faces - tetrahedra: 1 for a solid ball, 0 for a solid torus.
-std::int64_t euler_characteristic(const TetMesh& mesh);
-
 /// What makes a mesh useless, and the node or tetrahedron at which it shows.
 struct MeshDefect {
   enum Of { node, tetrahedron } of = node;

@@ -343,8 +343,7 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
         "give fewer points or a smaller margin",
         parameters.count, shown(space.volume), decimal(parameters.margin));
   // The few too many lie at the surface, where they are missed least.
-  std::stable_sort(chosen.begin(), chosen.end(),
-                   [](const LatticePoint& a, const LatticePoint& b) { return a.depth > b.depth; });
+  std::ranges::stable_sort(chosen, std::greater(), &LatticePoint::depth);
   chosen.resize(parameters.count);
 
   std::vector<Vec3d> points;

@@ -191,11 +191,8 @@ class ObjReader {
   Surface read() {
     while (lines_.next()) {
       const std::string_view keyword = lines_.words().front();
-      if (keyword != "v" && keyword != "f") continue;
-      if (keyword == "v")
-        vertex();
-      else
-        face();
+      if (keyword == "v") vertex();
+      if (keyword == "f") face();
     }
     if (faces_.empty())
       lines_.fail(

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "geometry/geometry.h"
-#include "mesh/text_lines.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "platform/process.h"
@@ -95,98 +94,72 @@ void require_end(TextLines& lines, const std::string& things, std::size_t count)
         count, things);
 }
 
-/// What both files give for each thing: where it stands.
-struct Lines {
-  std::vector<std::size_t> node, tetrahedron;
-};
+/// Reads the nodes, and the line at which each stands. Returns the number that the first one has, 0 or 1.
+std::int64_t read_nodes(TextLines& lines, std::vector<Vec3d>& nodes, std::vector<std::size_t>& at_line) {
+  lines.require_next("the number of nodes");
+  const std::size_t count = count_of(lines, "nodes");
+  if (const std::int64_t dimension = optional_integer(lines, 1, "the dimension", 3); dimension != 3)
+    lines.fail("the dimension is {}; give nodes with x, y and z", dimension);
+  const std::int64_t attributes = optional_integer(lines, 2, "the number of attributes", 0);
+  const std::int64_t markers = optional_integer(lines, 3, "the number of boundary markers", 0);
 
-class NodeFile {
- public:
-  explicit NodeFile(const NamedText& file) : lines_(file.name, file.text) {}
-
-  /// Returns the number that the first node has, 0 or 1.
-  std::int64_t read(std::vector<Vec3d>& nodes, std::vector<std::size_t>& at_line) {
-    lines_.require_next("the number of nodes");
-    const std::size_t count = count_of(lines_, "nodes");
-    if (const std::int64_t dimension = optional_integer(lines_, 1, "the dimension", 3); dimension != 3)
-      lines_.fail("the dimension is {}; give nodes with x, y and z", dimension);
-    const std::int64_t attributes = optional_integer(lines_, 2, "the number of attributes", 0);
-    const std::int64_t markers = optional_integer(lines_, 3, "the number of boundary markers", 0);
-
-    std::int64_t first = 0;
-    nodes.reserve(count);
-    at_line.reserve(count);
-    for (std::size_t n = 0; n < count; ++n) {
-      lines_.require_next(fmt::format("node {} of {}", n + 1, count));
-      require_words(lines_, 4 + attributes + markers);
-      const std::int64_t index = lines_.integer(0, "the number of a node");
-      if (n == 0) first = index;
-      if (first != 0 && first != 1)
-        lines_.fail("the first node has the number {}; number nodes from 0 or 1", first);
-      if (index != first + static_cast<std::int64_t>(n))
-        lines_.fail("node {} is where node {} is expected; number nodes in ascending order", index,
-                    first + static_cast<std::int64_t>(n));
-      nodes.push_back({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
-      at_line.push_back(lines_.line());
-    }
-    require_end(lines_, "nodes", count);
-    return first;
+  std::int64_t first = 0;
+  nodes.reserve(count);
+  at_line.reserve(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    lines.require_next(fmt::format("node {} of {}", n + 1, count));
+    require_words(lines, 4 + attributes + markers);
+    const std::int64_t index = lines.integer(0, "the number of a node");
+    if (n == 0) first = index;
+    if (first != 0 && first != 1)
+      lines.fail("the first node has the number {}; number nodes from 0 or 1", first);
+    if (index != first + static_cast<std::int64_t>(n))
+      lines.fail("node {} is where node {} is expected; number nodes in ascending order", index,
+                 first + static_cast<std::int64_t>(n));
+    nodes.push_back({lines.coordinate(1, "x"), lines.coordinate(2, "y"), lines.coordinate(3, "z")});
+    at_line.push_back(lines.line());
   }
+  require_end(lines, "nodes", count);
+  return first;
+}
 
-  const TextLines& lines() const { return lines_; }
+/// The same of tetrahedra between `nodes` nodes.
+void read_tetrahedra(TextLines& lines, std::vector<Tetrahedron>& tetrahedra,
+                     std::vector<std::size_t>& at_line, std::size_t nodes, std::int64_t first_node) {
+  lines.require_next("the number of tetrahedra");
+  const std::size_t count = count_of(lines, "tetrahedra");
+  if (const std::int64_t corners = optional_integer(lines, 1, "the number of nodes of a tetrahedron", 4);
+      corners != 4)
+    lines.fail("the number of nodes of a tetrahedron is {}; give linear tetrahedra, of 4 nodes", corners);
+  const std::int64_t attributes = optional_integer(lines, 2, "the number of attributes", 0);
 
- private:
-  TextLines lines_;
-};
-
-class EleFile {
- public:
-  explicit EleFile(const NamedText& file) : lines_(file.name, file.text) {}
-
-  void read(std::vector<Tetrahedron>& tetrahedra, std::vector<std::size_t>& at_line, std::size_t nodes,
-            std::int64_t first_node) {
-    lines_.require_next("the number of tetrahedra");
-    const std::size_t count = count_of(lines_, "tetrahedra");
-    if (const std::int64_t corners = optional_integer(lines_, 1, "the number of nodes of a tetrahedron", 4);
-        corners != 4)
-      lines_.fail("the number of nodes of a tetrahedron is {}; give linear tetrahedra, of 4 nodes", corners);
-    const std::int64_t attributes = optional_integer(lines_, 2, "the number of attributes", 0);
-
-    tetrahedra.reserve(count);
-    at_line.reserve(count);
-    for (std::size_t t = 0; t < count; ++t) {
-      lines_.require_next(fmt::format("tetrahedron {} of {}", t + 1, count));
-      require_words(lines_, 5 + attributes);
-      // TetGen leaves gaps in these numbers where it has dropped tetrahedra, and nothing refers to them.
-      lines_.integer(0, "the number of a tetrahedron");
-      Tetrahedron tetrahedron{};
-      for (std::size_t corner = 0; corner < 4; ++corner) {
-        const std::int64_t node = lines_.integer(1 + corner, "a node of a tetrahedron");
-        const std::int64_t end = first_node + static_cast<std::int64_t>(nodes);
-        if (node < first_node || node >= end)
-          lines_.fail("node {} is not one of the nodes {} to {}; give .node and .ele files of one mesh", node,
-                      first_node, end - 1);
-        tetrahedron[corner] = static_cast<std::uint32_t>(node - first_node);
-      }
-      tetrahedra.push_back(tetrahedron);
-      at_line.push_back(lines_.line());
+  tetrahedra.reserve(count);
+  at_line.reserve(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    lines.require_next(fmt::format("tetrahedron {} of {}", t + 1, count));
+    require_words(lines, 5 + attributes);
+    // TetGen leaves gaps in these numbers where it has dropped tetrahedra, and nothing refers to them.
+    lines.integer(0, "the number of a tetrahedron");
+    Tetrahedron tetrahedron{};
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const std::int64_t node = lines.integer(1 + corner, "a node of a tetrahedron");
+      const std::int64_t end = first_node + static_cast<std::int64_t>(nodes);
+      if (node < first_node || node >= end)
+        lines.fail("node {} is not one of the nodes {} to {}; give .node and .ele files of one mesh", node,
+                   first_node, end - 1);
+      tetrahedron[corner] = static_cast<std::uint32_t>(node - first_node);
     }
-    require_end(lines_, "tetrahedra", count);
+    tetrahedra.push_back(tetrahedron);
+    at_line.push_back(lines.line());
   }
-
-  const TextLines& lines() const { return lines_; }
-
- private:
-  TextLines lines_;
-};
+  require_end(lines, "tetrahedra", count);
+}
 
 void append(std::string& text, std::uint64_t value) { text += fmt::format(" {}", value); }
 
 void append(std::string& text, const Vec3d& point) {
   for (const double x : {point.x, point.y, point.z}) text += ' ' + decimal(x);
 }
-
-namespace fs = std::filesystem;
 
 /// The mesh of the largest committed body takes 0.2 s; what takes this long never ends.
 constexpr unsigned cpu_seconds = 300;
@@ -226,20 +199,17 @@ class Run {
       fail(ended);
     const std::string node_file = read_text(nodes);
     const std::string ele_file = read_text(tetrahedra);
-    TetMesh mesh = parsed(node_file, ele_file);
+    TetMesh mesh;
+    try {
+      mesh = parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
+    } catch (const InputError& error) {
+      throw InputError("the output of {} cannot be used: {}", program_.executable.string(), error.what());
+    }
     require_volume(mesh);
     return mesh;
   }
 
  private:
-  TetMesh parsed(const std::string& node_file, const std::string& ele_file) const {
-    try {
-      return parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
-    } catch (const InputError& error) {
-      throw InputError("the output of {} cannot be used: {}", program_.executable.string(), error.what());
-    }
-  }
-
   ChildResult tetgen(const std::string& switches) const {
     return run({program_.executable,
                 {switches, "body.smesh"},
@@ -339,17 +309,15 @@ std::optional<TetgenProgram> find_tetgen() {
   return program;
 }
 
-TetMesh parse_tetgen_files(const NamedText& node_file, const NamedText& ele_file) {
+TetMesh parse_tetgen_files(TextLines node_file, TextLines ele_file) {
   TetMesh mesh;
-  Lines at_line;
-  NodeFile node(node_file);
-  EleFile ele(ele_file);
-  const std::int64_t first = node.read(mesh.nodes, at_line.node);
-  ele.read(mesh.tetrahedra, at_line.tetrahedron, mesh.nodes.size(), first);
+  std::vector<std::size_t> line_of_node, line_of_tetrahedron;
+  const std::int64_t first = read_nodes(node_file, mesh.nodes, line_of_node);
+  read_tetrahedra(ele_file, mesh.tetrahedra, line_of_tetrahedron, mesh.nodes.size(), first);
   turn_if_mirrored(mesh);
   if (const auto defect = find_defect(mesh)) {
-    if (defect->of == MeshDefect::node) node.lines().fail_at(at_line.node[defect->index], defect->what);
-    ele.lines().fail_at(at_line.tetrahedron[defect->index], defect->what);
+    if (defect->of == MeshDefect::node) node_file.fail_at(line_of_node[defect->index], defect->what);
+    ele_file.fail_at(line_of_tetrahedron[defect->index], defect->what);
   }
   return mesh;
 }

@@ -9,6 +9,7 @@
 
 #include "geometry/surface.h"
 #include "mesh/meshing.h"
+#include "mesh/text_lines.h"
 
 namespace mssim {
 
@@ -23,17 +24,11 @@ struct TetgenProgram {
 /// The `tetgen` that PATH finds, or nothing.
 std::optional<TetgenProgram> find_tetgen();
 
-/// The text of a file and the name that messages give it.
-struct NamedText {
-  std::string name;
-  std::string_view text;
-};
-
 /// Reads a mesh from TetGen's .node and .ele files, numbered from 0 or 1; attributes and boundary markers are
 /// left out. The mesh is valid: finite coordinates, every node in a tetrahedron and at a place of its own,
 /// positive volumes (when all are negative the mesh is mirrored and its tetrahedra are turned), no face in
 /// three tetrahedra. Throws InputError that names file, line and value.
-TetMesh parse_tetgen_files(const NamedText& node_file, const NamedText& ele_file);
+TetMesh parse_tetgen_files(TextLines node_file, TextLines ele_file);
 
 /// Reads the mesh from files. Throws like parse_tetgen_files, and where a file cannot be read.
 TetMesh read_tetgen_files(const std::filesystem::path& node_file, const std::filesystem::path& ele_file);

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <limits>
 #include <random>
 #include <string>
 
-#include "laws/host_laws.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -237,8 +235,7 @@ Energy energy_of(const System& system, const State& state) {
 std::string_view energies_leave_out(const System& system) {
   if (!std::holds_alternative<Garment>(system.topology)) return "";
   return "the work of seams, of contacts and of the correction of elongations; and gravitational energy "
-         "counts "
-         "in full also while seams close, when gravity need not act in full";
+         "counts in full also while seams close, when gravity need not act in full";
 }
 
 double elastic_energy(const System& system, const Spring& spring, const State& state) {

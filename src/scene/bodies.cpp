@@ -58,7 +58,6 @@ void visit_box(FieldVisitor& fields, BodySpec& body) {
   fields.integer({"cells_y", "Squares along y."}, box.cells[1], 1, 1000);
   fields.integer({"cells_z", "Squares along z."}, box.cells[2], 1, 1000);
   visit_interior(fields, interior);
-  visit_expected(fields, body);
 }
 
 void visit_sphere(FieldVisitor& fields, BodySpec& body) {
@@ -66,7 +65,6 @@ void visit_sphere(FieldVisitor& fields, BodySpec& body) {
   fields.number({"radius_m", "Radius of the sphere, m."}, sphere.radius_m, above(0, 1000));
   fields.integer({"frequency", "Triangles along an edge of the icosahedron."}, sphere.frequency, 1, 1000);
   visit_interior(fields, interior);
-  visit_expected(fields, body);
 }
 
 void visit_torus(FieldVisitor& fields, BodySpec& body) {
@@ -77,7 +75,6 @@ void visit_torus(FieldVisitor& fields, BodySpec& body) {
   fields.integer({"cells_around", "Sections along the ring."}, torus.cells_around, 3, 1000);
   fields.integer({"cells_across", "Points of a section."}, torus.cells_across, 3, 1000);
   visit_interior(fields, interior);
-  visit_expected(fields, body);
 }
 
 void visit_mesh_files(FieldVisitor& fields, BodySpec& body) {
@@ -87,7 +84,6 @@ void visit_mesh_files(FieldVisitor& fields, BodySpec& body) {
   fields.text({"ele_file", "Path of the .ele file, from this file's folder."}, Presence::required,
               files.ele_file);
   fields.number({"unit_m", "Metres in one unit of the files, m."}, files.unit_m, above(0, 1e6));
-  visit_expected(fields, body);
 }
 
 void visit_surface_file(FieldVisitor& fields, BodySpec& body) {
@@ -96,7 +92,6 @@ void visit_surface_file(FieldVisitor& fields, BodySpec& body) {
   fields.number({"unit_m", "Metres in one unit of the file, m."}, surface.unit_m, above(0, 1e6));
   fields.number({"largest_tetrahedron_m3", "No tetrahedron becomes larger than this, m^3; 0 for no limit."},
                 surface.largest_tetrahedron_m3, from(0, 1e9));
-  visit_expected(fields, body);
 }
 
 void visit_scene_shape(FieldVisitor& fields, BodySpec& body) {
@@ -122,32 +117,6 @@ constexpr auto shape_kinds = std::to_array<ShapeKind>({
 });
 static_assert(shape_kinds.size() == std::variant_size_v<BodyShape>);
 
-/// Names the fields that say what shape a body has: the text `shape` and the section of that name, with their
-/// targets in `body`.
-void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
-  std::vector<Section> sections;
-  for (const ShapeKind& kind : shape_kinds)
-    sections.push_back({kind.section, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
-  fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
-}
-
-/// The scene whose shape is meant; a path that is not absolute starts at `folder`.
-SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folder) {
-  return find_scene(is_path_of_scene(shape.name) ? (folder / shape.name).string() : shape.name);
-}
-
-/// The body of it whose shape is meant. Throws SceneError unless it has one of its own.
-const BodySpec& first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
-  const auto* bodies = std::get_if<BodiesSpec>(&scene.content);
-  if (bodies == nullptr)
-    throw SceneError("the scene \"{}\" has no bodies whose shape could be taken: name one that has",
-                     printable(shape.name));
-  if (std::holds_alternative<ShapeOfScene>(bodies->list.front().shape))
-    throw SceneError("the first body of the scene \"{}\" takes its shape from another scene: name that one",
-                     printable(shape.name));
-  return bodies->list.front();
-}
-
 /// A shape that is not that of another scene any more.
 struct OwnShape {
   BodyShape shape;
@@ -156,23 +125,21 @@ struct OwnShape {
 };
 
 /// The shape of a body in a scene file of that folder; where it is another scene's, that is read. Throws
-/// SceneError when there is no such scene, or it cannot be used.
+/// SceneError when there is no such scene, or none whose first body has a shape of its own.
 OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
   const auto* other = std::get_if<ShapeOfScene>(&shape);
   if (other == nullptr) return {shape, folder, std::nullopt};
-  const SceneSpec scene = scene_of(*other, folder);
-  const BodySpec& body = first_body(*other, scene);
+  const std::string& name = other->name;
+  const SceneSpec scene = find_scene(is_path_of_scene(name) ? (folder / name).string() : name);
+  const auto* bodies = std::get_if<BodiesSpec>(&scene.content);
+  if (bodies == nullptr)
+    throw SceneError("the scene \"{}\" has no bodies whose shape could be taken: name one that has",
+                     printable(name));
+  const BodySpec& body = bodies->list.front();
+  if (std::holds_alternative<ShapeOfScene>(body.shape))
+    throw SceneError("the first body of the scene \"{}\" takes its shape from another scene: name that one",
+                     printable(name));
   return {body.shape, scene.file.parent_path(), body.expected};
-}
-
-/// What files state about the mesh of a body of that shape.
-std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape) {
-  return std::holds_alternative<ShapeOfScene>(body.shape) ? shape.stated_by_other : body.expected;
-}
-
-/// No OwnShape is that of another scene.
-[[noreturn]] void throw_not_own(const ShapeOfScene& shape) {
-  throw std::logic_error("the shape of the scene " + shape.name + " was not read");
 }
 
 /// How a shape becomes a mesh, one overload a kind.
@@ -191,26 +158,25 @@ struct Mesher {
   TetMesh operator()(const SurfaceFile& surface) const {
     return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
   }
-  TetMesh operator()(const ShapeOfScene& shape) const { throw_not_own(shape); }
-};
-
-/// What is known of a mesh before it is made, one overload a kind. All edges of the surface stay edges of the
-/// mesh, three for a point in the limit; an inner point has four at least, each of which it may share.
-struct LeastCounter {
-  template <class Solid>
-  SceneCounts operator()(const GeneratedShape<Solid>& shape) const {
-    const std::uint64_t outer = surface_point_count(shape.solid), inner = shape.interior.count;
-    return {outer + inner, 3 * outer - 6 + 2 * inner};
+  /// No OwnShape is that of another scene.
+  TetMesh operator()(const ShapeOfScene& shape) const {
+    throw std::logic_error("the shape of the scene " + shape.name + " was not read");
   }
-  SceneCounts operator()(const MeshFiles& /*files*/) const { return {}; }
-  SceneCounts operator()(const SurfaceFile& /*surface*/) const { return {}; }
-  SceneCounts operator()(const ShapeOfScene& shape) const { throw_not_own(shape); }
 };
 
-SceneCounts least_counts(const OwnShape& shape) { return std::visit(LeastCounter{}, shape.shape); }
-
-/// The mesh of the shape, m, wherever its origin is. Throws InputError and MissingProgram.
-TetMesh mesh_of(const OwnShape& shape) { return std::visit(Mesher{shape.folder}, shape.shape); }
+/// What is known of a mesh before it is made. All edges of a generated surface stay edges of the mesh, three
+/// for a point in the limit; an inner point has four at least, each of which it may share.
+SceneCounts least_counts(const OwnShape& own) {
+  return std::visit(
+      [](const auto& shape) -> SceneCounts {
+        if constexpr (requires { shape.interior; }) {
+          const std::uint64_t outer = surface_point_count(shape.solid), inner = shape.interior.count;
+          return {outer + inner, 3 * outer - 6 + 2 * inner};
+        }
+        return {};
+      },
+      own.shape);
+}
 
 constexpr std::size_t most_bodies = 10'000;
 
@@ -221,7 +187,13 @@ constexpr double shortest_spring = 1e-7, longest_spring = 1e6;
 const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.content); }
 
 void visit_body(FieldVisitor& fields, BodySpec& body) {
-  visit_shape_fields(fields, body);
+  std::vector<Section> shapes;
+  for (const ShapeKind& kind : shape_kinds)
+    shapes.push_back({kind.section, [&](FieldVisitor& section) {
+                        kind.visit_fields(section, body);
+                        if (!std::holds_alternative<ShapeOfScene>(body.shape)) visit_expected(section, body);
+                      }});
+  fields.one_of({"shape", "Which of the sections says what shape the body has."}, shapes);
   fields.vector({"centre_m", "Where the centre of mass starts, [x, y, z], m."}, Presence::required,
                 body.centre_m, from(-1e6, 1e6));
   fields.object({"turn", "How the shape is turned about its centre at the start."}, Presence::optional,
@@ -271,7 +243,7 @@ void require_lengths(const MeshedShape& shape, const SceneSpec& spec) {
 
 void mesh(MeshedShape& shape, const SceneSpec& spec) {
   try {
-    shape.mesh = mesh_of(shape.own);
+    shape.mesh = std::visit(Mesher{shape.own.folder}, shape.own.shape);
   } catch (const InputError& error) {
     refuse(spec.file, pointer_to(shape.first_body), "has no mesh: " + printable(error.what(), 1500));
   }
@@ -331,7 +303,7 @@ class MeshedShapes {
       least.nodes += body.nodes;
       least.springs_unique += body.springs_unique;
     }
-    if (const auto shortage = memory_shortage(memory_needed(least.nodes, least.springs_unique)))
+    if (const auto shortage = memory_shortage(memory_needed(least)))
       refuse(spec.file, "/bodies",
              "has at least " + std::to_string(least.nodes) + " nodes and " +
                  std::to_string(least.springs_unique) + " springs and " + *shortage +
@@ -376,7 +348,9 @@ std::optional<SceneCounts> stated_counts_of(const SceneSpec& spec,
   SceneCounts counts;
   const std::vector<BodySpec>& list = bodies_of(spec).list;
   for (std::size_t body = 0; body < list.size(); ++body) {
-    const std::optional<MeshSize> size = stated_size(list[body], shape_of(body));
+    const std::optional<MeshSize> size = std::holds_alternative<ShapeOfScene>(list[body].shape)
+                                             ? shape_of(body).stated_by_other
+                                             : list[body].expected;
     if (!size) return std::nullopt;
     counts.nodes += size->nodes;
     counts.springs_unique += size->springs;
@@ -384,10 +358,9 @@ std::optional<SceneCounts> stated_counts_of(const SceneSpec& spec,
   return counts;
 }
 
-/// Throws SceneError when a body starts below the floor and when the memory does not suffice.
+/// Throws SceneError when a body starts below the floor.
 System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
   const BodiesSpec& bodies = bodies_of(spec);
-  require_memory(spec, "/bodies", shapes.counts());
   System system;
   system.materials = {bodies.springs};
   system.gravity = spec.gravity_m_per_s2;
@@ -432,9 +405,8 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.object(
       {"springs", "How the springs answer stretching."}, Presence::required,
       [&](FieldVisitor& springs) { visit_material(springs, bodies.springs, above(0, largest_stiffness)); });
-  fields.list({"list", "The bodies."}, Presence::required, most_bodies,
-              {"One body, and how it starts.",
-               [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); }});
+  fields.list({"list", "The bodies."}, Presence::required, most_bodies, "One body, and how it starts.",
+              [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); });
 }
 
 /// Every turn has an axis.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "model/system.h"
@@ -20,9 +21,13 @@ System outline_of_cloth(const SceneSpec& spec);
 
 /// The cloth as spec describes it: node (r, c) has the index r * columns + c and starts at
 /// (c spacing, ceiling height, r spacing) plus the ripple, a standing wave of given amplitude in position and
-/// velocity. Pinned nodes are not displaced. Deterministic. Throws SceneError when the memory does not
-/// suffice.
+/// velocity. Pinned nodes are not displaced. Deterministic. Throws std::bad_alloc.
 System build_cloth(const SceneSpec& spec);
+
+/// Bytes that any run of a scene of this size needs at least: its System with the start state, and the
+/// double-precision reference that every run is compared with (up to four pairs of position and velocity),
+/// and one state read back. The backend under test comes on top.
+std::uint64_t memory_needed(const SceneCounts& counts);
 
 /// Nodes and springs that the mesh of a body of that shape has at least, without making it; zero where that
 /// is not known. The scene file is in that folder. Throws SceneError where the shape is another scene's, and

@@ -25,23 +25,6 @@ constexpr double steepest_ripple = 0.1;
 
 const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.content); }
 
-void visit_pins(FieldVisitor& fields, ClothPins& pins) {
-  fields.integer({"row", "The row that is pinned, counted from 0."}, pins.row, 0, 999'999);
-  fields.integer(
-      {"every_columns",
-       "Of the pinned row every so many columns one node is pinned, from column 0 on, and the last."},
-      pins.every_columns, 1, 1'000'000);
-}
-
-void visit_ripple(FieldVisitor& fields, ClothRipple& ripple) {
-  fields.number(
-      {"height_m", "Amplitude of the vertical displacement, m; within the plane it is half as large."},
-      ripple.height_m, from(0, 100));
-  fields.number({"wavelength_m", "Wavelength along x and along z, m."}, ripple.wavelength_m, from(1e-6, 1e6));
-  fields.number({"speed_m_per_s", "Amplitude of each component of the velocity, m/s."}, ripple.speed_m_per_s,
-                from(0, 1000));
-}
-
 void visit_springs(FieldVisitor& fields, ClothSpec& cloth) {
   constexpr std::array<std::string_view, grid_spring_kinds.size()> descriptions{
       "Springs between neighbours.", "Springs across the diagonals.", "Springs between nodes two apart."};
@@ -112,11 +95,26 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
                 cloth.ceiling_height_m, from(-1e6, 1e6));
   fields.object(
       {"pins", "The nodes that stay where they start. Without this section the cloth falls freely."},
-      Presence::optional, [&](FieldVisitor& pins) { visit_pins(pins, cloth.pins.emplace()); });
+      Presence::optional, [&](FieldVisitor& section) {
+        ClothPins& pins = cloth.pins.emplace();
+        section.integer({"row", "The row that is pinned, counted from 0."}, pins.row, 0, 999'999);
+        section.integer(
+            {"every_columns",
+             "Of the pinned row every so many columns one node is pinned, from column 0 on, and the last."},
+            pins.every_columns, 1, 1'000'000);
+      });
   fields.object(
       {"ripple",
        "A standing wave at the start, so that all springs work and all nodes move from the first step."},
-      Presence::required, [&](FieldVisitor& ripple) { visit_ripple(ripple, cloth.ripple); });
+      Presence::required, [&ripple = cloth.ripple](FieldVisitor& section) {
+        section.number(
+            {"height_m", "Amplitude of the vertical displacement, m; within the plane it is half as large."},
+            ripple.height_m, from(0, 100));
+        section.number({"wavelength_m", "Wavelength along x and along z, m."}, ripple.wavelength_m,
+                       from(1e-6, 1e6));
+        section.number({"speed_m_per_s", "Amplitude of each component of the velocity, m/s."},
+                       ripple.speed_m_per_s, from(0, 1000));
+      });
   fields.object({"springs", "How each kind of spring answers stretching."}, Presence::required,
                 [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
 }
@@ -197,7 +195,6 @@ System build_cloth_window(const SceneSpec& spec, const GridWindow& window) {
 
 System build_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
-  require_memory(spec, "/cloth", cloth_counts(spec));
   System system = build_cloth_window(spec, {.rows = cloth.rows, .columns = cloth.columns});
   system.springs = springs_of(std::get<GridPatch>(system.topology));
   return system;

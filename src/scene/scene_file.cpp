@@ -12,13 +12,6 @@
 namespace mssim {
 namespace {
 
-void visit_floor(FieldVisitor& fields, Floor& floor) {
-  fields.number({"height_m", "Height of the floor, m."}, floor.height, from(-1e6, 1e6));
-  fields.number({"restitution", "Share of the falling speed that comes back, without unit."},
-                floor.restitution, from(0, 1));
-  fields.number({"friction", "Coulomb's coefficient, without unit."}, floor.friction, from(0, 100));
-}
-
 std::filesystem::path scene_folder() { return data_folder() / "scenes"; }
 
 std::filesystem::path file_of(std::string_view name) {
@@ -34,17 +27,6 @@ std::vector<std::string> names_in_folder() {
       names.push_back(file.stem().string());
   }
   return names;
-}
-
-void visit_solver(FieldVisitor& fields, SolverSettings& solver) {
-  fields.number(
-      {"tolerance",
-       "Of implicit-euler's conjugate gradients and of newton-euler: they end where the norm of what "
-       "is left is this part of what it was."},
-      solver.tolerance, above(0, 0.1));
-  fields.integer({"fast_springs_iterations", "Local and global steps of fast-springs in each step."},
-                 solver.iterations, 1, 10000);
-  fields.integer({"xpbd_substeps", "Small steps of xpbd in each step."}, solver.substeps, 1, 1000);
 }
 
 /// Names the fields of a whole scene file, with their targets in `spec`.
@@ -73,11 +55,26 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
        "The plane y = height that nothing falls through. It acts once a step, behind the integrator: of a "
        "free node below it, y becomes the height, a falling v_y becomes -restitution * v_y, and the "
        "horizontal speed loses friction * (1 + restitution) * |v_y|, at most all of it."},
-      Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
-  fields.object({"implicit",
-                 "How far the solvers of implicit integrators go (default: tolerance 1e-5, 10 iterations, 10 "
-                 "substeps)."},
-                Presence::optional, [&](FieldVisitor& solver) { visit_solver(solver, spec.solver); });
+      Presence::required, [&floor = spec.floor](FieldVisitor& section) {
+        section.number({"height_m", "Height of the floor, m."}, floor.height, from(-1e6, 1e6));
+        section.number({"restitution", "Share of the falling speed that comes back, without unit."},
+                       floor.restitution, from(0, 1));
+        section.number({"friction", "Coulomb's coefficient, without unit."}, floor.friction, from(0, 100));
+      });
+  fields.object(
+      {"implicit",
+       "How far the solvers of implicit integrators go (default: tolerance 1e-5, 10 iterations, 10 "
+       "substeps)."},
+      Presence::optional, [&solver = spec.solver](FieldVisitor& section) {
+        section.number(
+            {"tolerance",
+             "Of implicit-euler's conjugate gradients and of newton-euler: they end where the norm of what "
+             "is left is this part of what it was."},
+            solver.tolerance, above(0, 0.1));
+        section.integer({"fast_springs_iterations", "Local and global steps of fast-springs in each step."},
+                        solver.iterations, 1, 10000);
+        section.integer({"xpbd_substeps", "Small steps of xpbd in each step."}, solver.substeps, 1, 1000);
+      });
 }
 
 std::string_view remedy_of(ReadError::Cause cause) {
@@ -143,12 +140,6 @@ std::vector<SceneSpec> shipped_scenes() {
   specs.reserve(scenes.size());
   for (auto& [key, spec] : scenes) specs.push_back(std::move(spec));
   return specs;
-}
-
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
-  for (const SceneSpec& spec : shipped_scenes()) names.push_back(spec.file.stem().string());
-  return names;
 }
 
 bool is_path_of_scene(std::string_view name_or_path) {

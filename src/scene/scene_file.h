@@ -39,7 +39,4 @@ SceneSpec find_scene(std::string_view name_or_path);
 /// when one of them cannot be read.
 std::vector<SceneSpec> shipped_scenes();
 
-/// Their names.
-std::vector<std::string> scene_names();
-
 }  // namespace mssim

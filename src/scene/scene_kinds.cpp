@@ -1,11 +1,14 @@
 #include "scene/scene_kinds.h"
 
+#include <fmt/core.h>
+
 #include <array>
-#include <string>
 #include <variant>
 
 #include "garment/scene/garment_scene.h"
+#include "platform/machine.h"
 #include "scene/builders.h"
+#include "scene/fields/fields.h"
 
 namespace mssim {
 namespace {
@@ -22,8 +25,6 @@ SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
 std::optional<SceneCounts> with_published(const SceneSpec& spec, const std::optional<SceneCounts>& counts) {
   return counts ? std::optional(with_published(spec, *counts)) : std::nullopt;
 }
-
-std::string pointer_to_kind(const SceneSpec& spec) { return "/" + std::string(kind_of(spec).name); }
 
 }  // namespace
 
@@ -49,15 +50,25 @@ SceneCounts counts_of(const SceneSpec& spec, const System& system) {
 }
 
 void require_memory(const SceneSpec& spec, const SceneCounts& counts) {
-  require_memory(spec, pointer_to_kind(spec), counts);
+  require_memory(spec, counts, memory_needed(counts), "make the scene smaller");
 }
 
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy) {
-  require_memory(spec, pointer_to_kind(spec), counts, needed, remedy);
+  if (const auto shortage = memory_shortage(needed))
+    refuse(spec.file, fmt::format("/{}", kind_of(spec).name),
+           fmt::format("has {} nodes and {} springs and {}: {}", counts.nodes, counts.springs_unique,
+                       *shortage, remedy));
+}
+
+std::uint64_t memory_needed(const SceneCounts& counts) {
+  constexpr std::uint64_t start = 1, reference_pairs = 4, read_back = 1;
+  return counts.nodes * (start + reference_pairs + read_back) * 2 * sizeof(Vec3d) +
+         counts.springs_unique * sizeof(Spring);
 }
 
 BuiltScene build_scene(const SceneSpec& spec, const SceneParts& parts) {
+  require_memory(spec, parts.counts);
   BuiltScene scene = parts.build(spec);
   round_start_to_single(scene.system);
   return scene;

@@ -33,11 +33,12 @@ SceneCounts counts_of(const SceneSpec& spec, const System& system);
 /// (memory_needed), naming both amounts.
 void require_memory(const SceneSpec& spec, const SceneCounts& counts);
 
-/// Throws SceneError when a use of the scene that needs `needed` bytes does not fit into memory.
+/// Throws SceneError when `needed` bytes for a use of the scene are more than the available memory, naming
+/// both and the remedy.
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy);
 
-/// The scene of these parts. Throws like SceneParts::build.
+/// The scene of these parts. Throws like SceneParts::build, and before it like require_memory.
 BuiltScene build_scene(const SceneSpec& spec, const SceneParts& parts);
 
 /// The scene, its parts read for it alone. Throws like both.

@@ -25,7 +25,7 @@ void make_coarse(SceneSpec& spec) {
   if (garment == nullptr) return;
   constexpr std::uint32_t jeans_nodes = 300, most_rows = 9;
   if (auto* const form = std::get_if<MannequinBody>(&garment->body)) {
-    form->resolution.cells_around = std::min(form->resolution.cells_around, 16U);
+    form->cells_around = std::min(form->cells_around, 16U);
     garment->pixel_m = std::max(garment->pixel_m, form->measures.bust.height / 60);
   }
   if (garment->jeans) garment->jeans->nodes = std::min(garment->jeans->nodes, jeans_nodes);

@@ -15,6 +15,14 @@
 namespace mssim {
 namespace {
 
+/// Nodes - edges + faces - tetrahedra: 1 for a solid ball, 0 for a solid torus.
+std::int64_t euler_characteristic(const TetMesh& mesh) {
+  auto faces = faces_of(mesh);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return static_cast<std::int64_t>(mesh.nodes.size() + faces.size()) -
+         static_cast<std::int64_t>(edges_of(mesh).size() + mesh.tetrahedra.size());
+}
+
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;

@@ -29,8 +29,8 @@ garment/layers        text geometry garment
 
 scene/fields          text geometry model
 garment/spec          text geometry garment mesh garment/body garment/pattern scene/fields
-scene/spec            platform geometry model mesh garment/body scene/fields garment/spec
-garment/scene         text geometry garment/contact model mesh garment/body garment/pattern garment/layers scene/fields scene/spec
+scene/spec            geometry model mesh garment/body garment/spec
+garment/scene         text geometry garment/contact model mesh garment/body garment/pattern scene/fields scene/spec
 scene                 text platform geometry model mesh scene/fields scene/spec garment/scene
 
 backends/interface    kernels text integrators model

@@ -27,8 +27,8 @@ using testing::Not;
 
 std::vector<SceneSpec> body_scenes() {
   std::vector<SceneSpec> scenes;
-  for (const std::string& name : scene_names())
-    if (SceneSpec spec = find_scene(name); kind_of(spec).name == "bodies") scenes.push_back(std::move(spec));
+  for (const SceneSpec& spec : shipped_scenes())
+    if (kind_of(spec).name == "bodies") scenes.push_back(spec);
   EXPECT_FALSE(scenes.empty());
   return scenes;
 }

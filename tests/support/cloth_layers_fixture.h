@@ -20,7 +20,6 @@ namespace mssim {
 /// Panels with positions, velocities and masses, for tests of what layers do to each other.
 struct LayeredCloth {
   Garment garment;
-  ClothLayers layers;
   std::array<std::vector<float>, 3> position, velocity;
   std::vector<float> mass;
 
@@ -39,7 +38,6 @@ struct LayeredCloth {
         mass.push_back(node_mass);
       }
     }
-    layers.pairs = layer_pairs(garment);
   }
   void set_node_velocity(std::uint32_t node, const Vec3<float>& speed) {
     velocity[0][node] = speed.x;
@@ -66,13 +64,13 @@ struct LayeredCloth {
     return sum;
   }
   ClothClothCollision collision(const ClothClothSettings& settings = {}, int threads = 1) const {
-    return {garment, layers, mass, settings, threads};
+    return {garment, mass, settings, threads};
   }
 };
 
 /// How many nodes have gone through another layer, and not farther than `reach` (m).
 inline std::size_t nodes_on_wrong_side(const LayeredCloth& cloth, double reach) {
-  ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), reach, 1);
+  ClothContactSearch search(cloth.garment, reach, 1);
   return static_cast<std::size_t>(std::ranges::count_if(
       search.find(cloth.coordinates()), [](const ClothContact& contact) { return contact.gap < 0; }));
 }
@@ -107,7 +105,7 @@ inline LayeredCloth folded_sheets(std::mt19937& random, std::uint32_t inner_rows
 
 /// The crossings of all pairs of its layers.
 inline std::size_t crossings(const LayeredCloth& cloth) {
-  return count_crossings(cloth.garment, cloth.layers, cloth.points());
+  return count_crossings(cloth.garment, cloth.points());
 }
 
 }  // namespace mssim

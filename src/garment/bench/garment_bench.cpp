@@ -68,14 +68,14 @@ class StretchErrors {
       const State state = backend.state();
       if (first_bad_node(state)) {
         const auto blow_up = find_blow_up(backend, stretch.start, stretch_steps);
-        return blow_up ? describe(*blow_up, dt_s) : "not finite in one run, finite in the next: a data race";
+        return blow_up ? describe(*blow_up, dt_s) : std::string(finite_in_the_next);
       }
-      last_hash_ = state_hash(state);
+      last_hash = state_hash(state);
       for (std::size_t i = 0; i < errors_.size(); ++i)
         errors_[i].push_back(length(state.position[i] - stretch.end.position[i]) / unit_);
       const Energy expected = energy_of(system_, stretch.end);
-      energy_error_ += energy_of(system_, state).total() - expected.total();
-      energy_in_motion_ += expected.kinetic + expected.elastic;
+      energy_error += energy_of(system_, state).total() - expected.total();
+      energy_in_motion += expected.kinetic + expected.elastic;
     }
     return std::nullopt;
   }
@@ -94,28 +94,14 @@ class StretchErrors {
     return mssim::quantile(std::move(all), fraction);
   }
 
-  /// Hash of the state after the last step.
-  std::uint64_t last_hash() const { return last_hash_; }
-  double energy_error() const { return energy_error_; }
-  double energy_in_motion() const { return energy_in_motion_; }
+  double energy_error = 0, energy_in_motion = 0;  ///< J, sums over the stretches
+  std::uint64_t last_hash = 0;                    ///< of the state after the last step
 
  private:
   const System& system_;
   double unit_;                              ///< m
   std::vector<std::vector<double>> errors_;  ///< [nodes][stretches] in mean rest lengths
-  double energy_error_ = 0, energy_in_motion_ = 0;
-  std::uint64_t last_hash_ = 0;
 };
-
-DressingRecord record_of(const DressingResult& result, double wall_s) {
-  DressingRecord record;
-  record.iterations = static_cast<std::uint64_t>(result.iterations);
-  if (result.seamed_at) record.seamed_at = static_cast<std::uint64_t>(*result.seamed_at);
-  record.settled = result.settled;
-  record.simulated_s = result.simulated_s;
-  record.wall_s = wall_s;
-  return record;
-}
 
 /// Keeps an earlier record of the same combination. Says whether there was one.
 bool keep_earlier(ResultRow& row, const std::vector<ResultRow>& earlier) {
@@ -151,10 +137,10 @@ Verification verify_garment(Backend& backend, const System& system, const Garmen
 
   const double of_node = seaming.largest_median();
   const double of_half = draped.quantile(0.5), of_most = draped.quantile(0.9), any = draped.quantile(1);
-  result.state_hash = draped.last_hash();
+  result.state_hash = draped.last_hash;
   result.position_error = std::max(of_node, of_most);
-  result.energy_drift = (seaming.energy_error() + draped.energy_error()) /
-                        (seaming.energy_in_motion() + draped.energy_in_motion());
+  result.energy_drift =
+      (seaming.energy_error + draped.energy_error) / (seaming.energy_in_motion + draped.energy_in_motion);
   std::ostringstream why;
   const auto hold = [&](double error, double bound, const char* whose) {
     if (!why.str().empty() || error <= bound) return;
@@ -197,7 +183,12 @@ bool dress_combination(Combination& combination, const SceneJob& job, const std:
                                         return !stopped && !bad_node;
                                       });
   if (stopped) return false;
-  row.dressing = record_of(result, std::chrono::duration<double>(Clock::now() - before).count());
+  row.dressing = DressingRecord{static_cast<std::uint64_t>(result.iterations),
+                                result.seamed_at,
+                                result.settled,
+                                result.simulated_s,
+                                std::chrono::duration<double>(Clock::now() - before).count(),
+                                {}};
   if (bad_node) {
     fail(combination, fmt::format("failed: the dressing blew up before step {}: node {} is not finite",
                                   result.iterations, *bad_node));

@@ -33,7 +33,7 @@ std::vector<Chord> chords_at(const Surface& body, double height) {
       chords.push_back({ends[in_order ? 0 : 1], ends[in_order ? 1 : 0]});
     }
   }
-  std::sort(chords.begin(), chords.end(), [](const Chord& a, const Chord& b) { return a.from.x < b.from.x; });
+  std::ranges::sort(chords, {}, [](const Chord& chord) { return chord.from.x; });
   return chords;
 }
 
@@ -52,6 +52,33 @@ class Half {
   PlanPoint least_{HUGE_VAL, HUGE_VAL}, most_{-HUGE_VAL, -HUGE_VAL};
   double covered_ = 0;
 };
+
+/// The gap between the legs at this height, none where the section does not fall apart into two halves that
+/// are about equally wide.
+std::optional<LegGap> leg_gap(const Surface& body, double height) {
+  constexpr double least_gap = 1e-3;  // of the section's width: more than what rounding opens
+  // Of the wider half; hands and what stands beside the body are narrower.
+  constexpr double least_share = 0.55;
+  const std::vector<Chord> chords = chords_at(body, height);
+  if (chords.empty()) return std::nullopt;
+  Half all;
+  for (const Chord& chord : chords) all.add(chord);
+  std::optional<LegGap> best;
+  double best_share = least_share, reached = chords.front().to.x;
+  for (std::size_t i = 1; i < chords.size(); ++i) {
+    const LegGap gap{height, reached, chords[i].from.x, {}, {}};
+    reached = std::max(reached, chords[i].to.x);
+    if (gap.high - gap.low <= least_gap * all.covered()) continue;
+    Half right, left;
+    for (std::size_t j = 0; j < chords.size(); ++j) (j < i ? right : left).add(chords[j]);
+    const double narrower = std::min(right.covered(), left.covered());
+    const double wider = std::max(right.covered(), left.covered());
+    if (narrower < best_share * wider) continue;
+    best_share = narrower / wider;
+    best = {gap.height, gap.low, gap.high, right.middle(), left.middle()};
+  }
+  return best;
+}
 
 using Corners = std::array<Vec3d, 3>;
 
@@ -83,8 +110,6 @@ TrunkAndLegs checked_body(const Surface& surface, const std::string& name) {
   return trunk_and_legs(surface);
 }
 
-bool nearer_the_back(const PlanPoint& a, const PlanPoint& b) { return a.z < b.z; }
-
 /// Where a landmark is looked for and where it is if the body does not show it, in heights of the crotch:
 /// what is between the two on grown people and children alike, and where the reference body has it.
 struct Search {
@@ -115,39 +140,13 @@ Landmark extreme(const Girth& girth, const Search& search, double crotch, double
 
 }  // namespace
 
-std::optional<LegGap> leg_gap(const Surface& body, double height) {
-  constexpr double least_gap = 1e-3;  // of the section's width: more than what rounding opens
-  constexpr double least_share =
-      0.55;  // of the wider half; hands and what stands beside the body are narrower
-  const std::vector<Chord> chords = chords_at(body, height);
-  if (chords.empty()) return std::nullopt;
-  Half all;
-  for (const Chord& chord : chords) all.add(chord);
-  std::optional<LegGap> best;
-  double best_share = least_share, reached = chords.front().to.x;
-  for (std::size_t i = 1; i < chords.size(); ++i) {
-    const LegGap gap{height, reached, chords[i].from.x, {}, {}};
-    reached = std::max(reached, chords[i].to.x);
-    if (gap.high - gap.low <= least_gap * all.covered()) continue;
-    Half right, left;
-    for (std::size_t j = 0; j < chords.size(); ++j) (j < i ? right : left).add(chords[j]);
-    const double narrower = std::min(right.covered(), left.covered());
-    const double wider = std::max(right.covered(), left.covered());
-    if (narrower < best_share * wider) continue;
-    best_share = narrower / wider;
-    best = {gap.height, gap.low, gap.high, right.middle(), left.middle()};
-  }
-  return best;
-}
-
 std::vector<LegGap> leg_gaps(const Surface& body) {
   constexpr int steps = 120;
   constexpr int first = 6, last = 72;  // from the feet to well above any crotch
-  const auto [low, high] =
-      std::ranges::minmax_element(body.points, {}, [](const Vec3d& point) { return point.y; });
+  const auto [low, high] = std::ranges::minmax(body.points, {}, &Vec3d::y);
   std::vector<LegGap> longest, run;
   for (int i = first; i <= last; ++i) {
-    const auto gap = leg_gap(body, low->y + (high->y - low->y) * i / steps);
+    const auto gap = leg_gap(body, low.y + (high.y - low.y) * i / steps);
     if (gap)
       run.push_back(*gap);
     else
@@ -169,36 +168,15 @@ double between_legs(const std::vector<LegGap>& gaps) {
 }
 
 BodyProfile::BodyProfile(const Surface& surface, std::string name)
-    : name_(std::move(name)), body_(checked_body(surface, name_)) {
-  const auto [low, high] = std::minmax_element(body_.surface.points.begin(), body_.surface.points.end(),
-                                               [](const Vec3d& a, const Vec3d& b) { return a.y < b.y; });
-  lowest_ = low->y;
-  highest_ = high->y;
-  fill_slices();
-  middle_ = heights_in_the_middle();
-  crotch_ = find_crotch();
-}
-
-std::size_t BodyProfile::slice_of(double y) const {
-  const double fraction = (y - lowest_) / (highest_ - lowest_);
-  const auto slice = static_cast<std::size_t>(fraction * static_cast<double>(slices_.size()));
-  return std::min(slice, slices_.size() - 1);
-}
-
-void BodyProfile::fill_slices() {
-  slices_.resize(256);
-  for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(body_.surface, t);
-    const std::size_t last = slice_of(std::max({a.y, b.y, c.y}));
-    for (std::size_t slice = slice_of(std::min({a.y, b.y, c.y})); slice <= last; ++slice)
-      slices_[slice].push_back(static_cast<std::uint32_t>(t));
-  }
-}
+    : name_(std::move(name)),
+      body_(checked_body(surface, name_)),
+      slices_(body_.surface),
+      middle_(heights_in_the_middle()),
+      crotch_(find_crotch()) {}
 
 std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> intervals) {
   constexpr double joins = 1e-6;  // m, more than rounding opens between triangles that share a point
-  std::sort(intervals.begin(), intervals.end(),
-            [](const Interval& a, const Interval& b) { return a.low < b.low; });
+  std::ranges::sort(intervals, {}, &Interval::low);
   std::vector<Interval> pieces;
   for (const Interval& interval : intervals)
     if (pieces.empty() || interval.low > pieces.back().high + joins)
@@ -211,7 +189,7 @@ std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> int
 std::vector<BodyProfile::Interval> BodyProfile::heights_in_the_middle() const {
   std::vector<Interval> intervals;
   for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
-    Interval interval{highest_, lowest_};
+    Interval interval{highest(), lowest()};
     cut(corners_of(body_.surface, t), &Vec3d::x, 0, [&](const Vec3d& point) {
       interval = {std::min(interval.low, point.y), std::max(interval.high, point.y)};
     });
@@ -222,13 +200,12 @@ std::vector<BodyProfile::Interval> BodyProfile::heights_in_the_middle() const {
 
 std::optional<double> BodyProfile::find_crotch() const {
   // The trunk is the longest piece: feet may touch each other, or stand on something.
-  const auto trunk =
-      std::max_element(middle_.begin(), middle_.end(),
-                       [](const Interval& a, const Interval& b) { return a.high - a.low < b.high - b.low; });
+  const auto trunk = std::ranges::max_element(
+      middle_, {}, [](const Interval& interval) { return interval.high - interval.low; });
   if (trunk == middle_.end()) return std::nullopt;
   constexpr double shortest_leg = 0.01;  // m: a round underside's lowest point need not be at x = 0
   const auto has_leg = [&](double sign) {
-    return std::any_of(body_.surface.points.begin(), body_.surface.points.end(), [&](const Vec3d& point) {
+    return std::ranges::any_of(body_.surface.points, [&](const Vec3d& point) {
       return sign * point.x > 0 && point.y < trunk->low - shortest_leg;
     });
   };
@@ -245,11 +222,11 @@ double BodyProfile::crotch_height() const {
 }
 
 std::vector<PlanPoint> BodyProfile::section(double y) const {
-  if (!(y >= lowest_ && y <= highest_))
+  if (!(y >= lowest() && y <= highest()))
     throw InputError("{}: there is no section at the height {} m; give a height from {} to {} m", name_,
-                     shown(y), shown(lowest_), shown(highest_));
+                     shown(y), shown(lowest()), shown(highest()));
   std::vector<PlanPoint> points;
-  for (const std::uint32_t t : slices_[slice_of(y)])
+  for (const std::uint32_t t : slices_.at(y))
     cut(corners_of(body_.surface, t), &Vec3d::y, y, [&](const Vec3d& point) {
       points.push_back({point.x, point.z});
     });
@@ -290,18 +267,16 @@ double BodyProfile::front_share(double y, double z) const {
 
 double BodyProfile::crotch_length(double y) const {
   const double crotch = crotch_height();
-  if (!(y > crotch && y < highest_))
+  if (!(y > crotch && y < highest()))
     throw InputError(name_ + ": no tape goes through its crotch, " + shown(crotch) +
                      " m high, from the height " + shown(y) + " m; give a height from there to " +
-                     shown(highest_) + " m");
+                     shown(highest()) + " m");
   // In the plane, {z, y}. Where it ends above, the tape ends, too.
   std::vector<PlanPoint> outline;
   double front = -HUGE_VAL, back = HUGE_VAL;
-  for (const auto& triangle : body_.surface.triangles) {
+  for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
     std::vector<Vec3d> ends;
-    cut({body_.surface.points[triangle[0]], body_.surface.points[triangle[1]],
-         body_.surface.points[triangle[2]]},
-        &Vec3d::x, 0, [&](const Vec3d& point) { ends.push_back(point); });
+    cut(corners_of(body_.surface, t), &Vec3d::x, 0, [&](const Vec3d& point) { ends.push_back(point); });
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const Vec3d &from = ends[i], &to = ends[(i + 1) % ends.size()];
       if (from.y >= crotch && from.y <= y) outline.push_back({from.z, from.y});
@@ -321,21 +296,14 @@ double BodyProfile::leg_girth(double y, int side) const { return hull_perimeter(
 PlanPoint BodyProfile::leg_middle(double y) const {
   constexpr double below_the_crotch = 0.005;
   const std::vector<PlanPoint> points = leg_section(std::min(y, crotch_height() - below_the_crotch), 1);
-  const auto [inner, outer] = std::minmax_element(
-      points.begin(), points.end(), [](const PlanPoint& a, const PlanPoint& b) { return a.x < b.x; });
-  const auto [behind, before] = std::minmax_element(points.begin(), points.end(), nearer_the_back);
+  const auto [inner, outer] = std::ranges::minmax_element(points, {}, &PlanPoint::x);
+  const auto [behind, before] = std::ranges::minmax_element(points, {}, &PlanPoint::z);
   return {(inner->x + outer->x) / 2, (behind->z + before->z) / 2};
 }
 
-double BodyProfile::front(double y) const {
-  const std::vector<PlanPoint> points = section(y);
-  return std::max_element(points.begin(), points.end(), nearer_the_back)->z;
-}
+double BodyProfile::front(double y) const { return std::ranges::max(section(y), {}, &PlanPoint::z).z; }
 
-double BodyProfile::back(double y) const {
-  const std::vector<PlanPoint> points = section(y);
-  return std::min_element(points.begin(), points.end(), nearer_the_back)->z;
-}
+double BodyProfile::back(double y) const { return std::ranges::min(section(y), {}, &PlanPoint::z).z; }
 
 double BodyProfile::half_width(double y) const {
   double widest = 0;

@@ -17,12 +17,8 @@ struct LegGap {
   PlanPoint right, left;  ///< the middles of the boxes around what lies on either side, at lower and higher x
 };
 
-/// The gap between the legs at this height, none where the section does not fall apart into two halves that
-/// are about equally wide. The surface, which stands upright in y, need not be closed; lengths are in its
-/// unit.
-std::optional<LegGap> leg_gap(const Surface& body, double height);
-
-/// The gaps at evenly spaced heights, from below upwards, of the longest run of heights that have one.
+/// The gaps at evenly spaced heights, from below upwards, of the longest run of heights that have one. The
+/// surface, which stands upright in y, need not be closed; lengths are in its unit.
 std::vector<LegGap> leg_gaps(const Surface& body);
 
 /// The x that is between the legs at the highest gap, and at as many of those below as there is one.
@@ -40,8 +36,8 @@ class BodyProfile {
 
   /// What is measured, and what garments meet.
   const TrunkAndLegs& trunk_and_legs() const { return body_; }
-  double lowest() const { return lowest_; }    ///< y, m
-  double highest() const { return highest_; }  ///< y, m
+  double lowest() const { return slices_.lowest(); }    ///< y, m
+  double highest() const { return slices_.highest(); }  ///< y, m
 
   /// Does the section fall apart into two legs below?
   bool has_legs() const { return crotch_.has_value(); }
@@ -81,8 +77,6 @@ class BodyProfile {
   std::vector<PlanPoint> section(double y) const;
   /// Its part on one side of x = 0.
   std::vector<PlanPoint> leg_section(double y, int side) const;
-  std::size_t slice_of(double y) const;
-  void fill_slices();
   /// What `intervals` cover together, in pieces from below upwards.
   static std::vector<Interval> merged(std::vector<Interval> intervals);
   std::vector<Interval> heights_in_the_middle() const;
@@ -90,11 +84,9 @@ class BodyProfile {
 
   std::string name_;
   TrunkAndLegs body_;
-  double lowest_ = 0, highest_ = 0;
+  HeightSlices slices_;
   std::vector<Interval> middle_;  ///< heights at which the section reaches x = 0
   std::optional<double> crotch_;
-  /// For horizontal slices of equal height, the triangles that reach into each.
-  std::vector<std::vector<std::uint32_t>> slices_;
 };
 
 /// A height of a body, and what a tape says there.

@@ -63,12 +63,29 @@ void require_thighs_below_hip(const BodyMeasures& m) {
                      shown(m.hip.girth), shown(std::floor(most * 1000) / 1000)));
 }
 
+void check_measures(const BodyMeasures& m) {
+  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
+                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
+                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
+  for (const NamedGirth& girth : girths) {
+    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
+    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
+  }
+  require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
+  require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
+  require_between("thigh gap", m.thigh_gap, " m", 0.004, 0.04);
+  require_between("stance", m.stance, " m", 0.02, 1);
+  require_heights_in_order(m);
+  require_thighs_below_hip(m);
+}
+
 class Tube {
  public:
-  Tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells)
-      : surface_(surface), sections_(sections), cells_(cells) {
-    for (std::uint32_t j = 0; j < cells.around; ++j) {
-      const double angle = 2 * std::numbers::pi * j / cells.around;
+  Tube(Surface& surface, const std::vector<EllipseSection>& sections, std::uint32_t around,
+       double cell_height)
+      : surface_(surface), sections_(sections), around_(around), cell_height_(cell_height) {
+    for (std::uint32_t j = 0; j < around; ++j) {
+      const double angle = 2 * std::numbers::pi * j / around;
       directions_.push_back({std::cos(angle), 0, std::sin(angle)});
     }
   }
@@ -77,8 +94,8 @@ class Tube {
     const std::vector<EllipseSection> rings = interpolated();
     const auto first = static_cast<std::uint32_t>(surface_.points.size());
     for (const EllipseSection& ring : rings) add_ring(ring);
-    const auto last = static_cast<std::uint32_t>(surface_.points.size()) - cells_.around;
-    for (std::uint32_t ring = first; ring < last; ring += cells_.around) add_belt(ring);
+    const auto last = static_cast<std::uint32_t>(surface_.points.size()) - around_;
+    for (std::uint32_t ring = first; ring < last; ring += around_) add_belt(ring);
     add_end(first, sections_.front(), false);
     add_end(last, sections_.back(), true);
   }
@@ -101,7 +118,7 @@ class Tube {
     for (std::size_t i = 0; i + 1 < sections_.size(); ++i) {
       const EllipseSection& below = sections_[i];
       const EllipseSection& above = sections_[i + 1];
-      const auto rows = static_cast<int>(std::ceil(way_between(below, above) / cells_.height));
+      const auto rows = static_cast<int>(std::ceil(way_between(below, above) / cell_height_));
       for (int row = 1; row < rows; ++row) {
         const double y = below.height + (above.height - below.height) * row / rows;
         rings.push_back({y, x_min(y), x_max(y), z_min(y), z_max(y)});
@@ -139,7 +156,7 @@ class Tube {
 
   /// The cells between the ring that begins at point `lower` and the next.
   void add_belt(std::uint32_t lower) {
-    const std::uint32_t n = cells_.around;
+    const std::uint32_t n = around_;
     for (std::uint32_t j = 0; j < n; ++j) {
       const std::uint32_t a = lower + j, b = lower + (j + 1) % n;
       const std::uint32_t c = a + n, d = b + n;
@@ -157,8 +174,8 @@ class Tube {
   void add_end(std::uint32_t ring, const EllipseSection& section, bool is_top) {
     const auto middle = static_cast<std::uint32_t>(surface_.points.size());
     surface_.points.push_back(rounded(centre(section)));
-    for (std::uint32_t j = 0; j < cells_.around; ++j) {
-      const std::uint32_t a = ring + j, b = ring + (j + 1) % cells_.around;
+    for (std::uint32_t j = 0; j < around_; ++j) {
+      const std::uint32_t a = ring + j, b = ring + (j + 1) % around_;
       if (is_top)
         surface_.triangles.push_back({middle, b, a});
       else
@@ -168,7 +185,8 @@ class Tube {
 
   Surface& surface_;
   const std::vector<EllipseSection>& sections_;
-  const TubeCells cells_;
+  std::uint32_t around_;
+  double cell_height_;             ///< m
   std::vector<Vec3d> directions_;  ///< of a ring's points
 };
 
@@ -290,8 +308,7 @@ class Figure {
   /// Between the sections a leg's inner edge is monotone, so they are all there is to look at.
   void check_apart(const std::vector<EllipseSection>& leg) const {
     constexpr double least = 0.002;
-    const auto nearest = std::min_element(leg.begin(), leg.end(),
-                                          [](const auto& a, const auto& b) { return a.x_min < b.x_min; });
+    const auto nearest = std::ranges::min_element(leg, {}, &EllipseSection::x_min);
     if (nearest->x_min >= least) return;
     double needed = m_.stance;
     for (const EllipseSection& section : leg) {
@@ -323,22 +340,6 @@ std::vector<EllipseSection> mirrored(std::vector<EllipseSection> sections) {
 
 }  // namespace
 
-void check_measures(const BodyMeasures& m) {
-  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
-                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
-                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
-  for (const NamedGirth& girth : girths) {
-    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
-    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
-  }
-  require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
-  require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
-  require_between("thigh gap", m.thigh_gap, " m", 0.004, 0.04);
-  require_between("stance", m.stance, " m", 0.02, 1);
-  require_heights_in_order(m);
-  require_thighs_below_hip(m);
-}
-
 double ellipse_perimeter(double half_axis, double other_half_axis) {
   const double sum = half_axis + other_half_axis;
   const double difference = half_axis - other_half_axis;
@@ -352,22 +353,23 @@ EllipseSection section_of_girth(double height, double girth, double aspect, doub
   return {height, x - half_width, x + half_width, z - half_depth, z + half_depth};
 }
 
-void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells) {
-  assert(sections.size() >= 2 && cells.around >= 4 && cells.around % 4 == 0 && cells.height > 0);
-  Tube(surface, sections, cells).add();
+void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, std::uint32_t around,
+              double cell_height) {
+  assert(sections.size() >= 2 && around >= 4 && around % 4 == 0 && cell_height > 0);
+  Tube(surface, sections, around, cell_height).add();
 }
 
-Surface mannequin(const BodyMeasures& measures, const MannequinResolution& resolution) {
-  const std::uint32_t around = resolution.cells_around;
-  if (around < 16 || around > 512 || around % 4 != 0)
-    throw InputError("the points around a mannequin are {}; give a multiple of four from 16 to 512", around);
+Surface mannequin(const BodyMeasures& measures, std::uint32_t cells_around) {
+  if (cells_around < 16 || cells_around > 512 || cells_around % 4 != 0)
+    throw InputError("the points around a mannequin are {}; give a multiple of four from 16 to 512",
+                     cells_around);
   const Figure figure(measures);
-  const double cell = measures.hip.girth / around;
-  const std::uint32_t around_leg = 4 * ((around + 3) / 6);
+  const double cell = measures.hip.girth / cells_around;
+  const std::uint32_t around_leg = 4 * ((cells_around + 3) / 6);
   Surface surface;
-  add_tube(surface, figure.torso(), {around, cell});
-  add_tube(surface, figure.leg(), {around_leg, cell});
-  add_tube(surface, mirrored(figure.leg()), {around_leg, cell});
+  add_tube(surface, figure.torso(), cells_around, cell);
+  add_tube(surface, figure.leg(), around_leg, cell);
+  add_tube(surface, mirrored(figure.leg()), around_leg, cell);
   return surface;
 }
 

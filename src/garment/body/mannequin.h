@@ -33,10 +33,6 @@ struct BodyMeasures {
   bool operator==(const BodyMeasures&) const = default;
 };
 
-/// Throws InputError that names measure, value and remedy unless the measures make a body: every number in
-/// its range, the heights in their order and a little apart, thighs not much wider than the hip.
-void check_measures(const BodyMeasures& measures);
-
 /// Depth over width of a thigh: no measure, but what its width follows from.
 inline constexpr double thigh_aspect = 1.1;
 
@@ -58,33 +54,22 @@ double ellipse_perimeter(double half_axis, double other_half_axis);
 /// The ellipse of perimeter `girth` and of `aspect` = depth over width, centred at (x, height, z).
 EllipseSection section_of_girth(double height, double girth, double aspect, double x, double z);
 
-/// How finely a tube is cut.
-struct TubeCells {
-  std::uint32_t around = 0;  ///< points of a ring, a multiple of four
-  double height = 0;  ///< m, about that of a cell along the tube; the cut is finer where sections ask for it
-};
-
 /// Adds to `surface` a closed tube through the sections, two or more from below upwards: smooth and monotone
 /// between each two (MonotoneCurve), closed by flat ends, oriented outwards. Each section is a ring of its
-/// own. A ring is a polygon made larger by so much that its perimeter is the ellipse's. The cut is its own
-/// mirror image in depth and in width.
-void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells);
-
-/// How finely a mannequin is cut.
-struct MannequinResolution {
-  /// Points around the torso; a leg has about two thirds as many, and cells are about square at the hip. 20
-  /// makes 2,400 triangles of the reference body, 96 45,000, 128 79,000.
-  std::uint32_t cells_around = 96;
-
-  bool operator==(const MannequinResolution&) const = default;
-};
+/// own, of `around` points, a multiple of four; cells along the tube are about `cell_height` high, m, or
+/// finer where sections ask for it. A ring is a polygon made larger by so much that its perimeter is the
+/// ellipse's. The cut is its own mirror image in depth and in width.
+void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, std::uint32_t around,
+              double cell_height);
 
 /// A dress form with legs and feet: a torso and two legs, each a closed tube of elliptic sections that is
 /// monotone between them; the legs' tops end inside the torso. The girths are the measures' at their heights,
 /// whatever the resolution; from the hip upwards the torso is the whole section. The thighs meet nowhere:
 /// below the crotch's height the body is two legs. Throws InputError that names measure, value and remedy for
-/// measures that make no body (check_measures), for legs that would touch, and for points around that are not
-/// a multiple of four from 16 to 512.
-Surface mannequin(const BodyMeasures& measures, const MannequinResolution& resolution = {});
+/// measures that make no body (a number out of its range, heights that are not in order and a little apart,
+/// thighs much wider than the hip), for legs that would touch, and for points around that are not
+/// a multiple of four from 16 to 512. They go around the torso; a leg has about two thirds as many, and cells
+/// are about square at the hip. 20 make 2,400 triangles of the reference body, 96 45,000, 128 79,000.
+Surface mannequin(const BodyMeasures& measures, std::uint32_t cells_around = 96);
 
 }  // namespace mssim

@@ -51,12 +51,11 @@ std::vector<CutTriangle> cut_triangles(const Surface& surface, std::span<const s
   return cuts;
 }
 
+double cross(const PlanPoint& a, const PlanPoint& b) { return a.x * b.z - a.z * b.x; }
+
 double twice_area(const std::vector<PlanPoint>& points) {
   double sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlanPoint &a = points[i], &b = points[(i + 1) % points.size()];
-    sum += a.x * b.z - a.z * b.x;
-  }
+  for (std::size_t i = 0; i < points.size(); ++i) sum += cross(points[i], points[(i + 1) % points.size()]);
   return sum;
 }
 
@@ -71,11 +70,6 @@ bool contains(const SectionLoop& loop, const PlanPoint& point) {
 }
 
 using Side = std::pair<PlanPoint, PlanPoint>;
-
-/// On which side of the line from `a` to `b` a point lies.
-double side_of(const PlanPoint& a, const PlanPoint& b, const PlanPoint& point) {
-  return (b.x - a.x) * (point.z - a.z) - (b.z - a.z) * (point.x - a.x);
-}
 
 bool cross_each_other(const Side& a, const Side& b) {
   return (side_of(a.first, a.second, b.first) > 0) != (side_of(a.first, a.second, b.second) > 0) &&
@@ -107,7 +101,6 @@ bool are_surely_farther(const PlanPoint& a, const PlanPoint& b, double far) {
   const double x = a.x - b.x, z = a.z - b.z;
   return x * x + z * z > (1 + 1e-9) * far * far;
 }
-double cross(const PlanPoint& a, const PlanPoint& b) { return a.x * b.z - a.z * b.x; }
 
 /// The part of a loop from its point `first` to its point `last`, round its beginning where that is smaller.
 struct Stretch {

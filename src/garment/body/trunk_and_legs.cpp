@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -115,24 +114,16 @@ std::vector<Group> parted(std::vector<Group> groups) {
   return all;
 }
 
+constexpr std::size_t slice_count = 256;
+
 /// Sections through the middles of slices of equal height.
 std::vector<Level> levels_of(const Surface& surface) {
-  constexpr std::size_t count = 256;
-  const auto [low, high] = std::ranges::minmax(surface.points, {}, &Vec3d::y);
-  const double lowest = low.y, step = (high.y - lowest) / count;
-  std::vector<std::vector<std::uint32_t>> crossing(count);
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const auto [least, most] = std::minmax({surface.points[a].y, surface.points[b].y, surface.points[c].y});
-    const auto slice = [&](double y) {
-      return std::min(static_cast<std::size_t>((y - lowest) / step), count - 1);
-    };
-    for (std::size_t i = slice(least); i <= slice(most); ++i) crossing[i].push_back(t);
-  }
-  std::vector<Level> levels(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  const HeightSlices slices(surface);
+  const double lowest = slices.lowest(), step = (slices.highest() - lowest) / slice_count;
+  std::vector<Level> levels(slice_count);
+  for (std::size_t i = 0; i < slice_count; ++i) {
     levels[i].y = lowest + (static_cast<double>(i) + 0.5) * step;
-    levels[i].groups = parted(grouped(section_loops(surface, crossing[i], levels[i].y)));
+    levels[i].groups = parted(grouped(section_loops(surface, slices.at(levels[i].y), levels[i].y)));
   }
   return levels;
 }
@@ -282,6 +273,22 @@ Surface part_of(const Surface& surface, const std::vector<bool>& stays) {
 }
 
 }  // namespace
+
+HeightSlices::HeightSlices(const Surface& surface) : slices_(slice_count) {
+  const auto [low, high] = std::ranges::minmax(surface.points, {}, &Vec3d::y);
+  lowest_ = low.y;
+  highest_ = high.y;
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const auto [least, most] = std::minmax({surface.points[a].y, surface.points[b].y, surface.points[c].y});
+    for (std::size_t i = slice_of(least); i <= slice_of(most); ++i) slices_[i].push_back(t);
+  }
+}
+
+std::size_t HeightSlices::slice_of(double y) const {
+  const double fraction = (y - lowest_) / (highest_ - lowest_);
+  return std::min(static_cast<std::size_t>(fraction * slice_count), slice_count - 1);
+}
 
 TrunkAndLegs trunk_and_legs(const Surface& surface) {
   std::vector<Level> levels = levels_of(surface);

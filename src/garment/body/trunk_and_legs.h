@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,6 +15,23 @@ namespace mssim {
 /// Heights from one to another, m.
 struct HeightRange {
   double low = 0, high = 0;
+};
+
+/// The triangles of a surface by horizontal slices of equal height.
+class HeightSlices {
+ public:
+  explicit HeightSlices(const Surface& surface);
+
+  double lowest() const { return lowest_; }    ///< y, m
+  double highest() const { return highest_; }  ///< y, m
+  /// Those that reach into the slice at the height y, which the surface has; in their order.
+  std::span<const std::uint32_t> at(double y) const { return slices_[slice_of(y)]; }
+
+ private:
+  std::size_t slice_of(double y) const;
+
+  double lowest_ = 0, highest_ = 0;
+  std::vector<std::vector<std::uint32_t>> slices_;
 };
 
 /// What of a body garments are measured for and meet.

@@ -47,8 +47,8 @@ std::vector<Vec3d> points_of_band(const Surface& body, double lowest, double hig
 
 }  // namespace
 
-Solid::Solid(const Surface& surface, std::string_view name) {
-  validate_surface(surface, name);
+Solid::Solid(const Surface& surface) {
+  validate_surface(surface, "the body");
   for (const Surface& part : closed_parts(surface)) parts_.emplace_back(part);
 }
 

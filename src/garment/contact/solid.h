@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "geometry/surface.h"
@@ -22,8 +21,8 @@ namespace mssim {
 /// Immutable: threads may ask it at the same time.
 class Solid {
  public:
-  /// Throws InputError, which begins with `name`, unless validate_surface accepts the surface.
-  explicit Solid(const Surface& surface, std::string_view name = "the body");
+  /// Throws InputError unless validate_surface accepts the surface.
+  explicit Solid(const Surface& surface);
 
   /// How deep the point (m) lies inside, m: 0 outside all parts, inside one part the distance from that
   /// part's surface, inside several the largest of these. A point that is not finite is outside.

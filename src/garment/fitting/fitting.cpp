@@ -8,7 +8,9 @@
 #include <set>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "garment/layers/cloth_contacts.h"
 #include "laws/host_laws.h"
@@ -190,123 +192,105 @@ constexpr Diagnosis pierced{"the body comes through", "a larger skin_m or more n
 constexpr Diagnosis stretched{"the cloth is stretched",
                               "a wider garment (hip_ease_m, waist_ease_m) or stiffer cloth"};
 
+/// How a number is shown.
+struct Unit {
+  double per_unit;          ///< factor to the unit that the number's name ends in
+  std::string_view spoken;  ///< in a sentence, with what goes before it
+  double per_spoken;        ///< factor to that
+};
+constexpr Unit plain{1, "", 1}, millimetres{1e3, " mm", 1e3}, per_cent{1, " %", 100};
+
 /// A row of the TABLE of a fit's numbers.
 struct FitNumber {
   std::string_view name;
-  double (*value)(const Fit& fit);
-  double FitBounds::*bound;    ///< on the magnitude; null where there is none
-  double per_unit;             ///< factor to the unit of `name`
-  bool has_sign = false;       ///< the bound holds in both directions
-  std::string_view what{};     ///< in a sentence
-  std::string_view unit{};     ///< there, with what goes before it
-  double per_spoken_unit = 1;  ///< factor to that
+  std::variant<double Fit::*, std::size_t Fit::*, std::optional<double> Fit::*> value;
+  Unit unit = plain;
+  double FitBounds::*bound = nullptr;  ///< on the magnitude; null where there is none
+  std::string_view what{};             ///< in a sentence
   Diagnosis too_large{};
-  Diagnosis too_small{};                 ///< below its bound, where it has a sign
-  bool (*exists)(const Fit&) = nullptr;  ///< null where every garment has the number
+  Diagnosis too_small{};  ///< where there is one, the bound holds in both directions
 };
-
-constexpr double mm = 1e3;
-constexpr double percent = 100;
 
 constexpr auto numbers = std::to_array<FitNumber>({
     {"largest_gap_mm",
-     [](const Fit& f) { return f.largest_gap; },
+     &Fit::largest_gap,
+     millimetres,
      &FitBounds::largest_gap,
-     mm,
-     false,
      "the largest gap of a seam",
-     " mm",
-     mm,
      {"a seam gapes", "a larger closing_share, or a wider garment (hip_ease_m, waist_ease_m)"}},
-    {"nodes_inside", [](const Fit& f) { return static_cast<double>(f.nodes_inside); }, nullptr, 1},
-    {"deepest_node_mm", [](const Fit& f) { return f.deepest_node; }, &FitBounds::deepest, mm, false,
-     "the deepest node inside the body", " mm", mm, pierced},
-    {"deepest_face_mm", [](const Fit& f) { return f.deepest_face_sample; }, &FitBounds::deepest, mm, false,
-     "the deepest point of a face inside the body", " mm", mm, pierced},
-    {"elongation_50", [](const Fit& f) { return f.elongation_50; }, nullptr, 1},
-    {"elongation_99", [](const Fit& f) { return f.elongation_99; }, &FitBounds::elongation_99, 1, false,
-     "the 99th percentile of elongations", " %", percent, stretched},
-    {"elongation_999", [](const Fit& f) { return f.elongation_999; }, &FitBounds::elongation_999, 1, false,
-     "the 99.9th percentile of elongations", " %", percent, stretched},
-    {"elongation_max", [](const Fit& f) { return f.elongation_max; }, nullptr, 1},
+    {"nodes_inside", &Fit::nodes_inside},
+    {"deepest_node_mm", &Fit::deepest_node, millimetres, &FitBounds::deepest,
+     "the deepest node inside the body", pierced},
+    {"deepest_face_mm", &Fit::deepest_face_sample, millimetres, &FitBounds::deepest,
+     "the deepest point of a face inside the body", pierced},
+    {"elongation_50", &Fit::elongation_50},
+    {"elongation_99", &Fit::elongation_99, per_cent, &FitBounds::elongation_99,
+     "the 99th percentile of elongations", stretched},
+    {"elongation_999", &Fit::elongation_999, per_cent, &FitBounds::elongation_999,
+     "the 99.9th percentile of elongations", stretched},
+    {"elongation_max", &Fit::elongation_max},
     {"upper_edge_rise_mm",
-     [](const Fit& f) { return f.upper_edge_rise; },
+     &Fit::upper_edge_rise,
+     millimetres,
      &FitBounds::upper_edge_shift,
-     mm,
-     true,
      "the distance of the upper edge from its place in the pattern",
-     " mm",
-     mm,
      {"the garment was pushed up", "a higher waist (waist_height_m) or more waist_ease_m"},
      {"the garment slid down", "a lower waist (waist_height_m), less waist_ease_m or more friction"}},
     {"crotch_rise_mm",
-     [](const Fit& f) { return f.meeting_rise.value(); },
+     &Fit::meeting_rise,
+     millimetres,
      &FitBounds::meeting_shift,
-     mm,
-     true,
      "the distance of the crotch from its place in the pattern",
-     " mm",
-     mm,
      {"the crotch was drawn up", "more crotch_ease_m"},
-     {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"},
-     [](const Fit& f) { return f.meeting_rise.has_value(); }},
-    {"rows", [](const Fit& f) { return static_cast<double>(f.rows); }, nullptr, 1},
+     {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"}},
+    {"rows", &Fit::rows},
     {"rows_astray",
-     [](const Fit& f) { return static_cast<double>(f.rows_astray); },
+     &Fit::rows_astray,
+     plain,
      &FitBounds::rows_astray,
-     1,
-     false,
      "the number of rows that do not go once around their limb",
-     "",
-     1,
      {"the garment is not all around the body", "more nodes, or a body whose legs stand further apart"}},
     {"crossings",
-     [](const Fit& f) { return static_cast<double>(f.crossings); },
+     &Fit::crossings,
+     plain,
      &FitBounds::crossings,
-     1,
-     false,
      "the number of places where layers of the cloth cross",
-     "",
-     1,
      {"layers went through each other",
       "layers that touch (\"layers\"), a larger thickness_m or more nodes"}},
     {"side_distance_mm",
-     [](const Fit& f) { return f.side_distance.value(); },
+     &Fit::side_distance,
+     millimetres,
      &FitBounds::side_distance,
-     mm,
-     false,
      "the largest distance of the side seams' cloth from the body between hip and thigh",
-     " mm",
-     mm,
      {"the garment stands off at the sides",
-      "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"},
-     {},
-     [](const Fit& f) { return f.side_distance.has_value(); }},
-    {.name = "side_distance_height_m",
-     .value = [](const Fit& f) { return f.side_distance_height.value(); },
-     .bound = nullptr,
-     .per_unit = 1,
-     .exists = [](const Fit& f) { return f.side_distance_height.has_value(); }},
+      "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"}},
+    {"side_distance_height_m", &Fit::side_distance_height},
 });
 
-bool exists(const FitNumber& number, const Fit& fit) {
-  return number.exists == nullptr || number.exists(fit);
+/// None where the garment has no such number.
+std::optional<double> value_of(const FitNumber& number, const Fit& fit) {
+  return std::visit(
+      [&](auto member) -> std::optional<double> {
+        if constexpr (std::is_same_v<decltype(member), std::optional<double> Fit::*>)
+          return fit.*member;
+        else
+          return static_cast<double>(fit.*member);
+      },
+      number.value);
 }
 
-bool is_within(const FitNumber& number, const Fit& fit, const FitBounds& bounds) {
-  // A number that is none keeps no bound.
-  return std::abs(number.value(fit)) <= bounds.*number.bound;
+/// A number that is none keeps no bound.
+bool is_within(const FitNumber& number, double value, const FitBounds& bounds) {
+  return std::abs(value) <= bounds.*number.bound;
 }
+
+bool has_sign(const FitNumber& number) { return !number.too_small.happened.empty(); }
 
 /// The bound in units of which one has so many of the number's own.
 std::string shown_bound(const FitNumber& number, const FitBounds& bounds, double per_unit) {
   std::ostringstream text;
-  text << (number.has_sign ? "±" : "") << bounds.*number.bound * per_unit;
+  text << (has_sign(number) ? "±" : "") << bounds.*number.bound * per_unit;
   return text.str();
-}
-
-const Diagnosis& diagnosis_of(const FitNumber& number, const Fit& fit) {
-  return number.has_sign && number.value(fit) < 0 ? number.too_small : number.too_large;
 }
 
 }  // namespace
@@ -385,21 +369,23 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
   fit.elongation_99 = quantile(longer, 0.99);
   fit.elongation_999 = quantile(longer, 0.999);
   fit.elongation_max = quantile(longer, 1);
-  fit.crossings = count_crossings(garment, {layer_pairs(garment), {}}, position);
+  fit.crossings = count_crossings(garment, position);
   return fit;
 }
 
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
   std::vector<FitCheck> checks;
   for (const FitNumber& number : numbers) {
-    if (!exists(number, fit)) continue;
+    const std::optional<double> value = value_of(number, fit);
+    if (!value) continue;
+    const double per_unit = number.unit.per_unit;
     FitCheck& check = checks.emplace_back();
     check.name = number.name;
-    check.value = number.per_unit * number.value(fit);
+    check.value = per_unit * *value;
     if (number.bound == nullptr) continue;
-    check.bound = number.per_unit * bounds.*number.bound;
-    check.shown_bound = shown_bound(number, bounds, number.per_unit);
-    check.within = is_within(number, fit, bounds);
+    check.bound = per_unit * bounds.*number.bound;
+    check.shown_bound = shown_bound(number, bounds, per_unit);
+    check.within = is_within(number, *value, bounds);
   }
   return checks;
 }
@@ -413,12 +399,13 @@ std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, c
   if (!result.settled)
     found.emplace_back("the garment did not come to rest; try more viscous_damping_per_s or more nodes");
   for (const FitNumber& number : numbers) {
-    if (number.bound == nullptr || !exists(number, fit) || is_within(number, fit, bounds)) continue;
-    const Diagnosis& diagnosis = diagnosis_of(number, fit);
+    const std::optional<double> value = value_of(number, fit);
+    if (number.bound == nullptr || !value || is_within(number, *value, bounds)) continue;
+    const auto& [happened, remedy] = has_sign(number) && *value < 0 ? number.too_small : number.too_large;
+    const Unit& unit = number.unit;
     std::ostringstream text;
-    text << diagnosis.happened << ": " << number.what << " is " << number.value(fit) * number.per_spoken_unit
-         << number.unit << ", beyond " << shown_bound(number, bounds, number.per_spoken_unit) << number.unit
-         << "; try " << diagnosis.remedy;
+    text << happened << ": " << number.what << " is " << *value * unit.per_spoken << unit.spoken
+         << ", beyond " << shown_bound(number, bounds, unit.per_spoken) << unit.spoken << "; try " << remedy;
     found.push_back(text.str());
   }
   return found;

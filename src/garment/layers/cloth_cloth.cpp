@@ -17,8 +17,9 @@ void require(bool good, const char* what, double value, const char* wanted) {
 
 void validate(const ClothClothSettings& settings) {
   const auto not_negative = [](double value) { return value >= 0 && std::isfinite(value); };
-  require(settings.thickness > 0 && std::isfinite(settings.thickness), "the thickness in metres",
-          settings.thickness, "a positive one");
+  const auto thickness = static_cast<float>(settings.thickness);  // as it is searched with
+  require(thickness > 0 && std::isfinite(thickness), "the thickness in metres", settings.thickness,
+          "a positive one");
   require(not_negative(settings.friction), "the friction", settings.friction, "a coefficient from 0 on");
   require(not_negative(settings.push_speed), "the push speed in m/s", settings.push_speed, "one from 0 on");
   require(settings.sweeps >= 1, "the number of sweeps", settings.sweeps, "at least 1");
@@ -36,11 +37,13 @@ Vec3<float> difference(const ClothContact& contact, const std::array<std::span<f
 
 }  // namespace
 
-ClothClothCollision::ClothClothCollision(const Garment& garment, const ClothLayers& layers,
-                                         std::span<const float> node_mass, const ClothClothSettings& settings,
-                                         int threads)
+ClothClothCollision::ClothClothCollision(const Garment& garment, std::span<const float> node_mass,
+                                         const ClothClothSettings& settings, int threads)
     : settings_((validate(settings), settings)),
-      search_(garment, layers, node_mass.size(), settings.thickness, threads) {
+      threads_(threads),
+      search_(garment, settings.thickness, threads) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (auto* arrays : {&position_, &velocity_}) (*arrays)[axis].resize(node_mass.size());
   inverse_mass_.reserve(node_mass.size());
   for (const float mass : node_mass) {
     if (!(mass > 0))
@@ -53,20 +56,28 @@ ClothClothCollision::ClothClothCollision(const Garment& garment, const ClothLaye
 }
 
 void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
-  for (const auto& arrays : {nodes.position, nodes.velocity}) {
-    for (const std::span<float> array : arrays) {
+  for (const auto& arrays : {nodes.position, nodes.velocity})
+    for (const std::span<float> array : arrays)
       if (array.size() != inverse_mass_.size())
         throw std::invalid_argument(
             fmt::format("cloth-cloth collision: an array has {} numbers for {} nodes, give one for each",
                         array.size(), inverse_mass_.size()));
-    }
-  }
   contacts_ = search_.find({nodes.position[0], nodes.position[1], nodes.position[2]});
-  for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep) {
+  for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep)
     for (const ClothContact& contact : contacts_) stop_approach(contact, nodes);
-  }
   const auto farthest = static_cast<float>(settings_.push_speed * dt);
   for (const ClothContact& contact : contacts_) push_apart(contact, nodes, farthest);
+}
+
+void ClothClothCollision::put(std::size_t node, const NodeState& state) {
+  const auto& [x, v] = state;
+  position_[0][node] = x.x, position_[1][node] = x.y, position_[2][node] = x.z;
+  velocity_[0][node] = v.x, velocity_[1][node] = v.y, velocity_[2][node] = v.z;
+}
+
+NodeState ClothClothCollision::at(std::size_t node) const {
+  return {{position_[0][node], position_[1][node], position_[2][node]},
+          {velocity_[0][node], velocity_[1][node], velocity_[2][node]}};
 }
 
 void ClothClothCollision::stop_approach(const ClothContact& contact, const NodeArrays& nodes) const {

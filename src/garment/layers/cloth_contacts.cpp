@@ -7,41 +7,12 @@
 #include <limits>
 #include <optional>
 #include <set>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "geometry/triangle_tree.h"
-#include "text/text.h"
 
 namespace mssim {
 namespace {
-
-std::uint32_t panel_of(const Garment& garment, std::uint32_t node) {
-  const auto holds = [&](const GarmentPanel& panel) {
-    return node >= panel.first_node && node - panel.first_node < panel.nodes();
-  };
-  return static_cast<std::uint32_t>(std::ranges::find_if(garment.panels, holds) - garment.panels.begin());
-}
-
-std::string quoted(const GarmentPanel& panel) { return '"' + printable(panel.name) + '"'; }
-
-void validate_panel(std::uint32_t index, const Garment& garment, std::size_t nodes) {
-  if (index >= garment.panels.size())
-    throw std::invalid_argument(
-        fmt::format("cloth layers: there is no panel {}, the garment has {}, counted from 0", index,
-                    garment.panels.size()));
-  const GarmentPanel& panel = garment.panels[index];
-  if (panel.rows < 2 || panel.columns < 2)
-    throw std::invalid_argument(
-        fmt::format("cloth layers: panel {} has {} x {} nodes, give it at least 2 x 2", quoted(panel),
-                    panel.rows, panel.columns));
-  const std::uint64_t end = panel.first_node + std::uint64_t{panel.rows} * panel.columns;
-  if (end > nodes)
-    throw std::invalid_argument(fmt::format(
-        "cloth layers: panel {} ends at node {}, but there are only {} nodes, each of which needs a mass",
-        quoted(panel), end, nodes));
-}
 
 /// Two sub-patches with fewer cells than this together are searched by the task that met them: searching them
 /// takes microseconds, as making a task does.
@@ -130,36 +101,19 @@ std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t 
 
 std::vector<PanelPair> layer_pairs(const Garment& garment) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> sewn;
-  for (const Joint& joint : garment.joints) {
-    const std::uint32_t from = panel_of(garment, joint.node), onto = panel_of(garment, joint.edge_first);
-    sewn.insert(std::minmax({from, onto}));
-  }
+  const auto number = [&](std::uint32_t node) {
+    return static_cast<std::uint32_t>(&garment.panel_of(node) - garment.panels.data());
+  };
+  for (const Joint& joint : garment.joints)
+    sewn.insert(std::minmax({number(joint.node), number(joint.edge_first)}));
   std::vector<PanelPair> pairs;
   const auto panels = static_cast<std::uint32_t>(garment.panels.size());
-  for (std::uint32_t inner = 0; inner < panels; ++inner) {
-    for (std::uint32_t outer = 0; outer < panels; ++outer) {
+  for (std::uint32_t inner = 0; inner < panels; ++inner)
+    for (std::uint32_t outer = 0; outer < panels; ++outer)
       if (garment.panels[inner].layer < garment.panels[outer].layer &&
           !sewn.contains(std::minmax({inner, outer})))
         pairs.push_back({inner, outer});
-    }
-  }
   return pairs;
-}
-
-void validate_layers(const ClothLayers& layers, const Garment& garment, std::size_t nodes) {
-  for (const std::uint32_t panel : layers.mirrored) validate_panel(panel, garment, nodes);
-  std::set<std::pair<std::uint32_t, std::uint32_t>> known;
-  for (const auto& [inner, outer] : layers.pairs) {
-    validate_panel(inner, garment, nodes);
-    validate_panel(outer, garment, nodes);
-    if (inner == outer)
-      throw std::invalid_argument("cloth layers: panel " + quoted(garment.panels[inner]) +
-                                  " is paired with itself, but only collisions of different panels are "
-                                  "found: name another one");
-    if (!known.insert(std::minmax({inner, outer})).second)
-      throw std::invalid_argument("cloth layers: panels " + quoted(garment.panels[inner]) + " and " +
-                                  quoted(garment.panels[outer]) + " are paired twice: name each pair once");
-  }
 }
 
 PanelBoxes::PanelBoxes(const GarmentPanel& panel) : panel_(panel) {
@@ -183,13 +137,12 @@ void PanelBoxes::split(std::uint32_t block) {
   const auto bound = [](std::uint32_t begin, std::uint32_t end, std::uint32_t part, std::uint32_t of) {
     return begin + (end - begin) * part / of;
   };
-  for (std::uint32_t i = 0; i < row_parts; ++i) {
+  for (std::uint32_t i = 0; i < row_parts; ++i)
     for (std::uint32_t j = 0; j < column_parts; ++j)
       blocks_.push_back({bound(whole.row_begin, whole.row_end, i, row_parts),
                          bound(whole.row_begin, whole.row_end, i + 1, row_parts),
                          bound(whole.column_begin, whole.column_end, j, column_parts),
                          bound(whole.column_begin, whole.column_end, j + 1, column_parts)});
-  }
 }
 
 void PanelBoxes::refit_leaf(std::uint32_t leaf, const Coordinates& position) {
@@ -221,33 +174,17 @@ void PanelBoxes::refit_rest() {
   }
 }
 
-ClothContactSearch::ClothContactSearch(const Garment& garment, const ClothLayers& layers, std::size_t nodes,
-                                       double reach, int threads)
-    : reach_(static_cast<float>(reach)), threads_(threads) {
-  if (!(reach_ > 0) || !std::isfinite(reach_))
-    throw std::invalid_argument("cloth contacts: the distance within which layers touch is " +
-                                decimal(reach) + " m, give a positive one");
-  if (threads < 1)
-    throw std::invalid_argument(
-        fmt::format("cloth contacts: {} threads cannot search, give at least 1", threads));
-  validate_layers(layers, garment, nodes);
-  found_.resize(static_cast<std::size_t>(threads));
+ClothContactSearch::ClothContactSearch(const Garment& garment, double reach, int threads)
+    : reach_(static_cast<float>(reach)), threads_(threads), found_(static_cast<std::size_t>(threads)) {
   std::uint32_t slots = 0;
-  for (const auto& [inner, outer] : layers.pairs) {
+  for (const auto& [inner, outer] : layer_pairs(garment)) {
     const GarmentPanel &inside = garment.panels[inner], &outside = garment.panels[outer];
     pairs_.push_back({boxes_of(inside), boxes_of(outside), slots});
     slots += outside.nodes() + inside.nodes();
   }
   slots_.resize(slots, Nearest{std::numeric_limits<float>::infinity(), no_triangle});
-  outward_.resize(boxes_.size(), 1);
-  for (const std::uint32_t panel : layers.mirrored) {
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (boxes_[i].panel().first_node == garment.panels[panel].first_node) outward_[i] = -1;
-    }
-  }
-  for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+  for (std::uint32_t i = 0; i < boxes_.size(); ++i)
     for (const std::uint32_t block : boxes_[i].leaves()) leaves_.push_back({i, block});
-  }
 }
 
 std::uint32_t ClothContactSearch::boxes_of(const GarmentPanel& panel) {
@@ -315,7 +252,7 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
   // A node belongs to the cell of which it is the lower left one, on the upper and right border to the last.
   const std::uint32_t row_end = nodes.row_end + (nodes.row_end + 1 == panel.rows ? 1 : 0);
   const std::uint32_t column_end = nodes.column_end + (nodes.column_end + 1 == panel.columns ? 1 : 0);
-  for (std::uint32_t row = nodes.row_begin; row < row_end; ++row) {
+  for (std::uint32_t row = nodes.row_begin; row < row_end; ++row)
     for (std::uint32_t column = nodes.column_begin; column < column_end; ++column) {
       const std::uint32_t node = panel.node(row, column);
       const Vec3<float> point = point_of(position, node);
@@ -324,7 +261,7 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
         return !(distance_squared(box, point) < box_reach * best.distance_squared);
       };
       if (too_far(around)) continue;
-      for (std::uint32_t r = cells.row_begin; r < cells.row_end; ++r) {
+      for (std::uint32_t r = cells.row_begin; r < cells.row_end; ++r)
         for (std::uint32_t c = cells.column_begin; c < cells.column_end; ++c) {
           if (too_far(of_triangles.cell_box(r, c))) continue;
           for (const std::uint32_t half : {0U, 1U}) {
@@ -333,10 +270,8 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
               best = {on_half.distance_squared(), 2 * (r * (other.columns - 1) + c) + half};
           }
         }
-      }
       if (best.triangle != no_triangle) found.push_back({first_slot + node - panel.first_node, best});
     }
-  }
 }
 
 void ClothContactSearch::keep_nearest() {
@@ -362,8 +297,8 @@ void ClothContactSearch::make_contacts(const Coordinates& position) {
         nearest = {std::numeric_limits<float>::infinity(), no_triangle};
       }
     };
-    take(pair.first_slot, outer, inner, outward_[pair.inner]);
-    take(pair.first_slot + outer.nodes(), inner, outer, -outward_[pair.outer]);
+    take(pair.first_slot, outer, inner, 1);
+    take(pair.first_slot + outer.nodes(), inner, outer, -1);
   }
 }
 

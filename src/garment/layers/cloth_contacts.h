@@ -12,13 +12,17 @@
 
 namespace mssim {
 
+/// Two panels of a garment that may touch each other: `inner` lies between the body and `outer`.
+struct PanelPair {
+  std::uint32_t inner = 0;  ///< index into Garment::panels
+  std::uint32_t outer = 0;
+
+  bool operator==(const PanelPair&) const = default;
+};
+
 /// Every two panels of different layers, the one of the lower layer being the inner one, in ascending order.
 /// Two panels that a joint sews together are left out: they would repel each other at their seam.
 std::vector<PanelPair> layer_pairs(const Garment& garment);
-
-/// Throws std::invalid_argument, in one sentence, unless all panels that are named exist and have at least
-/// 2 x 2 nodes below `nodes`, and no panel is paired with itself, nor two panels twice.
-void validate_layers(const ClothLayers& layers, const Garment& garment, std::size_t nodes);
 
 /// The coordinates of all nodes: x, y, z, each [nodes] m.
 using Coordinates = std::array<std::span<const float>, 3>;
@@ -87,17 +91,16 @@ struct ClothContact {
 ///
 /// A cell's triangles are (low left, low right, high right) and (low left, high right, high left).
 ///
-/// The right side of an inner panel for nodes of the outer one is where its normal points (ClothLayers), that
-/// of an outer panel for nodes of the inner one is the other. The nearest point of a triangle's inside is
-/// told by the triangle's normal, that on an edge or corner by the normals at its nodes, so that a fold does
-/// not turn sides over. A node beyond the border of a panel, that is, whose nearest point lies on it, is a
-/// contact on the right side only: the panel says nothing about where that node belongs, but has a rim.
+/// The right side of an inner panel for nodes of the outer one is where its normal points (GarmentPanel),
+/// that of an outer panel for nodes of the inner one is the other. The nearest point of a triangle's inside
+/// is told by the triangle's normal, that on an edge or corner by the normals at its nodes, so that a fold
+/// does not turn sides over. A node beyond the border of a panel, that is, whose nearest point lies on it, is
+/// a contact on the right side only: the panel says nothing about where that node belongs, but has a rim.
 class ClothContactSearch {
  public:
-  /// `nodes`: of the whole system. Nodes nearer than `reach` (m, positive) to a triangle are contacts. Throws
-  /// std::invalid_argument where validate_layers does, or where reach or threads are not positive.
-  ClothContactSearch(const Garment& garment, const ClothLayers& layers, std::size_t nodes, double reach,
-                     int threads);
+  /// Searches between layer_pairs, by `threads` threads, one or more. Nodes nearer than `reach` (m, positive)
+  /// to a triangle are contacts.
+  ClothContactSearch(const Garment& garment, double reach, int threads);
 
   /// The contacts in these positions, pair by pair, those of the outer panel's nodes first, in ascending
   /// order of nodes; the same to the last bit for any number of threads. They stay until the next call.
@@ -139,7 +142,6 @@ class ClothContactSearch {
   const float reach_;
   const int threads_;
   std::vector<PanelBoxes> boxes_;  // of the panels that are in pairs
-  std::vector<float> outward_;     // [boxes] 1, or -1 where the panel is mirrored
   std::vector<Leaf> leaves_;       // of all boxes
   std::vector<Pair> pairs_;        // [pairs]
   std::vector<Nearest> slots_;     // [slots] the nearest triangle of each node of each pair
@@ -157,8 +159,7 @@ class ClothContactSearch {
 std::size_t count_crossings(const GarmentPanel& first, const GarmentPanel& second,
                             std::span<const Vec3d> position);
 
-/// The sum over all pairs of layers.
-std::size_t count_crossings(const Garment& garment, const ClothLayers& layers,
-                            std::span<const Vec3d> position);
+/// The sum over all pairs of layers (layer_pairs).
+std::size_t count_crossings(const Garment& garment, std::span<const Vec3d> position);
 
 }  // namespace mssim

@@ -10,7 +10,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 std::vector<Edge> edges_of(const GarmentPanel& panel) {
   std::vector<Edge> edges;
-  for (std::uint32_t row = 0; row < panel.rows; ++row) {
+  for (std::uint32_t row = 0; row < panel.rows; ++row)
     for (std::uint32_t column = 0; column < panel.columns; ++column) {
       const std::uint32_t node = panel.node(row, column);
       const bool right = column + 1 < panel.columns, above = row + 1 < panel.rows;
@@ -18,19 +18,17 @@ std::vector<Edge> edges_of(const GarmentPanel& panel) {
       if (above) edges.push_back({node, node + panel.columns});
       if (right && above) edges.push_back({node, node + panel.columns + 1});
     }
-  }
   return edges;
 }
 
 std::vector<Triangle> triangles_of(const GarmentPanel& panel) {
   std::vector<Triangle> triangles;
-  for (std::uint32_t row = 0; row + 1 < panel.rows; ++row) {
+  for (std::uint32_t row = 0; row + 1 < panel.rows; ++row)
     for (std::uint32_t column = 0; column + 1 < panel.columns; ++column) {
       const std::uint32_t low = panel.node(row, column), high = low + panel.columns;
       triangles.push_back({low, low + 1, high + 1});
       triangles.push_back({low, high + 1, high});
     }
-  }
   return triangles;
 }
 
@@ -113,11 +111,9 @@ std::size_t count_crossings(const GarmentPanel& first, const GarmentPanel& secon
          PiercedPanel(first, position).crossings(edges_of(second));
 }
 
-std::size_t count_crossings(const Garment& garment, const ClothLayers& layers,
-                            std::span<const Vec3d> position) {
-  validate_layers(layers, garment, position.size());
+std::size_t count_crossings(const Garment& garment, std::span<const Vec3d> position) {
   std::size_t count = 0;
-  for (const auto& [inner, outer] : layers.pairs)
+  for (const auto& [inner, outer] : layer_pairs(garment))
     count += count_crossings(garment.panels[inner], garment.panels[outer], position);
   return count;
 }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <set>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "text/text.h"
 
@@ -35,28 +38,23 @@ using Line = std::pair<std::string, std::string>;
 
 /// The rows laid out: scenes are columns, by their number of vertices, and combinations that have a time or a
 /// dressing anywhere are lines.
-class Layout {
- public:
-  explicit Layout(Rows rows) : rows_(std::move(rows)) {
-    for (const ResultRow* row : rows_) {
-      if (std::ranges::find(scenes_, row->scene, &ResultRow::scene) == scenes_.end()) scenes_.push_back(row);
+struct Layout {
+  explicit Layout(Rows all) : rows(std::move(all)) {
+    for (const ResultRow* row : rows) {
+      if (std::ranges::find(scenes, row->scene, &ResultRow::scene) == scenes.end()) scenes.push_back(row);
       const Line line(row->backend, row->integrator);
-      if (row->dressing && std::ranges::find(lines_, line) == lines_.end()) lines_.push_back(line);
+      if (row->dressing && std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
     }
-    std::ranges::stable_sort(scenes_, {}, &ResultRow::nodes);
+    std::ranges::stable_sort(scenes, {}, &ResultRow::nodes);
   }
 
-  const Rows& rows() const { return rows_; }
-  const Rows& scenes() const { return scenes_; }
-  const std::vector<Line>& lines() const { return lines_; }
   const ResultRow* find(const ResultRow& scene, const Line& line) const {
-    return find_row(rows_, scene.scene, line.first, line.second);
+    return find_row(rows, scene.scene, line.first, line.second);
   }
 
- private:
-  Rows rows_;
-  Rows scenes_;  ///< the first row of each
-  std::vector<Line> lines_;
+  Rows rows;
+  Rows scenes;  ///< the first row of each
+  std::vector<Line> lines;
 };
 
 bool is_baseline(const Line& line) { return line.first == baseline_name; }
@@ -81,14 +79,14 @@ using MakeCell = Cell (*)(RowPointers rows, const ResultRow& row);
 
 Table table_of(const Layout& layout, const Provenance& provenance, const std::string& title, MakeCell make) {
   Table table{{{title}}, {}};
-  for (const ResultRow* scene : layout.scenes()) table.columns.push_back(scene_column(*scene));
-  for (const Line& line : layout.lines()) {
+  for (const ResultRow* scene : layout.scenes) table.columns.push_back(scene_column(*scene));
+  for (const Line& line : layout.lines) {
     std::vector<Cell>& cells = table.rows.emplace_back();
     cells.emplace_back((is_baseline(line) ? "without: " : "with: ") +
-                       backend_label(layout.rows(), line.first, provenance));
-    for (const ResultRow* scene : layout.scenes()) {
+                       backend_label(layout.rows, line.first, provenance));
+    for (const ResultRow* scene : layout.scenes) {
       const ResultRow* row = layout.find(*scene, line);
-      Cell& cell = cells.emplace_back(row ? make(layout.rows(), *row) : Cell());
+      Cell& cell = cells.emplace_back(row ? make(layout.rows, *row) : Cell());
       if (row) cell.suffix += mark_of_excess(*row, provenance);
     }
   }
@@ -98,7 +96,7 @@ Table table_of(const Layout& layout, const Provenance& provenance, const std::st
 Document page_of(const Layout& layout, const Provenance& provenance) {
   Document page{
       Heading{1, "Figure 6 of Vassilev: milliseconds an iteration against vertices of jeans"},
-      measured_on(layout.rows(), provenance),
+      measured_on(layout.rows, provenance),
       Paragraph{
           "One iteration of Algorithm 1, medians, of jeans that hang draped on the body: springs, joints, "
           "collision with the body and the correction of velocities are at work. In brackets how many "
@@ -112,9 +110,9 @@ Document page_of(const Layout& layout, const Provenance& provenance) {
           "`garment.csv` says how each fits."},
       table_of(layout, provenance, "dressing", dressing_cell)};
   add_sentence(page, legend_of_ratios(page));
-  add_sentence(page, legend_of_excess(layout.rows(), provenance));
-  add_sentence(page, reason_without_speedups(layout.rows()));
-  add_rows_without_a_time(page, layout.rows());
+  add_sentence(page, legend_of_excess(layout.rows, provenance));
+  add_sentence(page, reason_without_speedups(layout.rows));
+  add_rows_without_a_time(page, layout.rows);
   return page;
 }
 
@@ -122,15 +120,15 @@ Table data_of(const Layout& layout) {
   Table table{{{"backend"}, {"integrator"}, {"parallel"}, {"quantity"}}, {}};
   std::vector<Cell>& vertices = table.rows.emplace_back();
   vertices = {{}, {}, {}, "vertices"};
-  for (const ResultRow* scene : layout.scenes()) {
+  for (const ResultRow* scene : layout.scenes) {
     table.columns.push_back({scene->scene});
     vertices.emplace_back(scene->nodes);
   }
-  for (const Line& line : layout.lines()) {
+  for (const Line& line : layout.lines) {
     const auto add = [&](std::string_view quantity, auto&& value) {
       std::vector<Cell>& cells = table.rows.emplace_back();
       cells = {line.first, line.second, is_baseline(line) ? "without" : "with", quantity};
-      for (const ResultRow* scene : layout.scenes()) {
+      for (const ResultRow* scene : layout.scenes) {
         const ResultRow* row = layout.find(*scene, line);
         cells.push_back(row ? Cell(value(*row)) : Cell());
       }
@@ -149,63 +147,72 @@ Table data_of(const Layout& layout) {
   return table;
 }
 
-/// A column of garment.csv that every row has.
+/// A column of garment.csv that every row has: a value of the row, one that is computed from it, or one of
+/// its dressing, which only this file has; nothing where there is no dressing.
 struct GarmentColumn {
   std::string_view name;
-  Cell (*write)(const ResultRow& row);
-  /// Reads what only this file has; null for what timings.csv has, too.
-  void (*read)(DressingRecord& record, const CsvTable& table, std::size_t line, std::size_t column) = nullptr;
+  std::variant<std::string ResultRow::*, std::uint64_t ResultRow::*, int ResultRow::*, double ResultRow::*,
+               std::optional<double> ResultRow::*, bool ResultRow::*, Cell (*)(const ResultRow& row),
+               std::uint64_t DressingRecord::*, std::optional<std::uint64_t> DressingRecord::*,
+               bool DressingRecord::*, double DressingRecord::*>
+      value;
 };
-
-/// A value of the row's dressing; nothing where it has none.
-template <class Value>
-Cell of_dressing(const ResultRow& row, Value DressingRecord::*value) {
-  return row.dressing ? Cell((*row.dressing).*value) : Cell();
-}
 
 /// The TABLE of columns, in their order; the numbers of the fit follow.
 constexpr std::size_t iterations_column = 12;
 constexpr auto columns = std::to_array<GarmentColumn>({
-    {"scene", [](const ResultRow& row) { return Cell(row.scene); }},
-    {"nodes", [](const ResultRow& row) { return Cell(row.nodes); }},
-    {"backend", [](const ResultRow& row) { return Cell(row.backend); }},
-    {"device", [](const ResultRow& row) { return Cell(row.device); }},
-    {"threads", [](const ResultRow& row) { return Cell(row.threads); }},
-    {"integrator", [](const ResultRow& row) { return Cell(row.integrator); }},
-    {"dt_s", [](const ResultRow& row) { return Cell(row.dt_s); }},
-    {"ms_per_iteration", [](const ResultRow& row) { return Cell(row.ms_per_step); }},
-    {"ms_per_iteration_low", [](const ResultRow& row) { return Cell(row.ms_per_step_low); }},
-    {"ms_per_iteration_high", [](const ResultRow& row) { return Cell(row.ms_per_step_high); }},
+    {"scene", &ResultRow::scene},
+    {"nodes", &ResultRow::nodes},
+    {"backend", &ResultRow::backend},
+    {"device", &ResultRow::device},
+    {"threads", &ResultRow::threads},
+    {"integrator", &ResultRow::integrator},
+    {"dt_s", &ResultRow::dt_s},
+    {"ms_per_iteration", &ResultRow::ms_per_step},
+    {"ms_per_iteration_low", &ResultRow::ms_per_step_low},
+    {"ms_per_iteration_high", &ResultRow::ms_per_step_high},
     {"ns_per_iteration_and_vertex",
      [](const ResultRow& row) { return Cell(ns_per_node(row, row.ms_per_step)); }},
-    {"speedup_vs_serial", [](const ResultRow& row) { return Cell(row.speedup_vs_serial); }},
-    {"dressing_iterations",
-     [](const ResultRow& row) { return of_dressing(row, &DressingRecord::iterations); },
-     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
-       d.iterations = table.count(l, c);
-     }},
-    {"seamed_at", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::seamed_at); },
-     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
-       if (!table.text(l, c).empty()) d.seamed_at = table.count(l, c);
-     }},
-    {"settled", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::settled); },
-     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
-       d.settled = table.truth(l, c);
-     }},
-    {"simulated_s", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::simulated_s); },
-     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
-       d.simulated_s = table.number(l, c);
-     }},
-    {"dressing_s", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::wall_s); },
-     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
-       d.wall_s = table.number(l, c);
-     }},
+    {"speedup_vs_serial", &ResultRow::speedup_vs_serial},
+    {"dressing_iterations", &DressingRecord::iterations},
+    {"seamed_at", &DressingRecord::seamed_at},
+    {"settled", &DressingRecord::settled},
+    {"simulated_s", &DressingRecord::simulated_s},
+    {"dressing_s", &DressingRecord::wall_s},
     {"dressing_ms_per_iteration",
      [](const ResultRow& row) { return row.dressing ? Cell(ms_per_iteration(*row.dressing)) : Cell(); }},
-    {"verified", [](const ResultRow& row) { return Cell(row.verified); }},
-    {"status", [](const ResultRow& row) { return Cell(row.status); }},
+    {"verified", &ResultRow::verified},
+    {"status", &ResultRow::status},
 });
 static_assert(columns[iterations_column].name == "dressing_iterations");
+
+Cell cell_of(const ResultRow& row, const GarmentColumn& column) {
+  return std::visit(
+      [&](auto value) -> Cell {
+        if constexpr (std::is_invocable_v<decltype(value), const ResultRow&>)
+          return std::invoke(value, row);
+        else
+          return row.dressing ? Cell((*row.dressing).*value) : Cell();
+      },
+      column.value);
+}
+
+void read_field(const CsvTable& table, std::size_t line, std::size_t column, DressingRecord& record) {
+  const auto read = [&](auto& value) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, bool>)
+      value = table.truth(line, column);
+    else if constexpr (std::is_same_v<Value, double>)
+      value = table.number(line, column);
+    else if (std::is_same_v<Value, std::uint64_t> || !table.text(line, column).empty())
+      value = table.count(line, column);
+  };
+  std::visit(
+      [&](auto value) {
+        if constexpr (std::is_invocable_v<decltype(value), DressingRecord&>) read(record.*value);
+      },
+      columns.at(column).value);
+}
 
 constexpr std::string_view within_suffix = "_within";
 
@@ -267,7 +274,7 @@ std::string garment_csv(std::span<const ResultRow> rows) {
   }
   for (const ResultRow* row : dressed) {
     std::vector<Cell>& cells = table.rows.emplace_back();
-    for (const GarmentColumn& column : columns) cells.push_back(column.write(*row));
+    for (const GarmentColumn& column : columns) cells.push_back(cell_of(*row, column));
     add_fit(fit, *row, cells);
   }
   return table_csv(table);
@@ -284,8 +291,7 @@ void read_dressings(const CsvTable& table, std::span<ResultRow> rows) {
           row.integrator != table.text(line, 5))
         continue;
       DressingRecord& record = row.dressing.emplace();
-      for (std::size_t column = 0; column < columns.size(); ++column)
-        if (columns.at(column).read != nullptr) columns.at(column).read(record, table, line, column);
+      for (std::size_t column = 0; column < columns.size(); ++column) read_field(table, line, column, record);
       record.fit = read_fit(table, line);
     }
   }

@@ -26,12 +26,15 @@ void write_numbers(hid_t file, const std::string& path, const std::vector<Item>&
   write_array(file, path, file_type, memory_type, std::array<hsize_t, 1>{numbers.size()}, numbers.data());
 }
 
+/// What is written of a panel beside its name.
+constexpr std::array panel_numbers{
+    std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
+    std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}};
+
 void read_panels(hid_t file, Garment& garment) {
   const std::string path = "/parameters/panels";
   for (std::string& name : read_texts(file, path + "/name")) garment.panels.push_back({std::move(name)});
-  for (const auto& [name, member] :
-       {std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
-        std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}}) {
+  for (const auto& [name, member] : panel_numbers) {
     const std::vector<std::uint32_t> numbers = read_numbers(file, path + name, {garment.panels.size()});
     for (std::size_t i = 0; i < numbers.size(); ++i) garment.panels[i].*member = numbers[i];
   }
@@ -76,9 +79,7 @@ void write_garment(hid_t file, const Garment& garment) {
   std::vector<std::string_view> names;
   for (const GarmentPanel& panel : garment.panels) names.emplace_back(panel.name);
   write_texts(file, panels + "/name", names);
-  for (const auto& [name, member] :
-       {std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
-        std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}})
+  for (const auto& [name, member] : panel_numbers)
     write_numbers(file, panels + name, garment.panels, member, H5T_STD_U32LE, H5T_NATIVE_UINT32);
   std::vector<std::array<double, 2>> flat;
   for (const Vec3d& node : garment.flat) flat.push_back({node.x, node.y});

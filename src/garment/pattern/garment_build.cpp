@@ -210,8 +210,7 @@ void add_each(const Parts& parts, PatternError::Part kind, const Add& add) {
   }
 }
 
-}  // namespace
-
+/// The nodes of these seams, and those of the same rows within the reach, each once and in rising order.
 CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
   std::set<std::uint32_t> nodes;
   const auto add_beside = [&](std::uint32_t sewn) {
@@ -228,6 +227,8 @@ CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
   }
   return {{nodes.begin(), nodes.end()}, close.lowest, close.highest};
 }
+
+}  // namespace
 
 void require_cloth(const std::string& panel, const PanelMaterial& cloth) {
   const auto require = [&](double value, bool zero_too, std::string_view what) {
@@ -314,11 +315,10 @@ std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
     throw InputError(
         "{}: it cannot be placed {} m from the body, bent with a radius of {} m; give positive lengths",
         panel, shown(placement.distance), shown(placement.radius));
-  const auto [lowest, highest] = std::minmax_element(
-      mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3d& a, const Vec3d& b) { return a.y < b.y; });
+  const auto [lowest, highest] = std::ranges::minmax(mesh.nodes, {}, &Vec3d::y);
   // Seen from outside, a panel behind the body runs against x.
   const double outwards = placement.behind ? -1 : 1;
-  const Profile profile(panel, placement.behind ? body.back : body.front, outwards, lowest->y, highest->y);
+  const Profile profile(panel, placement.behind ? body.back : body.front, outwards, lowest.y, highest.y);
   std::vector<Vec3d> placed;
   placed.reserve(mesh.nodes.size());
   for (const Vec3d& node : mesh.nodes) {

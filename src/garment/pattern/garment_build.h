@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "garment/garment.h"
@@ -40,9 +39,6 @@ class Curve {
   /// The point at this fraction of the arc length; exactly the ends for 0 and 1, and for what lies beyond.
   Vec3d at(double fraction) const;
 
-  /// Cut in two at this fraction of the arc length, which lies between 0 and 1, both excluded.
-  std::pair<Curve, Curve> split(double fraction) const;
-
   /// This curve and then that one, which begins where this one ends.
   Curve followed_by(const Curve& next) const;
 
@@ -50,9 +46,6 @@ class Curve {
   Curve mirrored() const;
 
  private:
-  /// The first point beyond `arc`, counted so that it has a point before it.
-  std::size_t point_after(double arc) const;
-
   std::vector<Vec3d> points_;
   std::vector<double> arcs_;  ///< m, from the first point to each
 };
@@ -73,20 +66,19 @@ struct PatternPiece {
   Curve left, right;  ///< from bottom to top
 };
 
-/// A grid line that must end at given places: a row on the left and right boundary, or a column on the bottom
-/// and top one.
+/// A row that must end at given places.
 struct GridLine {
-  std::uint32_t index = 0;  ///< of the row or column, neither the first nor the last
-  double first = 0;         ///< fraction of the left (bottom) boundary's arc length
-  double second = 0;        ///< fraction of the right (top) boundary's
+  std::uint32_t index = 0;  ///< of the row, neither the first nor the last
+  double first = 0;         ///< fraction of the left boundary's arc length
+  double second = 0;        ///< fraction of the right boundary's
 };
 
-/// How a piece is cut into cells. Between the lines that are given the others are spread evenly.
+/// How a piece is cut into cells. Between the rows that are given the others are spread evenly, as columns
+/// are.
 struct PanelGrid {
   std::uint32_t rows = 0;  ///< of nodes
   std::uint32_t columns = 0;
-  std::vector<GridLine> row_lines{};     ///< ascending
-  std::vector<GridLine> column_lines{};  ///< ascending
+  std::vector<GridLine> row_lines{};  ///< ascending
 };
 
 /// A pattern piece as nodes in its plane.
@@ -121,10 +113,6 @@ struct CloseSeams {
   double reach = 0;                ///< m, how far beside a seam, along a row in the flat pattern
   double lowest = 0, highest = 0;  ///< m, heights on the body, both included
 };
-
-/// The nodes of these seams, and those of the same rows within the reach, each once and in rising order.
-/// `garment` has panels, seams, joints and where its nodes lie flat.
-CloseCloth close_cloth(const CloseSeams& close, const Garment& garment);
 
 /// The rows of a panel next to its top boundary, which hold the garment on the body.
 struct Waistband {

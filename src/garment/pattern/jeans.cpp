@@ -42,8 +42,6 @@ constexpr double thigh_below_crotch = 0.01;  // m
 constexpr double side_raised = -0.003;  // m, of the waist at the side
 constexpr double side_slope = 0.2;      // by which the waist falls away from there
 
-Curve line(const Vec3d& from, const Vec3d& to) { return Curve({from, to}); }
-
 Curve bezier(const Vec3d& from, const Vec3d& control_1, const Vec3d& control_2, const Vec3d& to) {
   return Curve::bezier(std::array{from, control_1, control_2, to});
 }
@@ -97,9 +95,10 @@ class Drafting {
     const Vec3d inner_knee{crease_ + half_knee, m_.knee_height, 0};
     const Vec3d crotch_point{hip_width_ + fork_, crotch_line_ - drop, 0};
     return {
-        from_crease(line(outer_hem, inner_hem)), from_crease(waist_line),
-        from_crease(line(outer_hem, outer_knee).followed_by(side(outer_hem, outer_knee, waist_line.first()))),
-        from_crease(line(inner_hem, inner_knee).followed_by(thigh(inner_hem, inner_knee, crotch_point))),
+        from_crease(Curve({outer_hem, inner_hem})), from_crease(waist_line),
+        from_crease(
+            Curve({outer_hem, outer_knee}).followed_by(side(outer_hem, outer_knee, waist_line.first()))),
+        from_crease(Curve({inner_hem, inner_knee}).followed_by(thigh(inner_hem, inner_knee, crotch_point))),
         from_crease(centre(crotch_point, waist_centre))};
   }
 
@@ -397,7 +396,7 @@ JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes) {
 }
 
 GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelMaterial& cloth,
-                             const LegAxis& leg_axis) {
+                             const std::function<double(double)>& leg_axis) {
   const JeansDraft draft = draft_jeans(measures);
   const JeansGrid grid = jeans_grid(draft, nodes);
   const double facing = facing_fraction(draft.front);
@@ -416,7 +415,7 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
       placement.behind = behind;
       placement.axis = [leg_axis, is_left](double y) { return is_left ? leg_axis(y) : -leg_axis(y); };
       placement.radius = behind ? 0.13 : 0.105;
-      const PanelGrid cells{grid.rows, behind ? grid.back_columns : grid.front_columns, {crotch}, {}};
+      const PanelGrid cells{grid.rows, behind ? grid.back_columns : grid.front_columns, {crotch}};
       pattern.panels.push_back({piece_of(name, outline, mirror), cells, cloth, placement, 0});
     }
   const double front_crotch = crotch_fraction(draft.front), back_crotch = crotch_fraction(draft.back);

@@ -112,8 +112,7 @@ struct LineEnds {
 };
 
 /// Lines `count` in number, through those that are given and evenly between them.
-LineEnds line_ends(const PatternPiece& piece, std::string_view what, std::uint32_t count,
-                   const std::vector<GridLine>& given) {
+LineEnds line_ends(const PatternPiece& piece, std::uint32_t count, const std::vector<GridLine>& given) {
   LineEnds ends{{0}, {0}};
   GridLine last{};
   const auto go_on_to = [&](const GridLine& next) {
@@ -128,9 +127,9 @@ LineEnds line_ends(const PatternPiece& piece, std::string_view what, std::uint32
     if (!(line.index > last.index && line.index + 1 < count && line.first > last.first && line.first < 1 &&
           line.second > last.second && line.second < 1))
       throw InputError(
-          "{}: {} {} cannot end at the fractions {} and {} of its boundaries; give ascending indices from 1 "
+          "{}: row {} cannot end at the fractions {} and {} of its boundaries; give ascending indices from 1 "
           "to {} and ascending fractions between 0 and 1",
-          piece.name, what, line.index, shown(line.first), shown(line.second), count - 2);
+          piece.name, line.index, shown(line.first), shown(line.second), count - 2);
     go_on_to(line);
   }
   go_on_to({count - 1, 1, 1});
@@ -205,30 +204,14 @@ Curve Curve::bezier(std::span<const Vec3d> points) {
   return Curve(std::move(polyline));
 }
 
-std::size_t Curve::point_after(double arc) const {
-  const auto after = std::upper_bound(arcs_.begin() + 1, arcs_.end() - 1, arc);
-  return static_cast<std::size_t>(after - arcs_.begin());
-}
-
 Vec3d Curve::at(double fraction) const {
   if (fraction <= 0) return first();
   if (fraction >= 1) return last();
   const double arc = fraction * length();
-  const std::size_t i = point_after(arc);
+  const auto after = std::upper_bound(arcs_.begin() + 1, arcs_.end() - 1, arc);
+  const auto i = static_cast<std::size_t>(after - arcs_.begin());
   const double t = (arc - arcs_[i - 1]) / (arcs_[i] - arcs_[i - 1]);
   return points_[i - 1] + t * (points_[i] - points_[i - 1]);
-}
-
-std::pair<Curve, Curve> Curve::split(double fraction) const {
-  if (!(fraction > 0 && fraction < 1))
-    throw InputError("a boundary curve cannot be split at {} of its length; give a fraction between 0 and 1",
-                     shown(fraction));
-  const Vec3d cut = at(fraction);
-  const auto after = points_.begin() + static_cast<std::ptrdiff_t>(point_after(fraction * length()));
-  std::vector<Vec3d> before(points_.begin(), after), rest(after, points_.end());
-  if (!(before.back() == cut)) before.push_back(cut);
-  if (!(rest.front() == cut)) rest.insert(rest.begin(), cut);
-  return {Curve(std::move(before)), Curve(std::move(rest))};
 }
 
 Curve Curve::followed_by(const Curve& next) const {
@@ -256,8 +239,8 @@ PanelMesh mesh_panel(const PatternPiece& piece, const PanelGrid& grid) {
   require_lines(piece, grid.rows, "rows");
   require_lines(piece, grid.columns, "columns");
   require_simple_boundary(piece);
-  const LineEnds row_ends = line_ends(piece, "row", grid.rows, grid.row_lines);
-  const LineEnds column_ends = line_ends(piece, "column", grid.columns, grid.column_lines);
+  const LineEnds row_ends = line_ends(piece, grid.rows, grid.row_lines);
+  const LineEnds column_ends = line_ends(piece, grid.columns, {});
 
   PanelMesh mesh{grid.rows,
                  grid.columns,

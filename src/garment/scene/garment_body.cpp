@@ -22,7 +22,7 @@ void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
 }
 
 void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
-  auto& [measures, resolution] = garment.body.emplace<MannequinBody>();
+  auto& [measures, cells_around] = garment.body.emplace<MannequinBody>();
   visit_girth(fields, "bust", measures.bust);
   visit_girth(fields, "waist", measures.waist);
   visit_girth(fields, "hip", measures.hip);
@@ -38,7 +38,7 @@ void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
   visit_length(fields, {"stance_m", "From one ankle's middle to the other's, m."}, measures.stance);
   fields.integer({"cells_around",
                   "Points around the torso, a multiple of four: 24 make 3,500 triangles, 96 make 45,000."},
-                 resolution.cells_around, 16, 512);
+                 cells_around, 16, 512);
 }
 
 void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
@@ -46,15 +46,14 @@ void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
   fields.text({"file", "An .obj or .stl file; if not absolute, from the scene file's folder."},
               Presence::required, file);
   fields.number({"unit_m", "Metres in one unit of the file, m."}, stance.unit_m, above(0, 1e6));
-  auto up = static_cast<std::uint32_t>(stance.up), facing = static_cast<std::uint32_t>(stance.facing);
-  fields.choice({"up", "The file's axis along which the body stands upright; y where it is not given."},
-                Presence::optional, up_axis_names, up);
-  fields.choice({"facing",
-                 "Where the body looks, along an axis of the file that is not the upright one; +z where it "
-                 "is not given."},
-                Presence::optional, facing_names, facing);
-  stance.up = static_cast<UpAxis>(up);
-  stance.facing = static_cast<Facing>(facing);
+  visit_choice(fields,
+               {"up", "The file's axis along which the body stands upright; y where it is not given."},
+               Presence::optional, up_axis_names, stance.up);
+  visit_choice(fields,
+               {"facing",
+                "Where the body looks, along an axis of the file that is not the upright one; +z where it "
+                "is not given."},
+               Presence::optional, facing_names, stance.facing);
   std::optional<double> turn_deg;
   fields.optional_number({"turn_deg",
                           "By which the body is turned about y, from +z towards +x, when it stands upright "
@@ -119,7 +118,7 @@ FileSurface body_of_garment(const SceneSpec& spec) {
   if (const auto* file = std::get_if<BodyFile>(&garment.body)) return body_from_file(spec, *file);
   const auto& form = std::get<MannequinBody>(garment.body);
   try {
-    return {mannequin(form.measures, form.resolution), {}};
+    return {mannequin(form.measures, form.cells_around), {}};
   } catch (const InputError& error) {
     refuse(spec.file, "/garment/body", "is not a usable body: " + printable(error.what(), 1500));
   }

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "garment/layers/cloth_contacts.h"
 #include "garment/pattern/jeans.h"
 #include "geometry/geometry.h"
 #include "text/error.h"
@@ -211,8 +210,6 @@ void visit_correction(FieldVisitor& fields, DressingSettings& dressing, Velocity
                   dressing.correction_rate, from(0, 1));
 }
 
-constexpr std::array<std::string_view, 2> held_names{"nothing", "upper edge"};
-
 void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
   fields.number({"seam_force_n_per_m", "Force that draws a seam together at first, per length, N/m."},
                 dressing.seam_force, from(0, 1e6));
@@ -226,12 +223,12 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
                 dressing.seaming_gravity, from(0, 1));
   fields.number({"longest_seaming_s", "Simulated time after which open seams are sewn as they are, s."},
                 dressing.longest_seaming_s, from(0, 1e6));
-  auto held = static_cast<std::uint32_t>(dressing.edge_held);
-  fields.choice({"held",
-                 "What keeps its height while the seams close, as if hands held it: \"nothing\", or the "
-                 "\"upper edge\" of every panel; nothing where it is not given."},
-                Presence::optional, held_names, held);
-  dressing.edge_held = held != 0;
+  constexpr std::array<std::string_view, 2> held_names{"nothing", "upper edge"};
+  visit_choice(fields,
+               {"held",
+                "What keeps its height while the seams close, as if hands held it: \"nothing\", or the "
+                "\"upper edge\" of every panel; nothing where it is not given."},
+               Presence::optional, held_names, dressing.edge_held);
   visit_length(fields, {"sewn_gap_m", "Gap below which a joint counts as sewn and its ends move as one, m."},
                dressing.sewn_gap);
   fields.number({"closing_share", "Share of a sewn joint's gap that a step closes at most, without unit."},
@@ -259,18 +256,6 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
                 sections);
 }
 
-void visit_layers(FieldVisitor& fields, ClothClothSettings& layers) {
-  visit_length(fields,
-               {"thickness_m", "Distance that layers keep, m; more than what they approach in a step."},
-               layers.thickness);
-  fields.number({"friction", "Coulomb's coefficient of friction between layers."}, layers.friction,
-                from(0, 100));
-  fields.number({"push_speed_m_per_s",
-                 "Speed at which layers that are too near or have crossed are moved apart at most, m/s."},
-                layers.push_speed, from(0, 1000));
-  fields.integer({"sweeps", "Sweeps over all contacts in a step."}, layers.sweeps, 1, 1000);
-}
-
 /// The body as each layer meets it: where layers touch, an outer one has no room but for what lies under it.
 std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
                                                              const Surface& body, double offset) {
@@ -280,7 +265,7 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
   std::vector<std::shared_ptr<const BodyMaps>> maps;
   try {
     for (std::uint32_t layer = 0; layer <= outermost; ++layer) {
-      const double beneath = layer > 0 ? layer * garment.touching->settings.thickness : 0;
+      const double beneath = layer > 0 ? layer * garment.touching->thickness : 0;
       maps.push_back(std::make_shared<BodyMaps>(
           body, BodyMapSettings{.pixel = garment_of(spec).pixel_m, .offset = offset + beneath}));
     }
@@ -290,12 +275,9 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
   return maps;
 }
 
-SceneCounts counts_of(const GarmentBuild& build) { return {build.placed.size(), build.springs.size()}; }
-
 BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body, const FittedGarment& cut) {
   const GarmentSpec& garment = garment_of(spec);
   const GarmentBuild& build = cut.build;
-  require_memory(spec, "/garment", counts_of(build));
   const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
   if (lowest_start < spec.floor.height)
     refuse(spec.file, "/floor/height_m",
@@ -313,7 +295,7 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
 
   Garment dressed = build.garment;
   dressed.dressing = garment.dressing;
-  if (garment.layers) dressed.touching = {{layer_pairs(dressed), {}}, *garment.layers};
+  dressed.touching = garment.layers;
   const TrunkAndLegs& met = body->profile.trunk_and_legs();
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
   system.topology = std::move(dressed);
@@ -363,11 +345,23 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
                 Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
   fields.object({"dressing", "How the panels are drawn together and draped."}, Presence::required,
                 [&](FieldVisitor& dressing) { visit_dressing(dressing, garment.dressing); });
-  fields.object({"layers",
-                 "How layers of cloth keep apart; left out, they go through each other. The body lies "
-                 "further out for each layer by the thickness."},
-                Presence::optional,
-                [&](FieldVisitor& layers) { visit_layers(layers, garment.layers.emplace()); });
+  fields.object(
+      {"layers",
+       "How layers of cloth keep apart; left out, they go through each other. The body lies "
+       "further out for each layer by the thickness."},
+      Presence::optional, [&](FieldVisitor& section) {
+        ClothClothSettings& layers = garment.layers.emplace();
+        visit_length(section,
+                     {"thickness_m", "Distance that layers keep, m; more than what they approach in a step."},
+                     layers.thickness);
+        section.number({"friction", "Coulomb's coefficient of friction between layers."}, layers.friction,
+                       from(0, 100));
+        section.number(
+            {"push_speed_m_per_s",
+             "Speed at which layers that are too near or have crossed are moved apart at most, m/s."},
+            layers.push_speed, from(0, 1000));
+        section.integer({"sweeps", "Sweeps over all contacts in a step."}, layers.sweeps, 1, 1000);
+      });
   fields.object(
       {"expected", "What the pattern comes to, for listings."}, Presence::optional,
       [&](FieldVisitor& expected) {
@@ -394,11 +388,12 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 ///
 /// The scene has the panels placed around the body, at rest, and the maps of the body that they collide with;
 /// its note says what of the body they ignore. Deterministic. Building it throws SceneError when the garment
-/// starts below the floor or the memory does not suffice.
+/// starts below the floor.
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
-  return {counts_of(cut->build), stated(spec),
+  return {{cut->build.placed.size(), cut->build.springs.size()},
+          stated(spec),
           [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
 }
 

@@ -12,12 +12,11 @@ constexpr std::size_t most_points = 100;  // of a boundary: they are compared wi
 void visit_boundary(FieldVisitor& fields, const Field& field, BoundarySpec& boundary) {
   fields.object(field, Presence::required, [&](FieldVisitor& drawn) {
     constexpr std::array<std::string_view, 2> curves{"polyline", "bezier"};
-    std::uint32_t curve = 0;
-    drawn.choice({"curve",
+    visit_choice(drawn,
+                 {"curve",
                   "How the points draw the curve: joined by straight lines, or as end point, two control "
                   "points, end point, ... of cubic Bezier segments."},
-                 Presence::required, curves, curve);
-    boundary.is_bezier = curve == 1;
+                 Presence::required, curves, boundary.is_bezier);
     drawn.points({"points_m",
                   "Points [x, y], m, y being the height at which they are worn; 3 n + 1 of them for n Bezier "
                   "segments."},
@@ -38,22 +37,20 @@ void visit_piece(FieldVisitor& fields, PieceSpec& piece) {
       "The left boundary, from bottom to top.", "The right boundary, from bottom to top."};
   for (std::size_t edge = 0; edge < panel_edge_names.size(); ++edge)
     visit_boundary(fields, {panel_edge_names[edge], descriptions.at(edge)}, piece.boundaries[edge]);
-  fields.object(
-      {"placement", "Where the panel begins, at the heights that it is drawn at."}, Presence::required,
-      [&](FieldVisitor& placement) {
-        constexpr std::array<std::string_view, 2> sides{"front", "back"};
-        std::uint32_t side = 0;
-        placement.choice({"side", "Before the body or behind it."}, Presence::required, sides, side);
-        piece.behind = side == 1;
-        placement.number({"axis_m", "x at which the drawing's x = 0 stands, m."}, piece.axis_m,
-                         from(-largest_length_m, largest_length_m));
-        placement.number(
-            {"distance_m", "Distance from the body's foremost (hindmost) point at each height, m."},
-            piece.distance_m, above(0, largest_length_m));
-        placement.number(
-            {"bend_radius_m", "Radius of the upright cylinder round which the panel is bent, m."},
-            piece.bend_radius_m, above(0, largest_length_m));
-      });
+  fields.object({"placement", "Where the panel begins, at the heights that it is drawn at."},
+                Presence::required, [&](FieldVisitor& placement) {
+                  constexpr std::array<std::string_view, 2> sides{"front", "back"};
+                  visit_choice(placement, {"side", "Before the body or behind it."}, Presence::required,
+                               sides, piece.behind);
+                  placement.number({"axis_m", "x at which the drawing's x = 0 stands, m."}, piece.axis_m,
+                                   from(-largest_length_m, largest_length_m));
+                  placement.number(
+                      {"distance_m", "Distance from the body's foremost (hindmost) point at each height, m."},
+                      piece.distance_m, above(0, largest_length_m));
+                  placement.number(
+                      {"bend_radius_m", "Radius of the upright cylinder round which the panel is bent, m."},
+                      piece.bend_radius_m, above(0, largest_length_m));
+                });
   fields.object({"cloth", "What this panel is cut from, instead of the garment's cloth."}, Presence::optional,
                 [&](FieldVisitor& cloth) { visit_cloth(cloth, piece.cloth.emplace()); });
 }
@@ -62,9 +59,8 @@ void visit_stretch(FieldVisitor& fields, const Field& field, SeamStretch& stretc
   fields.object(field, Presence::required, [&](FieldVisitor& sewn) {
     sewn.text({"panel", "Name of the panel; jeans have front left, back left, front right and back right."},
               Presence::required, stretch.panel);
-    auto edge = static_cast<std::uint32_t>(stretch.edge);
-    sewn.choice({"edge", "Which of its boundaries."}, Presence::required, panel_edge_names, edge);
-    stretch.edge = static_cast<PanelEdge>(edge);
+    visit_choice(sewn, {"edge", "Which of its boundaries."}, Presence::required, panel_edge_names,
+                 stretch.edge);
     sewn.number({"from", "Where the stretch begins, as a fraction of the boundary's length."}, stretch.from,
                 from(0, 1));
     sewn.number({"to", "Where it ends; it may run backwards."}, stretch.to, from(0, 1));
@@ -124,20 +120,20 @@ void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth) {
 
 void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces) {
   fields.list({"panels", "The panels."}, Presence::required, most_panels,
-              {"A panel: a grid of nodes on a pattern piece between four boundaries, drawn as it is seen "
-               "from outside when it is worn.",
-               [&](FieldVisitor& panel) { visit_piece(panel, pieces.panels.emplace_back()); }});
+              "A panel: a grid of nodes on a pattern piece between four boundaries, drawn as it is seen "
+              "from outside when it is worn.",
+              [&](FieldVisitor& panel) { visit_piece(panel, pieces.panels.emplace_back()); });
   fields.list({"seams", "The seams; left out, nothing is sewn."}, Presence::optional, most_seams,
-              {"Two stretches of boundaries that are sewn together, beginning to beginning.",
-               [&](FieldVisitor& element) {
-                 Seam& seam = pieces.seams.emplace_back();
-                 element.text({"name", "Its name, for messages."}, Presence::required, seam.name);
-                 visit_stretch(element, {"first", "One of the two stretches."}, seam.first);
-                 visit_stretch(element, {"second", "The other one."}, seam.second);
-                 element.number(
-                     {"tolerance", "How much their lengths may differ, as a fraction of the longer one."},
-                     seam.tolerance, from(0, 1));
-               }});
+              "Two stretches of boundaries that are sewn together, beginning to beginning.",
+              [&](FieldVisitor& element) {
+                Seam& seam = pieces.seams.emplace_back();
+                element.text({"name", "Its name, for messages."}, Presence::required, seam.name);
+                visit_stretch(element, {"first", "One of the two stretches."}, seam.first);
+                visit_stretch(element, {"second", "The other one."}, seam.second);
+                element.number(
+                    {"tolerance", "How much their lengths may differ, as a fraction of the longer one."},
+                    seam.tolerance, from(0, 1));
+              });
 }
 
 void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,

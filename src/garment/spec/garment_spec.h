@@ -47,7 +47,7 @@ struct PiecesSpec {
 /// A dress form made from measures.
 struct MannequinBody {
   BodyMeasures measures;
-  MannequinResolution resolution;
+  std::uint32_t cells_around = 96;  ///< of the torso
 };
 
 /// A surface in an OBJ or STL file. Paths that are not absolute start at the scene file's folder.

@@ -251,19 +251,15 @@ class OpenclDressing final : public DressingBackend {
 
  private:
   /// A buffer that only kernels see from now on.
-  template <class T>
-  const cl::Buffer& kept(std::span<const T> values) {
-    return kept_.emplace_back(queue_.copy_of(std::as_bytes(values))).buffer();
-  }
-  template <class T>
-  const cl::Buffer& kept(const std::vector<T>& values) {
-    return kept(std::span<const T>(values));
+  template <class Values>
+  const cl::Buffer& kept(const Values& values) {
+    return kept_.emplace_back(queue_.copy_of(std::as_bytes(std::span(values)))).buffer();
   }
 
   /// The launches of a step, whose arguments are set once and for all.
   void make_launches(const OpenclPanels& panels, const DressingShape& shape, std::uint32_t sweeps) {
     const std::vector<float> nothing(3 * plane_);
-    const std::vector<cl::Buffer> grid{kept(std::span<const DressingParameters>(&panels.parameters, 1)),
+    const std::vector<cl::Buffer> grid{kept(std::span(&panels.parameters, 1)),
                                        position_.buffer(),
                                        kept(nothing),  // moved
                                        velocity_.buffer(),

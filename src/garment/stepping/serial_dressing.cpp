@@ -238,7 +238,7 @@ class SerialDressing final : public DressingBackend {
   CorrectionRule<Real> correction_rule_;
   ClosingRule<Real> closing_rule_;
   std::vector<std::uint32_t> correction_order_;
-  std::optional<LayerCollision> layers_;
+  std::optional<ClothClothCollision> layers_;
   std::vector<std::uint8_t> sewn_;  ///< [joints]
   DressingProgress progress_;
   std::int64_t steps_ = 0;

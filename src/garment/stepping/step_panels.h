@@ -17,7 +17,7 @@ struct PanelDressing {
   GarmentGrid grid;
   std::size_t threads;
   double dt_s;
-  std::optional<LayerCollision> layers;  ///< that touch
+  std::optional<ClothClothCollision> layers;  ///< that touch
   std::int64_t steps = 0;
   DressingProgress progress = {};
   TeamGain team_gain = {};

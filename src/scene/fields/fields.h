@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,12 +46,6 @@ struct Section {
   FieldList fields;
 };
 
-/// The objects of a list.
-struct Elements {
-  std::string_view description;  ///< of one of them
-  FieldList fields;              ///< called for each of them, or once where there is no file
-};
-
 /// Longest text of a scene file, in characters.
 inline constexpr std::size_t longest_text = 200;
 
@@ -89,11 +82,22 @@ class FieldVisitor {
                       std::vector<Vec3d>& target) = 0;
   /// One of several sections: the text of the field names it, and the object of that name holds it.
   virtual void one_of(const Field& field, std::span<const Section> sections) = 0;
-  /// A list of 1 to `most` objects.
-  virtual void list(const Field& field, Presence presence, std::size_t most, const Elements& elements) = 0;
+  /// A list of 1 to `most` objects. `description` is of one of them; `fields` is called for each of them, or
+  /// once where there is no file.
+  virtual void list(const Field& field, Presence presence, std::size_t most, std::string_view description,
+                    const FieldList& fields) = 0;
   /// A nested object; `fields` is called only when it is there.
   virtual void object(const Field& field, Presence presence, const FieldList& fields) = 0;
 };
+
+/// One of several words, of which the target, an enumeration or a truth, becomes the number.
+template <class Value>
+void visit_choice(FieldVisitor& fields, const Field& field, Presence presence,
+                  std::span<const std::string_view> words, Value& target) {
+  auto number = static_cast<std::uint32_t>(target);
+  fields.choice(field, presence, words, number);
+  target = static_cast<Value>(number);
+}
 
 /// No length of a garment or its body is larger, m.
 inline constexpr double largest_length_m = 10;

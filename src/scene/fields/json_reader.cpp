@@ -298,7 +298,8 @@ class JsonReader final : public FieldVisitor {
       known_.insert(known_.end(), names.begin(), names.end());
   }
 
-  void list(const Field& field, Presence presence, std::size_t most, const Elements& elements) override {
+  void list(const Field& field, Presence presence, std::size_t most, std::string_view /*description*/,
+            const FieldList& fields) override {
     const std::string wanted = fmt::format("a list, [ ... ], of 1 to {} objects", most);
     const json* value = find(field.key, presence, wanted);
     if (value == nullptr) return;
@@ -306,7 +307,7 @@ class JsonReader final : public FieldVisitor {
     require_length(pointer, *value, 1, most, wanted);
     for (std::size_t i = 0; i < value->size(); ++i) {
       JsonReader nested(file_, json_pointer(pointer, std::to_string(i)), (*value)[i]);
-      elements.fields(nested);
+      fields(nested);
       nested.finish();
     }
   }

@@ -83,9 +83,10 @@ class SchemaWriter final : public FieldVisitor {
                              {"else", {{"not", present}}}});
     }
   }
-  void list(const Field& field, Presence presence, std::size_t most, const Elements& elements) override {
-    ordered_json element{{"description", elements.description}};
-    element.update(SchemaWriter(elements.fields).schema());
+  void list(const Field& field, Presence presence, std::size_t most, std::string_view description,
+            const FieldList& fields) override {
+    ordered_json element{{"description", description}};
+    element.update(SchemaWriter(fields).schema());
     add(field, presence, array_of(std::move(element), 1, most));
   }
   void object(const Field& field, Presence presence, const FieldList& fields) override {

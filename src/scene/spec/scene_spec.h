@@ -146,8 +146,7 @@ struct BuiltScene {
 struct SceneParts {
   SceneCounts counts;                 ///< what the scene has
   std::optional<SceneCounts> stated;  ///< what files say about that, none where they say nothing
-  /// Builds the scene, whose spec they were read for. Throws SceneError when it needs more memory than there
-  /// is, before allocating any for its System, and for what does not fit together.
+  /// Builds the scene, whose spec they were read for. Throws SceneError for what does not fit together.
   std::function<BuiltScene(const SceneSpec& spec)> build;
 };
 
@@ -173,18 +172,5 @@ struct SceneKind {
   /// Reads the files that it names. Throws SceneError and MissingProgram.
   SceneParts (*read)(const SceneSpec& spec);
 };
-
-/// Bytes that any run of a scene needs at least: its System with the start state, and the double-precision
-/// reference that every run is compared with (up to four pairs of position and velocity), and one state read
-/// back. The backend under test comes on top.
-std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs);
-
-/// Throws SceneError when any run of a scene of this size needs more than the available memory, as below.
-void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts);
-
-/// Throws SceneError when `needed` bytes for a scene of this size are more than the available memory, naming
-/// both and the remedy. `pointer` is the JSON pointer to what sets the size.
-void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts,
-                    std::uint64_t needed, std::string_view remedy);
 
 }  // namespace mssim

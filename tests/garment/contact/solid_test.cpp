@@ -220,8 +220,7 @@ TEST(Solid, ThreadsDoNotMatter) {
 TEST(Solid, AnOpenSurfaceIsRefused) {
   Surface open = unit_cube();
   open.triangles.pop_back();
-  EXPECT_THAT(input_error_of([&] { Solid(open, "mannequin.obj"); }),
-              StartsWith("mannequin.obj: the edge from"));
+  EXPECT_THAT(input_error_of([&] { Solid{open}; }), StartsWith("the body: the edge from"));
 }
 
 // How far points lie outside of a body whose hollows are bridged.
@@ -235,7 +234,7 @@ Surface waisted_tube() {
             {0.5, -0.06, 0.06, -0.06, 0.06},
             {0.6, -0.1, 0.1, -0.1, 0.1},
             {1, -0.1, 0.1, -0.1, 0.1}},
-           {180, 0.02});
+           180, 0.02);
   return surface;
 }
 

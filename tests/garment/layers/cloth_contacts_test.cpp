@@ -8,18 +8,15 @@
 #include <limits>
 #include <map>
 #include <random>
-#include <stdexcept>
 #include <string>
 
 #include "geometry/triangle_tree.h"
 #include "tests/support/cloth_layers_fixture.h"
-#include "tests/support/sentence_of.h"
 
 namespace mssim {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 TEST(NearestPoint, IsFoundOnTheInsideTheSidesAndTheCorners) {
   const Vec3<float> a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
@@ -136,7 +133,7 @@ TEST(ClothContactSearch, FindsWhatBruteForceFindsBetweenFoldedSheets) {
         Sizes{31, 5, 2, 2}, Sizes{6, 6, 5, 5}, Sizes{10, 9, 9, 10}}) {
     for (int i = 0; i < 4; ++i) {
       const LayeredCloth cloth = folded_sheets(random, inner_rows, inner_columns, outer_rows, outer_columns);
-      ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), search_reach, 2);
+      ClothContactSearch search(cloth.garment, search_reach, 2);
       std::map<std::uint32_t, ClothContact> found;
       for (const ClothContact& contact : search.find(cloth.coordinates()))
         EXPECT_TRUE(found.emplace(contact.node, contact).second) << contact.node << " twice";
@@ -153,13 +150,13 @@ TEST(ClothContactSearch, FindsTheSameToTheLastBitWithAnyNumberOfThreads) {
   for (int i = 0; i < 5; ++i) {
     LayeredCloth cloth = folded_sheets(random, 30, 40, 50, 25);
     cloth.add(2, 20, 21, level(0.002, 0.01));
-    ASSERT_EQ(cloth.layers.pairs.size(), 3U);
-    ClothContactSearch alone(cloth.garment, cloth.layers, cloth.mass.size(), search_reach, 1);
+    ASSERT_EQ(layer_pairs(cloth.garment).size(), 3U);
+    ClothContactSearch alone(cloth.garment, search_reach, 1);
     const auto contacts = alone.find(cloth.coordinates());
     const std::vector<ClothContact> expected(contacts.begin(), contacts.end());
     EXPECT_GT(expected.size(), 300U);
     for (const int threads : {1, 2, 3, 4}) {
-      ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), search_reach, threads);
+      ClothContactSearch search(cloth.garment, search_reach, threads);
       for (int again = 0; again < 3; ++again)
         EXPECT_TRUE(std::ranges::equal(search.find(cloth.coordinates()), expected)) << threads;
     }
@@ -175,34 +172,28 @@ LayeredCloth level_and_node(const Vec3d& node) {
 }
 
 std::vector<ClothContact> contacts_of(const LayeredCloth& cloth, double within = 0.1) {
-  ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), within, 1);
+  ClothContactSearch search(cloth.garment, within, 1);
   const auto found = search.find(cloth.coordinates());
   return {found.begin(), found.end()};
 }
 
 TEST(ClothContactSearch, TellsTheRightSideByTheNormal) {
   for (const double height : {0.0625, -0.0625}) {
-    for (const bool mirrored : {false, true}) {
-      SCOPED_TRACE(std::to_string(height) + (mirrored ? ", mirrored" : ""));
-      LayeredCloth cloth = level_and_node({0.75, height, -0.25});
-      if (mirrored) cloth.layers.mirrored = {0};
-      const auto contacts = contacts_of(cloth);
-      ASSERT_EQ(contacts.size(), 1U);
-      EXPECT_EQ(contacts[0].node, 9U);
-      EXPECT_THAT(contacts[0].triangle, ElementsAre(0, 1, 4));
-      EXPECT_THAT(contacts[0].weight, ElementsAre(0.25F, 0.5F, 0.25F));
-      const float outward = mirrored ? -1 : 1;
-      EXPECT_EQ(contacts[0].gap, outward * static_cast<float>(height));
-      EXPECT_EQ(contacts[0].normal, (Vec3<float>{0, outward, 0}));
-    }
+    SCOPED_TRACE(height);
+    const auto contacts = contacts_of(level_and_node({0.75, height, -0.25}));
+    ASSERT_EQ(contacts.size(), 1U);
+    EXPECT_EQ(contacts[0].node, 9U);
+    EXPECT_THAT(contacts[0].triangle, ElementsAre(0, 1, 4));
+    EXPECT_THAT(contacts[0].weight, ElementsAre(0.25F, 0.5F, 0.25F));
+    EXPECT_EQ(contacts[0].gap, static_cast<float>(height));
+    EXPECT_EQ(contacts[0].normal, (Vec3<float>{0, 1, 0}));
   }
 }
 
 TEST(ClothContactSearch, HoldsInnerNodesOnTheInnerSideOfTheOuterPanel) {
   LayeredCloth cloth = level_and_node({0.75, 0.0625, -0.25});
   cloth.garment.panels[0].layer = 2;  // the node is below the outer panel's normal no more
-  cloth.layers.pairs = layer_pairs(cloth.garment);
-  EXPECT_THAT(cloth.layers.pairs, ElementsAre(PanelPair{1, 0}));
+  EXPECT_THAT(layer_pairs(cloth.garment), ElementsAre(PanelPair{1, 0}));
   auto contacts = contacts_of(cloth);
   ASSERT_EQ(contacts.size(), 1U);
   EXPECT_EQ(contacts[0].gap, -0.0625F);
@@ -238,7 +229,7 @@ TEST(ClothContactSearch, KnowsTheSideAtTheEdgeOfASharpFold) {
 
 TEST(ClothContactSearch, ForgetsWhatItFoundBefore) {
   LayeredCloth cloth = level_and_node({0.75, 0.0625, -0.25});
-  ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), 0.1, 1);
+  ClothContactSearch search(cloth.garment, 0.1, 1);
   EXPECT_EQ(search.find(cloth.coordinates()).size(), 1U);
   cloth.position[1][9] = 0.5F;
   EXPECT_EQ(search.find(cloth.coordinates()).size(), 0U);
@@ -265,27 +256,6 @@ TEST(LayerPairs, AreThoseOfDifferentLayersThatNoSeamJoins) {
   garment.joints.push_back({.node = 3, .edge_first = 8, .edge_second = 9});
   garment.joints.push_back({.node = 5, .edge_first = 8, .edge_second = 8});
   EXPECT_THAT(layer_pairs(garment), ElementsAre(PanelPair{1, 0}, PanelPair{1, 3}, PanelPair{2, 3}));
-}
-
-TEST(ClothContactSearch, RefusesWhatItCannotSearch) {
-  const LayeredCloth good = level_and_node({});
-  const auto refusal = [&](const Garment& garment, const ClothLayers& layers, std::size_t nodes = 13,
-                           double within = 0.1, int threads = 1) -> std::string {
-    return sentence_of<std::invalid_argument>(
-        [&] { ClothContactSearch(garment, layers, nodes, within, threads); });
-  };
-  EXPECT_EQ(refusal(good.garment, good.layers), "");
-  EXPECT_THAT(refusal(good.garment, good.layers, 12), HasSubstr("\"panel1\" ends at node 13"));
-  for (const double within : {0.0, double{NAN}})
-    EXPECT_THAT(refusal(good.garment, good.layers, 13, within), HasSubstr("m, give a positive one"));
-  EXPECT_THAT(refusal(good.garment, good.layers, 13, 0.1, 0), HasSubstr("0 threads"));
-  EXPECT_THAT(refusal(good.garment, {{{0, 2}}, {}}), HasSubstr("no panel 2, the garment has 2"));
-  EXPECT_THAT(refusal(good.garment, {{}, {7}}), HasSubstr("no panel 7"));
-  EXPECT_THAT(refusal(good.garment, {{{1, 1}}, {}}), HasSubstr("\"panel1\" is paired with itself"));
-  EXPECT_THAT(refusal(good.garment, {{{0, 1}, {1, 0}}, {}}), HasSubstr("are paired twice"));
-  Garment narrow = good.garment;
-  narrow.panels[0].columns = 1;
-  EXPECT_THAT(refusal(narrow, good.layers), HasSubstr("3 x 1 nodes, give it at least 2 x 2"));
 }
 
 /// A level unit square grid of cells, and an upright sheet of one cell across it at an x, from one z to the

@@ -52,22 +52,6 @@ TEST(Curve, AChainOfSegmentsGoesOnFromEndToEnd) {
   EXPECT_EQ(chain.points().size(), 2 * Curve::chords + 1);
 }
 
-TEST(Curve, ASplitCurveIsTheSameInTwo) {
-  const Curve curve = parabola();
-  const auto [before, after] = curve.split(0.3);
-  EXPECT_NEAR(before.length(), 0.3 * curve.length(), 1e-14);
-  EXPECT_NEAR(after.length(), 0.7 * curve.length(), 1e-14);
-  EXPECT_EQ(before.last(), after.first());
-  EXPECT_EQ(before.last(), curve.at(0.3));
-  EXPECT_NEAR(before.followed_by(after).length(), curve.length(), 1e-14);
-}
-
-TEST(Curve, ASplitAtAPointKeepsItOnceOnEachSide) {
-  const auto [before, after] = Curve({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).split(0.5);
-  EXPECT_EQ(before.points().size(), 2U);
-  EXPECT_EQ(after.points().size(), 2U);
-}
-
 TEST(Curve, MirroredItsXIsTurnedRound) {
   EXPECT_EQ(parabola().mirrored().last(), (Vec3d{-1, 1, 0}));
   EXPECT_EQ(parabola().mirrored().length(), parabola().length());
@@ -86,8 +70,6 @@ TEST(Curve, WhatIsNoCurveIsRefused) {
                 Curve::bezier(std::array{Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{2, 0, 0}});
               }),
               HasSubstr("has 3 points; give 4, 7, 10 or another 3 n + 1 points"));
-  EXPECT_THAT(input_error_of([] { parabola().split(1); }),
-              HasSubstr("split at 1 of its length; give a fraction"));
 }
 
 /// Nodes are rounded to micrometres.
@@ -126,14 +108,13 @@ TEST(PanelMesh, ABentBoundaryFadesLinearlyTowardsTheOppositeOne) {
   }
 }
 
-TEST(PanelMesh, GridLinesEndWhereTheyAreTold) {
-  const PanelMesh mesh = mesh_panel(rectangle_piece("p", 1, 1), {6, 4, {{2, 0.5, 0.6}}, {{1, 0.1, 0.2}}});
+TEST(PanelMesh, RowsEndWhereTheyAreTold) {
+  const PanelMesh mesh = mesh_panel(rectangle_piece("p", 1, 1), {6, 4, {{2, 0.5, 0.6}}});
   expect_node(mesh, 2, 0, 0, 0.5);
   expect_node(mesh, 2, 3, 1, 0.6);
   expect_node(mesh, 1, 0, 0, 0.25);
   expect_node(mesh, 5 - 1, 3, 1, 0.6 + 2.0 / 3 * 0.4);
-  expect_node(mesh, 0, 1, 0.1, 0);
-  expect_node(mesh, 5, 1, 0.2, 1);
+  expect_node(mesh, 0, 1, 1.0 / 3, 0);
   EXPECT_THAT(mesh.arcs_on(PanelEdge::left),
               testing::ElementsAre(0, 0.25, 0.5, testing::DoubleEq(0.5 + 0.5 / 3),
                                    testing::DoubleEq(0.5 + 1.0 / 3), 1));
@@ -195,7 +176,7 @@ TEST(PanelMesh, BadGridsAreRefused) {
       AllOf(StartsWith("front: row 3 cannot end at the fractions 0.5 and 0.5"), HasSubstr("from 1 to 2")));
   EXPECT_THAT(complaint(piece, {9, 4, {{2, 0.5, 0.5}, {3, 0.6, 0.4}}}),
               StartsWith("front: row 3 cannot end"));
-  EXPECT_THAT(complaint(piece, {4, 9, {}, {{2, 0.5, 1}}}), StartsWith("front: column 2 cannot end"));
+  EXPECT_THAT(complaint(piece, {9, 4, {{2, 0.5, 1}}}), StartsWith("front: row 2 cannot end"));
 }
 
 }  // namespace

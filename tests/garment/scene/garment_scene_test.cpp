@@ -106,7 +106,7 @@ TEST_F(DressedPerson, IsSaidToHaveArmsThatTheGarmentIgnores) {
 Surface moved_mannequin(const Vec3d& by) {
   const SceneSpec spec = find_scene("jeans1k");
   const auto& garment = std::get<GarmentSpec>(spec.content);
-  Surface surface = mannequin(std::get<MannequinBody>(garment.body).measures, {.cells_around = 48});
+  Surface surface = mannequin(std::get<MannequinBody>(garment.body).measures, 48);
   for (Vec3d& point : surface.points) point += by;
   return surface;
 }

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "garment/contact/body_maps.h"
+#include "garment/layers/cloth_contacts.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -142,11 +143,11 @@ TEST(GarmentPieces, AreSewnWhereTheSeamsSay) {
 TEST(GarmentPieces, TouchOnlyWhereLayersAreAskedFor) {
   const Garment garment = garment_in(built(two_pieces));
   ASSERT_TRUE(garment.touching);
-  EXPECT_EQ(garment.touching->settings.thickness, 0.004);
-  EXPECT_EQ(garment.touching->settings.friction, 0.2);
-  EXPECT_EQ(garment.touching->settings.push_speed, 0.7);
-  EXPECT_EQ(garment.touching->settings.sweeps, 3U);
-  EXPECT_THAT(garment.touching->layers.pairs, testing::IsEmpty()) << "sewn panels would repel each other";
+  EXPECT_EQ(garment.touching->thickness, 0.004);
+  EXPECT_EQ(garment.touching->friction, 0.2);
+  EXPECT_EQ(garment.touching->push_speed, 0.7);
+  EXPECT_EQ(garment.touching->sweeps, 3U);
+  EXPECT_THAT(layer_pairs(garment), testing::IsEmpty()) << "sewn panels would repel each other";
   // In front of the belly the outer layer meets the body 4 mm before the inner one.
   ASSERT_EQ(garment.body_maps.size(), 2U);
   const auto distance = [&](std::size_t layer) {
@@ -177,7 +178,7 @@ TEST(GarmentPieces, GoWithJeans) {
   ASSERT_EQ(garment.seams.size(), 8U);
   EXPECT_EQ(garment.seams[6], "side left");
   // The seat is over the jeans, of the apron's layer.
-  EXPECT_THAT(garment.touching->layers.pairs,
+  EXPECT_THAT(layer_pairs(garment),
               ElementsAre(PanelPair{0, 5}, PanelPair{1, 5}, PanelPair{2, 5}, PanelPair{3, 5}));
 
   // What does not fit is told from what does not fit of the jeans.

@@ -61,7 +61,7 @@ TEST(LayeredDressing, LeavesTheLastWordToTheBody) {
   round_to_single(system.start);
   Garment& garment = garment_in(system);
   garment.panels[1].layer = 1;
-  garment.touching = {{layer_pairs(garment), {}}, {.thickness = 0.003}};
+  garment.touching = ClothClothSettings{.thickness = 0.003};
   garment.body_maps = {std::make_shared<BodyMaps>(surface_of(SphereShape{radius, 48}),
                                                   BodyMapSettings{.pixel = 0.001, .offset = 0.002})};
   for (const auto& backend : {make_serial_dressing(system, semi_euler, dressing_dt_s),
@@ -92,7 +92,7 @@ System flying_sheet(std::uint32_t side) {
   }
   Garment& garment = garment_in(system);
   garment.panels[1].layer = 1;
-  garment.touching = {{layer_pairs(garment), {}}, {.thickness = 0.003, .friction = 0.3}};
+  garment.touching = ClothClothSettings{.thickness = 0.003, .friction = 0.3};
   round_to_single(system.start);
   return system;
 }
@@ -100,7 +100,7 @@ System flying_sheet(std::uint32_t side) {
 std::size_t crossings_after(const System& system, DressingBackend& backend, int steps) {
   const Garment& garment = std::get<Garment>(system.topology);
   backend.step(steps);
-  return count_crossings(garment, {layer_pairs(garment), {}}, backend.state().position);
+  return count_crossings(garment, backend.state().position);
 }
 
 TEST(LayeredDressing, KeepsLayersApartThatWouldCross) {
@@ -139,7 +139,7 @@ TEST(LayeredDressing, IsTheSameToTheLastBitForAnyNumberOfThreads) {
   // Searched by one thread and by many.
   for (const std::uint32_t side : {20U, 91U}) {
     const System system = flying_sheet(side);
-    ASSERT_EQ(system.nodes() < LayerCollision::least_shared_nodes, side == 20);
+    ASSERT_EQ(system.nodes() < least_shared_nodes, side == 20);
     const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1);
     one->step(30);
     const State wanted = one->state();
