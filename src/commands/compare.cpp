@@ -109,10 +109,8 @@ std::function<int()> declare_compare(Arguments& arguments) {
       .required();
   arguments.add("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
       .required();
-  arguments
-      .add_number("--threshold", options->threshold_percent,
-                  "Smallest change that counts, in percent (default: 5)", positive_number())
-      .value_name("PERCENT");
+  arguments.add_number("--threshold PERCENT", options->threshold_percent,
+                       "Smallest change that counts, in percent (default: 5)", positive_number());
   arguments.add_choice<ComparisonFormat>("--format", options->format,
                                          {{"table", ComparisonFormat::table},
                                           {"markdown", ComparisonFormat::markdown},
@@ -127,26 +125,24 @@ std::function<int()> declare_compare(Arguments& arguments) {
       .excludes(ab);
   add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
   arguments
-      .add_list("--backend", options->ab.backends,
+      .add_list("--backend NAME|FILE,...", options->ab.backends,
                 "With --ab: backends, which may be programs of your own (default: openmp)",
                 names_and_files_in)
-      .needs(ab)
-      .value_name("NAME|FILE,...");
+      .needs(ab);
   declare_backend_folders(arguments, options->ab.own_backends).needs(ab);
   declare_backend_limit(arguments, options->ab.own_backends).needs(ab);
-  arguments.add_list("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
-      .needs(ab)
-      .value_name("NAME,...");
   arguments
-      .add_number("--threads", options->ab.threads, "With --ab: threads (default: all processors)",
+      .add_list("--integrator NAME,...", options->ab.integrators,
+                "With --ab: integrators (default: semi-euler)")
+      .needs(ab);
+  arguments
+      .add_number("--threads N", options->ab.threads, "With --ab: threads (default: all processors)",
                   whole_number(1, most_threads))
-      .needs(ab)
-      .value_name("N");
+      .needs(ab);
   arguments
-      .add_number("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)",
-                  number_between(1, 86400))
-      .needs(ab)
-      .value_name("SECONDS");
+      .add_number("--time-budget SECONDS", options->ab.time_budget_s,
+                  "With --ab: seconds it may take (default: 300)", number_between(1, 86400))
+      .needs(ab);
   return [options] { return run(*options); };
 }
 
