@@ -28,34 +28,6 @@ double decimal_product(double mantissa, int exponent) {
   return exponent < 0 ? mantissa / std::pow(10.0, -exponent) : mantissa * std::pow(10.0, exponent);
 }
 
-}  // namespace
-
-std::vector<Tick> ticks_between(double low, double high, int most) {
-  const double distance = high - low;
-  if (!std::isfinite(distance) || distance < 0)
-    throw std::invalid_argument("a scale goes from a number to one that is not less");
-  // Multiples of smaller steps could not be counted, nor could steps below the smallest numbers.
-  if (distance <= 1e-9 * std::max(std::abs(low), std::abs(high)) || distance < 1e-290)
-    return {{low, (low < 0 ? "−" : "") + decimal(std::abs(low))}};
-  // Ends that a rounding has moved across a multiple still have it.
-  const double slack = 1e-9;
-  const int largest = static_cast<int>(std::floor(std::log10(distance)));
-  for (int exponent = largest - 2;; ++exponent)
-    for (const int digit : {1, 2, 5}) {
-      const double step = decimal_product(digit, exponent);
-      const double first = std::ceil(low / step - slack), last = std::floor(high / step + slack);
-      if (last - first + 1 > most) continue;
-      std::vector<Tick> ticks;
-      for (double multiple = first; multiple <= last; ++multiple) {
-        const double value = decimal_product(multiple * digit, exponent);
-        ticks.push_back({value, tick_label(value, exponent)});
-      }
-      return ticks;
-    }
-}
-
-namespace {
-
 /// Lightness L* of CIE 1976, from 0 (black) to 100 (white), which is what remains in black and white. Chroma
 /// (0 is grey) and hue of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020), which
 /// keep their look when it changes.
@@ -127,47 +99,6 @@ ColourMap map_of(const ColourAt& colour_at) {
   return map;
 }
 
-}  // namespace
-
-Rgb ColourMap::at(double share) const {
-  if (std::isnan(share)) return {128, 128, 128};
-  const auto last = static_cast<double>(colours.size() - 1);
-  return colours[static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * last))];
-}
-
-const ColourMap& sequential_map() {
-  // The hue goes up through red (20 degrees) to yellow. Chroma is largest in the middle, where sRGB has most
-  // of it.
-  static const ColourMap map = map_of([](double share) {
-    return Lch{12 + 82 * share, 0.12 + 0.24 * share * (1 - share), -75 + 178 * share};
-  });
-  return map;
-}
-
-const ColourMap& diverging_map() {
-  static const ColourMap map = map_of([](double share) {
-    const double distance = std::abs(2 * share - 1);
-    return Lch{94 - 58 * distance, 0.155 * distance, share < 0.5 ? 258.0 : 30.0};
-  });
-  return map;
-}
-
-const std::array<Rgb, 8>& category_colours() {
-  static const std::array<Rgb, 8> colours{
-      srgb({32.5, 0.16, 257}),  // blue
-      srgb({75, 0.16, 65}),     // orange
-      srgb({57.5, 0.14, 152}),  // green
-      srgb({92, 0.16, 102}),    // yellow
-      srgb({19, 0.15, 305}),    // violet
-      srgb({83, 0.09, 225}),    // light blue
-      srgb({41.5, 0.19, 27}),   // red
-      srgb({66.5, 0.16, 350}),  // pink
-  };
-  return colours;
-}
-
-namespace {
-
 /// The sizes of what is written on a picture, in pixels.
 struct LegendSizes {
   Letters letters;
@@ -197,36 +128,6 @@ PixelBox draw_panel(Picture& picture, int content_width, int content_height) {
   fill(picture, {left + width - 1, top + 1, 1, height - 2}, edge);
   return {left + margin, top + margin, content_width, content_height};
 }
-
-}  // namespace
-
-void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
-  if (entries.empty()) return;
-  const LegendSizes sizes(picture);
-  const Letters& letters = sizes.letters;
-  const int capital = letters.capital_height(), line = letters.line_distance();
-  const int swatch = capital + 2, names_from = swatch + static_cast<int>(std::lround(0.6 * letters.size_px));
-
-  // The last line is a count where the list is too long, so that two entries make room for one count.
-  const auto most_lines = static_cast<std::size_t>(std::max(2, (sizes.most_height - swatch) / line + 1));
-  const std::size_t shown = entries.size() <= most_lines ? entries.size() : most_lines - 1;
-  std::vector<std::string> names;
-  for (const LegendEntry& entry : entries.first(shown))
-    names.push_back(shortened(entry.name, sizes.most_width - names_from, letters));
-  if (shown < entries.size()) names.push_back(fmt::format("and {} more", entries.size() - shown));
-
-  int widest = 0;
-  for (const std::string_view name : names) widest = std::max(widest, text_width(name, letters));
-  const int height = static_cast<int>(names.size() - 1) * line + swatch;
-  const PixelBox content = draw_panel(picture, names_from + widest, height);
-  int top = content.top;
-  for (std::size_t i = 0; i < names.size(); ++i, top += line) {
-    if (i < shown) fill(picture, {content.left, top, swatch, swatch}, entries[i].colour);
-    draw_text(picture, names[i], content.left + names_from, top + 1 + capital, letters);
-  }
-}
-
-namespace {
 
 /// Where things lie, in pixels.
 struct BarLayout {
@@ -263,6 +164,84 @@ int place_of(double value, const ColourBar& bar, int length) {
 }
 
 }  // namespace
+
+std::vector<Tick> ticks_between(double low, double high, int most) {
+  const double distance = high - low;
+  if (!std::isfinite(distance) || distance < 0)
+    throw std::invalid_argument("a scale goes from a number to one that is not less");
+  // Multiples of smaller steps could not be counted, nor could steps below the smallest numbers.
+  if (distance <= 1e-9 * std::max(std::abs(low), std::abs(high)) || distance < 1e-290)
+    return {{low, (low < 0 ? "−" : "") + decimal(std::abs(low))}};
+  // Ends that a rounding has moved across a multiple still have it.
+  const double slack = 1e-9;
+  const int largest = static_cast<int>(std::floor(std::log10(distance)));
+  for (int exponent = largest - 2;; ++exponent)
+    for (const int digit : {1, 2, 5}) {
+      const double step = decimal_product(digit, exponent);
+      const double first = std::ceil(low / step - slack), last = std::floor(high / step + slack);
+      if (last - first + 1 > most) continue;
+      std::vector<Tick> ticks;
+      for (double multiple = first; multiple <= last; ++multiple) {
+        const double value = decimal_product(multiple * digit, exponent);
+        ticks.push_back({value, tick_label(value, exponent)});
+      }
+      return ticks;
+    }
+}
+
+Rgb ColourMap::at(double share) const {
+  if (std::isnan(share)) return {128, 128, 128};
+  const auto last = static_cast<double>(colours.size() - 1);
+  return colours[static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * last))];
+}
+
+const ColourMap& diverging_map() {
+  static const ColourMap map = map_of([](double share) {
+    const double distance = std::abs(2 * share - 1);
+    return Lch{94 - 58 * distance, 0.155 * distance, share < 0.5 ? 258.0 : 30.0};
+  });
+  return map;
+}
+
+const std::array<Rgb, 8>& category_colours() {
+  static const std::array<Rgb, 8> colours{
+      srgb({32.5, 0.16, 257}),  // blue
+      srgb({75, 0.16, 65}),     // orange
+      srgb({57.5, 0.14, 152}),  // green
+      srgb({92, 0.16, 102}),    // yellow
+      srgb({19, 0.15, 305}),    // violet
+      srgb({83, 0.09, 225}),    // light blue
+      srgb({41.5, 0.19, 27}),   // red
+      srgb({66.5, 0.16, 350}),  // pink
+  };
+  return colours;
+}
+
+void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
+  if (entries.empty()) return;
+  const LegendSizes sizes(picture);
+  const Letters& letters = sizes.letters;
+  const int capital = letters.capital_height(), line = letters.line_distance();
+  const int swatch = capital + 2, names_from = swatch + static_cast<int>(std::lround(0.6 * letters.size_px));
+
+  // The last line is a count where the list is too long, so that two entries make room for one count.
+  const auto most_lines = static_cast<std::size_t>(std::max(2, (sizes.most_height - swatch) / line + 1));
+  const std::size_t shown = entries.size() <= most_lines ? entries.size() : most_lines - 1;
+  std::vector<std::string> names;
+  for (const LegendEntry& entry : entries.first(shown))
+    names.push_back(shortened(entry.name, sizes.most_width - names_from, letters));
+  if (shown < entries.size()) names.push_back(fmt::format("and {} more", entries.size() - shown));
+
+  int widest = 0;
+  for (const std::string_view name : names) widest = std::max(widest, text_width(name, letters));
+  const int height = static_cast<int>(names.size() - 1) * line + swatch;
+  const PixelBox content = draw_panel(picture, names_from + widest, height);
+  int top = content.top;
+  for (std::size_t i = 0; i < names.size(); ++i, top += line) {
+    if (i < shown) fill(picture, {content.left, top, swatch, swatch}, entries[i].colour);
+    draw_text(picture, names[i], content.left + names_from, top + 1 + capital, letters);
+  }
+}
 
 void draw_colour_bar(Picture& picture, const ColourBar& bar) {
   const BarLayout layout(picture, bar);
