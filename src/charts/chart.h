@@ -29,6 +29,12 @@ struct Series {
   std::vector<double> low{}, high{};
   /// Signs at the points instead of a line, for references.
   PointMark mark = PointMark::none;
+
+  /// A point without an interval.
+  void add(double point_x, double point_y) {
+    x.push_back(point_x);
+    y.push_back(point_y);
+  }
 };
 
 struct Axis {

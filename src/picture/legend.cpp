@@ -129,34 +129,6 @@ PixelBox draw_panel(Picture& picture, int content_width, int content_height) {
   return {left + margin, top + margin, content_width, content_height};
 }
 
-/// Where things lie, in pixels.
-struct BarLayout {
-  LegendSizes sizes;
-  std::vector<Tick> ticks;
-  std::string title;
-  int title_width, title_height;  ///< with the space below it
-  int length, thickness;          ///< of the bar
-  int dash;                       ///< of the line beside a number, and the space after it
-
-  BarLayout(const Picture& picture, const ColourBar& bar) : sizes(picture) {
-    const Letters& letters = sizes.letters;
-    title = shortened(bar.title, sizes.most_width, letters);
-    title_width = text_width(title, letters);
-    title_height = title.empty() ? 0 : letters.line_distance();
-    thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
-    dash = static_cast<int>(std::lround(0.3 * letters.size_px));
-    const int free = sizes.most_height - title_height - letters.capital_height();
-    length = std::max(8, std::min(free, static_cast<int>(std::lround(11 * letters.size_px))));
-    ticks = ticks_between(bar.low, bar.high, 6);
-  }
-
-  int widest_label() const {
-    int widest = 0;
-    for (const Tick& tick : ticks) widest = std::max(widest, text_width(tick.label, sizes.letters));
-    return widest;
-  }
-};
-
 /// The pixel of a bar of `length` pixels at which `value` lies, from its low end.
 int place_of(double value, const ColourBar& bar, int length) {
   if (bar.low == bar.high) return length / 2;
@@ -244,21 +216,30 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
 }
 
 void draw_colour_bar(Picture& picture, const ColourBar& bar) {
-  const BarLayout layout(picture, bar);
-  const Letters& letters = layout.sizes.letters;
-  const int capital = letters.capital_height(), labels_from = layout.thickness + 2 * layout.dash;
-  const int width = std::max(layout.title_width, labels_from + layout.widest_label());
+  const LegendSizes sizes(picture);
+  const Letters& letters = sizes.letters;
+  const std::string title = shortened(bar.title, sizes.most_width, letters);
+  const std::vector<Tick> ticks = ticks_between(bar.low, bar.high, 6);
+  const int capital = letters.capital_height();
+  const int thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
+  // Of the line beside a number, and the space after it.
+  const int dash = static_cast<int>(std::lround(0.3 * letters.size_px)), labels_from = thickness + 2 * dash;
+  int width = text_width(title, letters);
+  for (const Tick& tick : ticks) width = std::max(width, labels_from + text_width(tick.label, letters));
+  const int title_height = title.empty() ? 0 : letters.line_distance();
+  const int free = sizes.most_height - title_height - capital;
+  const int length = std::max(8, std::min(free, static_cast<int>(std::lround(11 * letters.size_px))));
   // A number at an end reaches half its height beyond the bar.
-  const int bar_from = layout.title_height + capital / 2;
-  const PixelBox content = draw_panel(picture, width, bar_from + layout.length + capital / 2);
-  draw_text(picture, layout.title, content.left, content.top + capital, letters);
-  const int low_end = content.top + bar_from + layout.length - 1;
-  for (int i = 0; i < layout.length; ++i)
-    fill(picture, {content.left, low_end - i, layout.thickness, 1},
-         bar.map.at(static_cast<double>(i) / (layout.length - 1)));
-  for (const Tick& tick : layout.ticks) {
-    const int y = low_end - place_of(tick.value, bar, layout.length);
-    fill(picture, {content.left + layout.thickness, y, layout.dash, 1}, letters.colour);
+  const int bar_from = title_height + capital / 2;
+  const PixelBox content = draw_panel(picture, width, bar_from + length + capital / 2);
+  draw_text(picture, title, content.left, content.top + capital, letters);
+  const int low_end = content.top + bar_from + length - 1;
+  for (int i = 0; i < length; ++i)
+    fill(picture, {content.left, low_end - i, thickness, 1},
+         bar.map.at(static_cast<double>(i) / (length - 1)));
+  for (const Tick& tick : ticks) {
+    const int y = low_end - place_of(tick.value, bar, length);
+    fill(picture, {content.left + thickness, y, dash, 1}, letters.colour);
     draw_text(picture, tick.label, content.left + labels_from, y + (capital + 1) / 2, letters);
   }
 }
