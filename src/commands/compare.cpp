@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <sstream>
 #include <vector>
 
 #include "application/bench/ab_comparison.h"
@@ -52,17 +51,12 @@ void tell(const std::string& what, const std::vector<std::string>& combinations)
 std::vector<std::string> regressions(const RunComparison& comparison) {
   std::vector<std::string> sentences;
   for (const ComparedRow& row : comparison.rows) {
-    std::ostringstream text;
-    text.precision(3);
-    text << combination_name(row) << ": " << name_of(row.verdict);
+    const std::string subject = fmt::format("{}: {}", combination_name(row), name_of(row.verdict));
     if (row.verdict == Verdict::slower)
-      text << ", " << row.ratio->ratio << " times the time (" << row.ratio->low << " to " << row.ratio->high
-           << ")";
+      sentences.push_back(fmt::format("{}, {:.3g} times the time ({:.3g} to {:.3g})", subject,
+                                      row.ratio->ratio, row.ratio->low, row.ratio->high));
     else if (row.verdict == Verdict::lost)
-      text << ", " << row.reason;
-    else
-      continue;
-    sentences.push_back(text.str());
+      sentences.push_back(subject + ", " + row.reason);
   }
   return sentences;
 }

@@ -11,7 +11,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 std::size_t frame_number(const std::string& word, std::size_t frames) {

@@ -6,7 +6,6 @@
 #include <iterator>
 
 namespace mssim {
-
 namespace {
 
 /// The rule for a number that `accepts` takes; `what` is what it is then.
