@@ -22,7 +22,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// Those that the process may use, or as many as a container's quota of processor time amounts to.
@@ -31,53 +30,6 @@ int usable_processors() {
   const std::optional<double> quota = container_limits().processors;
   return quota ? std::min(processors, static_cast<int>(std::ceil(*quota))) : processors;
 }
-
-}  // namespace
-
-const Integrator& require_integrator(const std::string& name) {
-  if (const Integrator* integrator = find_integrator(name)) return *integrator;
-  std::vector<std::string_view> names;
-  for (const Integrator* integrator : all_integrators) names.push_back(integrator->name);
-  throw UsageError(unknown_name("integrator", name, names));
-}
-
-std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>& asked,
-                                                  std::span<const std::string_view> by_default) {
-  const std::vector<std::string> names =
-      asked.empty() ? std::vector<std::string>(by_default.begin(), by_default.end()) : asked;
-  if (names == std::vector<std::string>{"all"}) return {all_integrators.begin(), all_integrators.end()};
-  std::vector<const Integrator*> named, chosen;
-  for (const std::string& name : names) named.push_back(&require_integrator(name));
-  for (const Integrator* integrator : all_integrators)
-    if (std::ranges::find(named, integrator) != named.end()) chosen.push_back(integrator);
-  return chosen;
-}
-
-std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
-
-void require_few_threads(int threads) {
-  constexpr int most_a_processor = 8;
-  const int processors = omp_get_num_procs();
-  if (threads > most_a_processor * processors)
-    throw UsageError(
-        "--threads {} is too many for the {} that this process may use; ask for at most {}, {} for each",
-        threads, pluralize(static_cast<std::uint64_t>(processors), "processor"),
-        most_a_processor * processors, most_a_processor);
-}
-
-ExecutionOptions complete(ExecutionOptions options) {
-  const int limit = omp_get_thread_limit();
-  options.threads_given = options.threads > 0;
-  if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
-  if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
-  if (options.threads > limit)
-    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; ask for fewer, or unset it",
-                     options.threads, limit);
-  omp_set_dynamic(0);
-  return options;
-}
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -121,6 +73,48 @@ BackendProgram program_at(const std::string& path) {
 }
 
 }  // namespace
+
+const Integrator& require_integrator(const std::string& name) {
+  if (const Integrator* integrator = find_integrator(name)) return *integrator;
+  std::vector<std::string_view> names;
+  for (const Integrator* integrator : all_integrators) names.push_back(integrator->name);
+  throw UsageError(unknown_name("integrator", name, names));
+}
+
+std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>& asked,
+                                                  std::span<const std::string_view> by_default) {
+  const std::vector<std::string> names =
+      asked.empty() ? std::vector<std::string>(by_default.begin(), by_default.end()) : asked;
+  if (names == std::vector<std::string>{"all"}) return {all_integrators.begin(), all_integrators.end()};
+  std::vector<const Integrator*> named, chosen;
+  for (const std::string& name : names) named.push_back(&require_integrator(name));
+  for (const Integrator* integrator : all_integrators)
+    if (std::ranges::find(named, integrator) != named.end()) chosen.push_back(integrator);
+  return chosen;
+}
+
+std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
+
+void require_few_threads(int threads) {
+  constexpr int most_a_processor = 8;
+  const int processors = omp_get_num_procs();
+  if (threads > most_a_processor * processors)
+    throw UsageError(
+        "--threads {} is too many for the {} that this process may use; ask for at most {}, {} for each",
+        threads, pluralize(processors, "processor"), most_a_processor * processors, most_a_processor);
+}
+
+ExecutionOptions complete(ExecutionOptions options) {
+  const int limit = omp_get_thread_limit();
+  options.threads_given = options.threads > 0;
+  if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
+  if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
+  if (options.threads > limit)
+    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; ask for fewer, or unset it",
+                     options.threads, limit);
+  omp_set_dynamic(0);
+  return options;
+}
 
 std::string row_name(const std::string& asked) {
   if (!is_path(asked)) return asked;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <numeric>
 #include <string_view>
@@ -16,7 +15,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 double seconds_between(ProgressLine::Clock::time_point from, ProgressLine::Clock::time_point to) {
@@ -27,9 +25,15 @@ double seconds_between(ProgressLine::Clock::time_point from, ProgressLine::Clock
 std::string time_left(const Progress& progress) {
   if (!progress.seconds_left) return {};
   const long seconds = std::lround(*progress.seconds_left);
-  char text[48];
-  std::snprintf(text, sizeof text, "  about %ld:%02ld left", seconds / 60, seconds % 60);
-  return text;
+  return fmt::format("  about {}:{:02} left", seconds / 60, seconds % 60);
+}
+
+constexpr std::string_view notice =
+    "\nmssim: stopping after the current measurement or frame; a second signal stops at once\n";
+
+void remember(int signal) {
+  note_ending_signal(signal);
+  static_cast<void>(!::write(STDERR_FILENO, notice.data(), notice.size()));
 }
 
 }  // namespace
@@ -119,18 +123,6 @@ void tell_of_opencl() {
   if (!offer.note.empty()) std::cerr << "mssim: " << offer.note << '\n';
 }
 
-namespace {
-
-constexpr std::string_view notice =
-    "\nmssim: stopping after the current measurement or frame; a second signal stops at once\n";
-
-void remember(int signal) {
-  note_ending_signal(signal);
-  static_cast<void>(!::write(STDERR_FILENO, notice.data(), notice.size()));
-}
-
-}  // namespace
-
 StopRequest::StopRequest() : signals_(remember, static_cast<int>(SA_RESTART | SA_RESETHAND)) {}
 
 StopRequest::~StopRequest() {
@@ -140,9 +132,5 @@ StopRequest::~StopRequest() {
   remove_temporary_folder_of_process();
   std::raise(signal);
 }
-
-bool StopRequest::requested() const { return noted_ending_signal() != 0; }
-
-void StopRequest::throw_if_requested() { throw_if_ending_signal_noted(); }
 
 }  // namespace mssim

@@ -77,13 +77,11 @@ class StopRequest {
   StopRequest();
   /// A signal that nobody asked for ends the program now.
   ~StopRequest();
-  StopRequest(const StopRequest&) = delete;
-  StopRequest& operator=(const StopRequest&) = delete;
 
   /// Whether a signal has come.
-  bool requested() const;
+  bool requested() const { return noted_ending_signal() != 0; }
   /// Throws Interrupted when one has.
-  void throw_if_requested();
+  void throw_if_requested() { throw_if_ending_signal_noted(); }
 
  private:
   EndingSignals signals_;

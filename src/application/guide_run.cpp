@@ -21,7 +21,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// With that many nodes along a side; its text says so too.

@@ -8,7 +8,6 @@
 #include "backends/backends.h"
 #include "backends/interface/backend.h"
 #include "guide/guide.h"
-#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 

@@ -12,7 +12,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,6 +42,11 @@ void require_other(const NamedFile& a, const NamedFile& b) {
                      printable(a.path.string()));
 }
 
+std::vector<std::string>& arguments() {
+  static std::vector<std::string> remembered;
+  return remembered;
+}
+
 }  // namespace
 
 void require_extension(const NamedFile& file, const std::string& content,
@@ -64,15 +68,6 @@ void require_distinct(const std::vector<NamedFile>& written, const std::vector<N
     for (const NamedFile& input : read) require_other(*file, input);
   }
 }
-
-namespace {
-
-std::vector<std::string>& arguments() {
-  static std::vector<std::string> remembered;
-  return remembered;
-}
-
-}  // namespace
 
 void remember_arguments(int argc, char** argv) { arguments().assign(argv, argv + argc); }
 

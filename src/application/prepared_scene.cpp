@@ -14,7 +14,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// Meshes, and bodies to dress, are what does not follow from a scene's file alone.
@@ -27,6 +26,16 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts,
                      std::holds_alternative<GarmentSpec>(spec.content)
                          ? "body, or another pattern, makes other panels; state what they have"
                          : "TetGen, or another file, makes another mesh");
+}
+
+/// The middle of the leg on the point's side, or of the trunk where that is nearer.
+Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
+  if (profile.has_legs()) {
+    const PlanPoint leg = profile.leg_middle(point.y);
+    if (std::abs(point.x) > leg.x / 2) return {point.x < 0 ? -leg.x : leg.x, point.y, leg.z};
+  }
+  const double height = std::clamp(point.y, profile.lowest(), profile.highest());
+  return {0, point.y, (profile.front(height) + profile.back(height)) / 2};
 }
 
 }  // namespace
@@ -57,20 +66,6 @@ ModeBound mode_bound(const System& system) {
 void warn_of_note(const PreparedScene& scene) {
   if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
 }
-
-namespace {
-
-/// The middle of the leg on the point's side, or of the trunk where that is nearer.
-Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
-  if (profile.has_legs()) {
-    const PlanPoint leg = profile.leg_middle(point.y);
-    if (std::abs(point.x) > leg.x / 2) return {point.x < 0 ? -leg.x : leg.x, point.y, leg.z};
-  }
-  const double height = std::clamp(point.y, profile.lowest(), profile.highest());
-  return {0, point.y, (profile.front(height) + profile.back(height)) / 2};
-}
-
-}  // namespace
 
 FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body) {
   // What the garment meets: an arm beside the hip is nothing to be inside of.

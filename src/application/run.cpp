@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <limits>
-#include <sstream>
 
 #include "application/outputs.h"
 #include "backends/backends.h"
@@ -25,32 +23,24 @@
 
 namespace mssim {
 
-namespace {
-
-/// Longest run, in steps: a frame's steps are counted in an int, and beyond 2^53 times lose whole steps.
-constexpr double most_steps = std::numeric_limits<int>::max();
-
-}  // namespace
-
 std::int64_t count_steps(const SimulationPlan& plan) {
+  // A frame's steps are counted in an int, and beyond 2^53 times lose whole steps.
+  constexpr double most_steps = std::numeric_limits<int>::max();
   const double exact_steps = plan.duration_s / plan.dt_s;
   if (!(exact_steps >= 0.5 && exact_steps <= most_steps)) {
-    std::ostringstream text;
-    text << "a duration of " << plan.duration_s << " s is " << exact_steps << " steps of " << plan.dt_s
-         << " s; --duration must give between one step and " << most_steps;
-    throw UsageError(text.str());
+    throw UsageError(
+        "a duration of {:.6g} s is {:.6g} steps of {:.6g} s; --duration must give between one step and "
+        "{:.6g}",
+        plan.duration_s, exact_steps, plan.dt_s, most_steps);
   }
   return static_cast<std::int64_t>(std::llround(exact_steps));
 }
 
 FrameGrid frame_grid(double frames_per_second, double dt_s) {
   const double steps_per_frame = 1 / (frames_per_second * dt_s);
-  if (!(steps_per_frame >= 1)) {
-    std::ostringstream text;
-    text << "--fps " << frames_per_second << " is more than one frame a step of " << dt_s << " s; take --fps "
-         << (dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s)) << " or less";
-    throw UsageError(text.str());
-  }
+  if (!(steps_per_frame >= 1))
+    throw UsageError("--fps {:.6g} is more than one frame a step of {:.6g} s; take --fps {:.6g} or less",
+                     frames_per_second, dt_s, dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s));
   return {steps_per_frame};
 }
 
@@ -164,83 +154,6 @@ std::string RunRecorder::kept() {
 
 namespace {
 
-/// Dresses a garment scene by a backend that was made for it, as long as the rule says, prints how it went
-/// and how the garment fits unless it is to be silent, and says on stderr what is out of bounds. Records the
-/// start, the frames of the grid and how the garment rests. Returns an ExitCode. Throws NotVerified when the
-/// simulation blows up, naming the step, WriteError and Interrupted.
-int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
-                 const SettlingRule& rule, const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop,
-                 bool silent) {
-  const auto require_finite = [](const State& state, std::int64_t iterations) {
-    if (const auto node = first_bad_node(state))
-      throw NotVerified("the simulation blew up before step {}: node {} is not finite", iterations, *node);
-  };
-  const auto record = [&](const State& state, std::int64_t iterations) {
-    require_finite(state, iterations);
-    recorder.record({iterations, static_cast<double>(iterations) * scene.dt_s, state,
-                     energy_of(scene.system, state), std::nullopt});
-    stop.throw_if_requested();
-  };
-  DressingResult result;
-  double seconds = 0;
-  recorder.finish_after([&] {
-    const Stopwatch watch;
-    ProgressLine progress({1}, ProgressLine::Log::nothing);
-    progress.begin_scene(scene.spec.name);
-    progress.update("closing seams", 0);
-    result = dress(
-        backend, scene.system, scene.dt_s, rule,
-        [&](const State& state, std::int64_t iterations) {
-          require_finite(state, iterations);
-          stop.throw_if_requested();
-          std::ostringstream activity;
-          activity << (backend.progress().draping ? "draping" : "closing seams") << ", " << std::fixed
-                   << std::setprecision(2) << static_cast<double>(iterations) * scene.dt_s
-                   << " s simulated of at most " << rule.longest_s;
-          progress.update(activity.str(), 0);  // when it will have settled, nobody knows
-          return true;
-        },
-        recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
-    seconds = watch.seconds();
-  });
-  const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.body));
-  Table dressing, fitting;
-  dressing.add({{"scene", scene.spec.name},
-                {"backend", backend_name},
-                {"threads", backend.threads()},
-                {"nodes", scene.system.nodes()},
-                {"dt_s", scene.dt_s},
-                {"seamed_at", result.seamed_at},
-                {"iterations", result.iterations},
-                {"simulated_s", result.simulated_s},
-                {"wall_s", seconds},
-                {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}});
-  for (const FitCheck& check : fit_checks(fit, {}))
-    fitting.add({{"fit", check.name},
-                 {"value", check.value},
-                 {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
-                 {"within", check.within}});
-  if (!silent)
-    std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << to_text(fitting);
-  if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
-    std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
-              << " s the garment is still moving; a longer --duration gives it more time\n";
-  const std::vector<std::string> found = misfits(result, fit, {});
-  for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
-  return found.empty() ? exit_ok : exit_not_verified;
-}
-
-/// Unless asked otherwise 60 frames a simulated second, or one a step where steps are longer.
-double frames_per_second(const RunOptions& options, double dt_s) {
-  return options.fps.value_or(std::min(60.0, 1 / dt_s));
-}
-
-PictureOptions pictures_of(const RunOptions& options) {
-  PictureOptions pictures = options.pictures;
-  pictures.threads = complete(options.execution).threads;
-  return pictures;
-}
-
 /// The chosen backend, made by `in_single`, make_backend or make_dressing_backend, or by `in_double`.
 template <class InSingle, class InDouble>
 auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
@@ -261,13 +174,6 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
         "precision only, and a program in its own",
         baseline_backend().name, options.backend);
   return in_double(scene.system, integrator, scene.dt_s);
-}
-
-/// A garment is dressed until it has settled; --duration says how long that may take.
-SettlingRule settling_rule(const RunOptions& options, const SimulationPlan& plan) {
-  SettlingRule rule;
-  if (options.duration_s) rule.longest_s = static_cast<double>(count_steps(plan)) * plan.dt_s;
-  return rule;
 }
 
 /// Tells who waits long why.
@@ -302,12 +208,17 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
   add_programs(provenance, {&info}, complete(options.execution));
   add_scene(provenance, scene.spec.name, scene.spec.source);
   FileHeaders headers{trace_header(scene, backend, std::string(info.name), integrator, provenance),
-                      command_line(provenance), pictures_of(options)};
+                      command_line(provenance), options.pictures};
+  headers.pictures.threads = complete(options.execution).threads;
   headers.trace.with_losses = options.losses;
   headers.trace.in_double = options.precision == "double";
   return headers;
 }
 
+/// Dresses the scene's garment until it has settled, for no longer than --duration says, prints how it went
+/// and how the garment fits unless it is to be silent, and says on stderr what is out of bounds. Records the
+/// start, the frames of the grid and how the garment rests. Returns an ExitCode. Throws NotVerified when the
+/// simulation blows up, naming the step, WriteError and Interrupted.
 int run_garment(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                 const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
@@ -320,10 +231,66 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
   // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
   // file.
   StopRequest stop;
-  const FrameGrid frames = frame_grid(frames_per_second(options, scene.dt_s), scene.dt_s);
-  const SettlingRule rule = settling_rule(options, plan);
+  const FrameGrid frames = frame_grid(plan.frames_per_second, plan.dt_s);
+  SettlingRule rule;
+  if (options.duration_s) rule.longest_s = static_cast<double>(count_steps(plan)) * plan.dt_s;
   RunRecorder recorder(options.files, scene, headers);
-  return run_dressing(scene, *backend, std::string(info.name), rule, frames, recorder, stop, options.silent);
+  const auto require_finite = [](const State& state, std::int64_t iterations) {
+    if (const auto node = first_bad_node(state))
+      throw NotVerified("the simulation blew up before step {}: node {} is not finite", iterations, *node);
+  };
+  const auto record = [&](const State& state, std::int64_t iterations) {
+    require_finite(state, iterations);
+    recorder.record({iterations, static_cast<double>(iterations) * scene.dt_s, state,
+                     energy_of(scene.system, state), std::nullopt});
+    stop.throw_if_requested();
+  };
+  DressingResult result;
+  double seconds = 0;
+  recorder.finish_after([&] {
+    const Stopwatch watch;
+    ProgressLine progress({1}, ProgressLine::Log::nothing);
+    progress.begin_scene(scene.spec.name);
+    progress.update("closing seams", 0);
+    result = dress(
+        *backend, scene.system, scene.dt_s, rule,
+        [&](const State& state, std::int64_t iterations) {
+          require_finite(state, iterations);
+          stop.throw_if_requested();
+          const auto activity = fmt::format("{}, {:.2f} s simulated of at most {:.2f}",
+                                            backend->progress().draping ? "draping" : "closing seams",
+                                            static_cast<double>(iterations) * scene.dt_s, rule.longest_s);
+          progress.update(activity, 0);  // when it will have settled, nobody knows
+          return true;
+        },
+        recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
+    seconds = watch.seconds();
+  });
+  const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.body));
+  Table dressing, fitting;
+  dressing.add({{"scene", scene.spec.name},
+                {"backend", info.name},
+                {"threads", backend->threads()},
+                {"nodes", scene.system.nodes()},
+                {"dt_s", scene.dt_s},
+                {"seamed_at", result.seamed_at},
+                {"iterations", result.iterations},
+                {"simulated_s", result.simulated_s},
+                {"wall_s", seconds},
+                {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}});
+  for (const FitCheck& check : fit_checks(fit, {}))
+    fitting.add({{"fit", check.name},
+                 {"value", check.value},
+                 {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
+                 {"within", check.within}});
+  if (!options.silent)
+    std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << to_text(fitting);
+  if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
+    std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
+              << " s the garment is still moving; a longer --duration gives it more time\n";
+  const std::vector<std::string> found = misfits(result, fit, {});
+  for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
+  return found.empty() ? exit_ok : exit_not_verified;
 }
 
 int run_simulation(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
@@ -404,8 +371,9 @@ int run_scene(RunOptions options) {
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
+  // Unless asked otherwise 60 frames a simulated second, or one a step where steps are longer.
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
-                            frames_per_second(options, scene.dt_s), options.losses};
+                            options.fps.value_or(std::min(60.0, 1 / scene.dt_s)), options.losses};
   return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
                                   : run_simulation(options, info, scene, integrator, plan);
 }

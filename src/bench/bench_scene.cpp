@@ -1,9 +1,7 @@
 #include "bench/bench_scene.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <future>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -50,8 +48,7 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
     if (is_implicit(*combination.integrator) || !combination.backend || !combination.on_host) continue;
     const auto [threads, bytes] = peak_key(combination, size);
     if (peaks.contains({threads, bytes})) continue;
-    watch.progress("machine peak with " + pluralize(static_cast<std::uint64_t>(threads), "thread"),
-                   job.preparation);
+    watch.progress("machine peak with " + pluralize(threads, "thread"), job.preparation);
     peaks[{threads, bytes}] = measure_peak(threads, bytes);
   }
   return peaks;
@@ -138,13 +135,14 @@ void verify_second(Combination& combination, const SceneJob& job, const BackendI
   combination.backend->rest();
   ExecutionOptions execution = job.execution;
   execution.scene += "-small";  // a program may know scenes by their names
+  const std::string cannot = "failed: it does not step a small scene of the kind: ";
   try {
     const auto backend = make_backend(info, stretch.system, *combination.integrator, job.dt_s, execution);
     if (const auto wrong = verify_second(*backend, stretch)) fail(combination, "failed: " + *wrong);
   } catch (const Unsupported& reason) {
-    fail(combination, std::string("failed: it does not step a small scene of the kind: ") + reason.what());
+    fail(combination, cannot + reason.what());
   } catch (const Unavailable& reason) {
-    fail(combination, std::string("failed: it does not step a small scene of the kind: ") + reason.what());
+    fail(combination, cannot + reason.what());
   } catch (const BackendFailure& failure) {
     throw BackendFailure(std::string(failure.what()) + ", on a small scene of the kind", failure.output,
                          failure.late);
@@ -159,7 +157,7 @@ Combination make_verified(const SceneJob& job, const BackendInfo& info, const In
   if (combination.most_steps < verification_steps)
     append_sentence(combination.row.note,
                     fmt::format("compared and timed in {}, in which the integrator doubles a rounding",
-                                pluralize(static_cast<std::uint64_t>(combination.most_steps), "step")));
+                                pluralize(combination.most_steps, "step")));
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)
@@ -178,14 +176,8 @@ void for_each_integrator(const SceneJob& job, const std::function<void(std::size
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(),
                            [&](std::size_t i) { return expected_evaluations(*job.integrators[i]); });
-  std::atomic<std::size_t> next = 0;
-  const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
-  std::vector<std::future<void>> threads;
-  for (std::size_t thread = 0; thread < (job.windowed ? 1 : references_at_once(job)); ++thread)
-    threads.push_back(std::async(as_the_system_can, [&] {
-      for (std::size_t i = next++; i < order.size(); i = next++) work(order[i]);
-    }));
-  for (std::future<void>& thread : threads) thread.get();
+  for_each_at_once(order.size(), job.windowed ? 1 : references_at_once(job),
+                   [&](std::size_t i) { work(order[i]); });
 }
 
 /// Runs the references of all integrators and verifies `serial` with each, but for job.verified. The results

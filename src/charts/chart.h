@@ -8,10 +8,10 @@ namespace mssim {
 
 /// Charts as SVG for an HTML page: a Chart says what is to be shown, draw_svg() draws it.
 
-/// Where the values of a series come from, which its look says: measured ones have filled points, solid lines
-/// and shaded bars; published ones open points, dashed lines and bars without a shade. References are
-/// straight lines from point to point in the colour of the text, such as the roofs of a roofline. Where
-/// shapes of points repeat, lines have longer dashes.
+/// Where the values of a series come from, which its look says: measured ones have filled points and solid
+/// lines, published ones open points and dashed lines. References are straight lines from point to point in
+/// the colour of the text, such as the roofs of a roofline. Where shapes of points repeat, lines have longer
+/// dashes.
 enum class Origin { measured, published, reference };
 
 /// A sign on single points of other series, or in place of one: larger than points, in the colour of the
@@ -24,12 +24,17 @@ struct Series {
   /// What is to be compared, such as a configuration of the paper: series of one family share colour, point
   /// and pattern, and differ by their origin. Empty, or taken by a series of the same origin: one of its own.
   std::string family{};
-  std::vector<double> x{};  ///< as many as y; of bars, empty
-  std::vector<double> y{};  ///< of bars, one for each of Chart::groups
+  std::vector<double> x{}, y{};  ///< as many of both
   /// Intervals around y, drawn as error bars: as many as y, or none.
   std::vector<double> low{}, high{};
-  /// Signs at the points instead of a line, for references; bars have none.
+  /// Signs at the points instead of a line, for references.
   PointMark mark = PointMark::none;
+
+  /// A point without an interval.
+  void add(double point_x, double point_y) {
+    x.push_back(point_x);
+    y.push_back(point_y);
+  }
 };
 
 struct Axis {
@@ -37,7 +42,7 @@ struct Axis {
   bool logarithmic = false;
 };
 
-enum class ChartForm { lines, points, bars };
+enum class ChartForm { lines, points };
 
 /// What is drawn, as data. A value that is not finite, or not positive on a logarithmic axis, is left out,
 /// and lines have a gap there; an interval with such an end is left out alone. What was left out is said.
@@ -45,9 +50,8 @@ struct Chart {
   std::string id;  ///< unique in the page: letters, digits and hyphens, a letter first
   std::string title;
   ChartForm form = ChartForm::lines;
-  Axis x, y;                        ///< of bars, x is the axis of groups and never logarithmic
-  std::vector<std::string> groups;  ///< of bars: the labels on x
-  std::vector<Series> series;       ///< in the order of the legend
+  Axis x, y;
+  std::vector<Series> series;  ///< in the order of the legend
   /// Families that look the same in every chart that names them in the same order; others come after them.
   std::vector<std::string> families{};
   /// What is to be said below it, each a sentence without full stop.

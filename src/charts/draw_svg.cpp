@@ -22,14 +22,6 @@ constexpr std::array<std::string_view, 4> mark_shapes{
     "", "m-9.4,0a9.4,9.4 0 1,0 18.8,0a9.4,9.4 0 1,0 -18.8,0z", "m-9.4,-9.4h18.8v18.8h-18.8z",
     "m-5.8,-5.8l11.6,11.6m0,-11.6l-11.6,11.6"};
 
-/// Patterns of bars that differ without colours.
-constexpr std::array<std::string_view, 6> bar_patterns{"",
-                                                       "M-1,1L1,-1M0,6L6,0M5,7L7,5",
-                                                       "M0,1.5H6M0,4.5H6",
-                                                       "M-1,5L1,7M0,0L6,6M5,-1L7,1",
-                                                       "M1.5,0V6M4.5,0V6",
-                                                       "M0,0L6,6M0,6L6,0"};
-
 /// Dashes: the second where shapes of points repeat, so that twice as many lines differ without colours.
 constexpr std::array<std::string_view, 2> measured_dashes{"", "9,4"}, published_dashes{"4,3", "4,3,1,3"};
 constexpr std::array<std::string_view, 4> reference_dashes{"", "2,3", "10,3,2,3", "14,4"};
@@ -125,13 +117,6 @@ class Drawing {
     for (const Tick& tick : layout_.y.ticks) text(tick.label, layout_.left - 8, down(tick.value), end);
     for (const Tick& tick : layout_.x.ticks)
       text(tick.label, across(tick.value), layout_.tick_labels, middle);
-    for (std::size_t group = 0; group < layout_.groups.size(); ++group) {
-      const double x = across(static_cast<double>(group));
-      text(layout_.groups[group], x, layout_.tick_labels,
-           layout_.groups_tilted ? fmt::format("{} transform=\"rotate(-35 {} {})\"", end, number(x),
-                                               number(layout_.tick_labels))
-                                 : middle);
-    }
     text(layout_.x_label, (layout_.left + layout_.right) / 2, layout_.x_label_middle, middle);
   }
 
@@ -141,15 +126,11 @@ class Drawing {
     const double x = chart_edge + column_width * static_cast<double>(row / layout_.legend_rows),
                  y = layout_.legend + legend_row * (static_cast<double>(row % layout_.legend_rows) + 0.5);
     text(layout_.names[s], x + legend_sample - 6, y);
-    if (chart_.form == ChartForm::bars && chart_.series[s].origin != Origin::reference)
-      bars(s, x + 9, y);
-    else
-      line_and_points(s, x + 9, y);
+    line_and_points(s, x + 9, y);
   }
 
-  static constexpr double sample_width = 36;
-
   void line_and_points(std::size_t s, double sample_x, double sample_y) {
+    constexpr double sample_width = 36;
     const Series& one = chart_.series[s];
     const bool reference = one.origin == Origin::reference, published = one.origin == Origin::published;
     const std::size_t look = looks_[s];
@@ -164,7 +145,7 @@ class Drawing {
     };
     add_point(sample_x + sample_width / 2, sample_y);
     for (const PlottedPoint& point : values_.series[s]) {
-      const double x = x_of(s, point.x), y = down(point.y);
+      const double x = across(point.x), y = down(point.y);
       line += (point.after_gap || &point == &values_.series[s].front() ? 'M' : 'L') + at(x, y);
       add_point(x, y);
     }
@@ -181,50 +162,12 @@ class Drawing {
     svg_ += "</g>\n";
   }
 
-  /// Left and right end of the bars of a series in a group.
-  Interval bar(std::size_t s, double group) const {
-    const double width = 0.84 / static_cast<double>(chart_.series.size());
-    const double left = group - 0.42 + width * static_cast<double>(s);
-    return {left, left + width * 0.92};
-  }
-
-  double x_of(std::size_t s, double x) const {
-    if (chart_.form != ChartForm::bars) return across(x);
-    const Interval ends = bar(s, x);
-    return across((ends.low + ends.high) / 2);
-  }
-
-  void bars(std::size_t s, double sample_x, double sample_y) {
-    const bool published = chart_.series[s].origin == Origin::published;
-    const std::string colour(series_colours[looks_[s] % series_colours.size()]);
-    const std::string_view lines = bar_patterns[looks_[s] % bar_patterns.size()];
-    const std::string fill = fmt::format("{}-fill-{}", chart_.id, s);
-    svg_ += fmt::format(R"(<pattern id="{}" width="6" height="6" patternUnits="userSpaceOnUse">)", fill);
-    if (!published)
-      svg_ += fmt::format(R"(<rect width="6" height="6" fill="{}"{}/>)", colour,
-                          attribute("fill-opacity", lines.empty() ? "" : "0.3"));
-    svg_ += path(std::string(lines), fmt::format(R"( fill="none" stroke="{}" stroke-width="{}")", colour,
-                                                 published ? "0.8" : "1.5")) +
-            "</pattern>\n";
-    const auto rectangle = [](double left, double right, double top, double bottom) {
-      return 'M' + at(left, top) + 'H' + number(right) + 'V' + number(bottom) + 'H' + number(left) + 'z';
-    };
-    std::string d = rectangle(sample_x, sample_x + sample_width, sample_y - 5, sample_y + 5);
-    for (const PlottedPoint& point : values_.series[s]) {
-      const Interval ends = bar(s, point.x);
-      d += rectangle(across(ends.low), across(ends.high), down(point.y),
-                     down(chart_.y.logarithmic ? layout_.y.low : 0));
-    }
-    svg_ += path(d, fmt::format(R"x( fill="url(#{})" stroke="{}" stroke-width="1.5")x", fill, colour));
-    svg_ += path(intervals(s), R"( fill="none" stroke="currentColor" stroke-width="1.5")");
-  }
-
   std::string intervals(std::size_t s) const {
     constexpr double half_cap = 3.7;
     std::string d;
     for (const PlottedPoint& point : values_.series[s]) {
       if (!point.interval) continue;
-      const double x = x_of(s, point.x), low = down(point.interval->low), high = down(point.interval->high);
+      const double x = across(point.x), low = down(point.interval->low), high = down(point.interval->high);
       d += 'M' + at(x, low) + 'V' + number(high);
       for (const double end : {low, high}) d += 'M' + at(x - half_cap, end) + 'h' + number(2 * half_cap);
     }

@@ -15,11 +15,10 @@ bool can_stand_on(const Axis& axis, double value) {
   return std::abs(value) <= largest_plotted && (!axis.logarithmic || value >= 1 / largest_plotted);
 }
 
-void require_matching_sizes(const Chart& chart, const Series& series) {
+void require_matching_sizes(const Series& series) {
   const std::size_t values = series.y.size();
-  const bool bars = chart.form == ChartForm::bars;
   const bool intervals = !series.low.empty() || !series.high.empty();
-  if ((bars ? chart.groups.size() != values : series.x.size() != values) ||
+  if (series.x.size() != values ||
       (intervals && (series.low.size() != values || series.high.size() != values)))
     throw std::invalid_argument(fmt::format("the series \"{}\" of a chart has not as many values everywhere",
                                             printable(series.name)));
@@ -42,17 +41,120 @@ std::optional<ChartRange> range_of(const PlottedValues& values) {
   return range.x.low <= range.x.high ? std::optional(range) : std::nullopt;
 }
 
+/// Valid UTF-8 without what XML forbids.
+std::string clean(std::string_view text) {
+  std::string result(text);
+  for (const char space : {'\n', '\r', '\t'}) std::ranges::replace(result, space, ' ');
+  result = escaped(result);
+  for (const std::string_view no_character : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
+    for (std::size_t at = 0; (at = result.find(no_character, at)) != std::string::npos;)
+      result.replace(at, no_character.size(), "\uFFFD");
+  return result;
+}
+
+std::string cut(std::string_view text, std::size_t most) {
+  if (width_of(text) <= most) return std::string(text);
+  return std::string(clipped(text, most - 1)) + "…";
+}
+
+constexpr int most_ticks = 6;
+constexpr double room = 0.05;  // beside the values, as a fraction of what they span
+
+/// A digit times a power of ten: as a number where it is `short`, else with an exponent as people write it.
+std::string tick_label(int digit, int exponent, bool is_short) {
+  if (is_short && exponent < 0) return fixed_decimal(digit * std::pow(10, exponent), -exponent);
+  if (is_short) return grouped(static_cast<std::uint64_t>(std::llround(digit * std::pow(10, exponent))));
+  constexpr const char* superscripts[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = digit == 1 ? "10" : fmt::format("{}·10", digit);
+  if (exponent < 0) text += "⁻";
+  for (const char figure : std::to_string(std::abs(exponent))) text += superscripts[figure - '0'];
+  return text;
+}
+
+/// At the given multiples of every `step`-th power of ten.
+std::vector<Tick> decade_ticks(double low, double high, std::initializer_list<int> digits, int step) {
+  const int first = static_cast<int>(std::floor(std::log10(low))),
+            last = static_cast<int>(std::ceil(std::log10(high)));
+  std::vector<Tick> ticks;
+  for (int exponent = first; exponent <= last; ++exponent) {
+    if (exponent % step != 0) continue;
+    for (const int digit : digits)
+      if (const double value = digit * std::pow(10.0, exponent); value >= low && value <= high)
+        ticks.push_back({value, tick_label(digit, exponent, first >= -4 && last <= 6)});
+  }
+  return ticks;
+}
+
+constexpr double plot_height = 260;
+constexpr double letter_width = 8.5;  // on the safe side: the fonts of pages differ
+constexpr double inner_width = chart_width - 2 * chart_edge;
+
+double drawn_width(const std::string& text) { return letter_width * static_cast<double>(width_of(text)); }
+
+double widest(const std::vector<std::string>& texts) {
+  double width = 0;
+  for (const std::string& text : texts) width = std::max(width, drawn_width(text));
+  return width;
+}
+
+std::size_t letters_that_fit(double width) { return static_cast<std::size_t>(width / letter_width); }
+
+AxisScale scale_of(const Axis& axis, Interval range) {
+  return (axis.logarithmic ? logarithmic_scale : linear_scale)(range.low, range.high);
+}
+
+/// Title and label of the y axis, above the plot.
+void lay_out_head(ChartLayout& layout, const Chart& chart) {
+  layout.title = shown_lines(chart.title, letters_that_fit(0.95 * inner_width));  // bold letters are wider
+  layout.y_label = shown_text(chart.y.label, letters_that_fit(inner_width));
+  layout.y_label_middle = chart_edge + line_height * (static_cast<double>(layout.title.size()) + 0.5) + 4;
+  layout.top = layout.y_label_middle + line_height / 2 + 12;
+}
+
+void lay_out_plot(ChartLayout& layout, const Chart& chart, const ChartRange& range) {
+  layout.y = scale_of(chart.y, range.y);
+  layout.x = scale_of(chart.x, range.x);
+  std::vector<std::string> labels;
+  for (const Tick& tick : layout.y.ticks) labels.push_back(tick.label);
+  layout.left = chart_edge + widest(labels) + 12;
+  // The last label of the x axis may stand half beside it.
+  const double beside = layout.x.ticks.empty() ? 0 : drawn_width(layout.x.ticks.back().label) / 2;
+  layout.right = chart_width - chart_edge - beside;
+  layout.bottom = layout.top + plot_height;
+}
+
+/// What stands below the x axis: ticks and its label.
+void lay_out_foot(ChartLayout& layout, const Chart& chart) {
+  layout.tick_labels = layout.bottom + line_height / 2 + 5;
+  const double below = 10 + line_height;
+  layout.x_label = shown_text(chart.x.label, letters_that_fit(inner_width));
+  layout.x_label_middle = layout.bottom + below + line_height / 2;
+}
+
+void lay_out_legend(ChartLayout& layout, const Chart& chart, const PlottedValues& values) {
+  std::vector<std::string> in_legend;
+  for (std::size_t s = 0; s < chart.series.size(); ++s) {
+    layout.names.push_back(shown_text(chart.series[s].name, letters_that_fit(inner_width - legend_sample)));
+    if (!values.series[s].empty()) in_legend.push_back(layout.names.back());
+  }
+  layout.legend = layout.x_label_middle + line_height;
+  layout.legend_columns =
+      in_legend.size() > 2 && 2 * (widest(in_legend) + legend_sample) < inner_width ? 2 : 1;
+  layout.legend_rows = (in_legend.size() + layout.legend_columns - 1) / layout.legend_columns;
+  layout.height = layout.legend + legend_row * static_cast<double>(layout.legend_rows) + chart_edge;
+}
+
 }  // namespace
 
 PlottedValues plotted_values(const Chart& chart) {
   PlottedValues values;
   for (const Series& series : chart.series) {
-    require_matching_sizes(chart, series);
+    require_matching_sizes(series);
     std::vector<PlottedPoint>& points = values.series.emplace_back();
     std::size_t intervals_left_out = 0;
     bool gap = false;
     for (std::size_t i = 0; i < series.y.size(); ++i) {
-      const double x = chart.form == ChartForm::bars ? static_cast<double>(i) : series.x[i];
+      const double x = series.x[i];
       if (!can_stand_on(chart.x, x) || !can_stand_on(chart.y, series.y[i])) {
         gap = !points.empty();
         continue;
@@ -104,26 +206,6 @@ std::vector<std::size_t> looks_of(std::span<const Series> series, std::span<cons
   return looks;
 }
 
-namespace {
-
-/// Valid UTF-8 without what XML forbids.
-std::string clean(std::string_view text) {
-  std::string result(text);
-  for (const char space : {'\n', '\r', '\t'}) std::ranges::replace(result, space, ' ');
-  result = escaped(result);
-  for (const std::string_view no_character : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
-    for (std::size_t at = 0; (at = result.find(no_character, at)) != std::string::npos;)
-      result.replace(at, no_character.size(), "\uFFFD");
-  return result;
-}
-
-std::string cut(std::string_view text, std::size_t most) {
-  if (width_of(text) <= most) return std::string(text);
-  return std::string(clipped(text, most - 1)) + "…";
-}
-
-}  // namespace
-
 std::string shown_text(std::string_view text, std::size_t most) { return cut(clean(text), most); }
 
 std::vector<std::string> shown_lines(std::string_view text, std::size_t most) {
@@ -145,40 +227,6 @@ std::vector<std::string> shown_lines(std::string_view text, std::size_t most) {
   return lines;
 }
 
-namespace {
-
-constexpr int most_ticks = 6;
-constexpr double room = 0.05;  // beside the values, as a fraction of what they span
-
-AxisScale with_ticks(double low, double high) { return {low, high, ticks_between(low, high, most_ticks)}; }
-
-/// A digit times a power of ten: as a number where it is `short`, else with an exponent as people write it.
-std::string tick_label(int digit, int exponent, bool is_short) {
-  if (is_short && exponent < 0) return fixed_decimal(digit * std::pow(10, exponent), -exponent);
-  if (is_short) return grouped(static_cast<std::uint64_t>(std::llround(digit * std::pow(10, exponent))));
-  constexpr const char* superscripts[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = digit == 1 ? "10" : fmt::format("{}·10", digit);
-  if (exponent < 0) text += "⁻";
-  for (const char figure : std::to_string(std::abs(exponent))) text += superscripts[figure - '0'];
-  return text;
-}
-
-/// At the given multiples of every `step`-th power of ten.
-std::vector<Tick> decade_ticks(double low, double high, std::initializer_list<int> digits, int step) {
-  const int first = static_cast<int>(std::floor(std::log10(low))),
-            last = static_cast<int>(std::ceil(std::log10(high)));
-  std::vector<Tick> ticks;
-  for (int exponent = first; exponent <= last; ++exponent) {
-    if (exponent % step != 0) continue;
-    for (const int digit : digits)
-      if (const double value = digit * std::pow(10.0, exponent); value >= low && value <= high)
-        ticks.push_back({value, tick_label(digit, exponent, first >= -4 && last <= 6)});
-  }
-  return ticks;
-}
-
-}  // namespace
-
 double AxisScale::fraction(double value) const {
   return logarithmic ? (std::log10(value) - std::log10(low)) / (std::log10(high) - std::log10(low))
                      : (value - low) / (high - low);
@@ -190,15 +238,8 @@ AxisScale linear_scale(double low, double high) {
   double beside = room * (high - low);
   // Of one value, the axis shows what is around it.
   if (!(beside > 1e-8 * std::max(std::abs(low), std::abs(high)))) beside = low == 0 ? 1 : std::abs(low) / 2;
-  return with_ticks(low == 0 ? 0 : low - beside, high == 0 && low < 0 ? 0 : high + beside);
-}
-
-AxisScale scale_from_zero(double low, double high) {
-  low = std::min(low, 0.0);
-  high = std::max(high, 0.0);
-  if (low == high) high = 1;
-  const double beside = room * (high - low);
-  return with_ticks(low == 0 ? 0 : low - beside, high == 0 ? 0 : high + beside);
+  const double from = low == 0 ? 0 : low - beside, to = high == 0 && low < 0 ? 0 : high + beside;
+  return {from, to, ticks_between(from, to, most_ticks)};
 }
 
 AxisScale logarithmic_scale(double low, double high) {
@@ -213,76 +254,6 @@ AxisScale logarithmic_scale(double low, double high) {
   if (ticks.size() < 2) ticks = ticks_between(low, high, most_ticks);
   return {low, high, std::move(ticks), true};
 }
-
-namespace {
-
-constexpr double plot_height = 260;
-constexpr double letter_width = 8.5;  // on the safe side: the fonts of pages differ
-constexpr double inner_width = chart_width - 2 * chart_edge;
-
-double drawn_width(const std::string& text) { return letter_width * static_cast<double>(width_of(text)); }
-
-double widest(const std::vector<std::string>& texts) {
-  double width = 0;
-  for (const std::string& text : texts) width = std::max(width, drawn_width(text));
-  return width;
-}
-
-std::size_t letters_that_fit(double width) { return static_cast<std::size_t>(width / letter_width); }
-
-AxisScale scale_of(const Axis& axis, Interval range, bool from_zero) {
-  if (axis.logarithmic) return logarithmic_scale(range.low, range.high);
-  return (from_zero ? scale_from_zero : linear_scale)(range.low, range.high);
-}
-
-/// Title and label of the y axis, above the plot.
-void lay_out_head(ChartLayout& layout, const Chart& chart) {
-  layout.title = shown_lines(chart.title, letters_that_fit(0.95 * inner_width));  // bold letters are wider
-  layout.y_label = shown_text(chart.y.label, letters_that_fit(inner_width));
-  layout.y_label_middle = chart_edge + line_height * (static_cast<double>(layout.title.size()) + 0.5) + 4;
-  layout.top = layout.y_label_middle + line_height / 2 + 12;
-}
-
-void lay_out_plot(ChartLayout& layout, const Chart& chart, const ChartRange& range) {
-  const bool bars = chart.form == ChartForm::bars;
-  layout.y = scale_of(chart.y, range.y, bars);
-  layout.x = bars ? AxisScale{-0.5, static_cast<double>(chart.groups.size()) - 0.5, {}}
-                  : scale_of(chart.x, range.x, false);
-  std::vector<std::string> labels;
-  for (const Tick& tick : layout.y.ticks) labels.push_back(tick.label);
-  layout.left = chart_edge + widest(labels) + 12;
-  // The last label of the x axis may stand half beside it.
-  const double beside = layout.x.ticks.empty() ? 0 : drawn_width(layout.x.ticks.back().label) / 2;
-  layout.right = chart_width - chart_edge - beside;
-  layout.bottom = layout.top + plot_height;
-}
-
-/// What stands below the x axis: ticks or groups, and its label.
-void lay_out_foot(ChartLayout& layout, const Chart& chart) {
-  constexpr std::size_t longest_group = 16;
-  for (const std::string& group : chart.groups) layout.groups.push_back(shown_text(group, longest_group));
-  const double width = widest(layout.groups);
-  layout.groups_tilted = width * static_cast<double>(chart.groups.size()) > layout.right - layout.left;
-  layout.tick_labels = layout.bottom + line_height / 2 + 5;
-  const double below = layout.groups_tilted ? 18 + 0.6 * width : 10 + line_height;  // the sine of their angle
-  layout.x_label = shown_text(chart.x.label, letters_that_fit(inner_width));
-  layout.x_label_middle = layout.bottom + below + line_height / 2;
-}
-
-void lay_out_legend(ChartLayout& layout, const Chart& chart, const PlottedValues& values) {
-  std::vector<std::string> in_legend;
-  for (std::size_t s = 0; s < chart.series.size(); ++s) {
-    layout.names.push_back(shown_text(chart.series[s].name, letters_that_fit(inner_width - legend_sample)));
-    if (!values.series[s].empty()) in_legend.push_back(layout.names.back());
-  }
-  layout.legend = layout.x_label_middle + line_height;
-  layout.legend_columns =
-      in_legend.size() > 2 && 2 * (widest(in_legend) + legend_sample) < inner_width ? 2 : 1;
-  layout.legend_rows = (in_legend.size() + layout.legend_columns - 1) / layout.legend_columns;
-  layout.height = layout.legend + legend_row * static_cast<double>(layout.legend_rows) + chart_edge;
-}
-
-}  // namespace
 
 std::optional<ChartLayout> chart_layout(const Chart& chart, const PlottedValues& values) {
   const auto range = range_of(values);

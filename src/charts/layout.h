@@ -20,7 +20,7 @@ inline constexpr double largest_plotted = 1e300;
 
 /// A value that can be drawn.
 struct PlottedPoint {
-  double x, y;  ///< of bars, x is the number of the group, from 0
+  double x, y;
   std::optional<Interval> interval;
   bool after_gap = false;  ///< values between the point before and this one were left out
 };
@@ -64,9 +64,6 @@ struct AxisScale {
 /// begin near it.
 AxisScale linear_scale(double low, double high);
 
-/// A scale from 0 on, or to 0: bars compare by their lengths.
-AxisScale scale_from_zero(double low, double high);
-
 /// A logarithmic one of positive values: ticks at powers of ten, in between too where there are few.
 AxisScale logarithmic_scale(double low, double high);
 
@@ -84,14 +81,12 @@ struct ChartLayout {
   AxisScale x, y;
   std::vector<std::string> title;  ///< lines
   std::string x_label, y_label;
-  std::vector<std::string> groups;  ///< of bars: labels of x
-  bool groups_tilted = false;       ///< they are too wide to stand side by side
-  std::vector<std::string> names;   ///< of the series in the legend
+  std::vector<std::string> names;  ///< of the series in the legend
   std::size_t legend_columns = 1, legend_rows = 1;
   double left = 0, right = 0, top = 0, bottom = 0;  ///< of the plot
   double y_label_middle = 0, x_label_middle = 0;    ///< from above
-  double tick_labels = 0;         ///< along x: the middle, or where tilted the end, of their labels
-  double legend = 0, height = 0;  ///< top of the legend; the whole
+  double tick_labels = 0;                           ///< along x: the middle of their labels
+  double legend = 0, height = 0;                    ///< top of the legend; the whole
 };
 
 /// None where there is no value.

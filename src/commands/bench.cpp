@@ -272,47 +272,35 @@ std::function<int()> declare_bench(Arguments& arguments) {
   const std::vector<std::string_view> suites(names.begin(), names.end());
   add_scenes(arguments, "--scene", options->scenes,
              "Scenes to measure: names (see mssim list scenes) or files");
-  arguments
-      .add("--suite", options->suite,
-           "Scenes and what is compared on them: " + listed(suites, "or") +
-               " (see mssim list suites); tables stands for table1, table2 and table3",
-           one_of("suite", names, {{"all", "tables"}}))
-      .value_name("NAME");
-  arguments
-      .add_list(
-          "--backend", options->backends,
-          "Backends, or methods with --suite races (default: all of mssim's); a path with a slash, or a "
-          "described name, is a program of your own",
-          names_and_files_in)
-      .value_name("NAME|FILE,...");
+  arguments.add("--suite NAME", options->suite,
+                "Scenes and what is compared on them: " + listed(suites, "or") +
+                    " (see mssim list suites); tables stands for table1, table2 and table3",
+                one_of("suite", names, {{"all", "tables"}}));
+  arguments.add_list(
+      "--backend NAME|FILE,...", options->backends,
+      "Backends, or methods with --suite races (default: all of mssim's); a path with a slash, or a "
+      "described name, is a program of your own",
+      names_and_files_in);
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);
-  arguments
-      .add_list("--integrator", options->integrators,
-                fmt::format("Integrators, or all (default: {})", default_integrators()))
-      .value_name("NAME,...");
+  arguments.add_list("--integrator NAME,...", options->integrators,
+                     fmt::format("Integrators, or all (default: {})", default_integrators()));
   declare_execution(arguments, options->execution);
-  arguments
-      .add_number("--rounds", options->rounds,
-                  "Samples of each combination (default: 15); with --time-budget the largest number",
-                  whole_number(1, most_rounds))
-      .value_name("N");
-  arguments
-      .add_number("--time-budget", options->time_budget_s,
-                  "Time for the measurement, in as many rounds as fit; traces take extra time",
-                  positive_number())
-      .value_name("SECONDS");
-  arguments
-      .add_number(
-          "--windows", options->windows,
-          "Verify cloths in N windows, without building the whole (default: only where the whole does "
-          "not fit into the memory, in --ranks + 8); with backends in ranks alone",
-          whole_number(2, 100'000))
-      .value_name("N");
+  arguments.add_number("--rounds N", options->rounds,
+                       "Samples of each combination (default: 15); with --time-budget the largest number",
+                       whole_number(1, most_rounds));
+  arguments.add_number("--time-budget SECONDS", options->time_budget_s,
+                       "Time for the measurement, in as many rounds as fit; traces take extra time",
+                       positive_number());
+  arguments.add_number(
+      "--windows N", options->windows,
+      "Verify cloths in N windows, without building the whole (default: only where the whole does "
+      "not fit into the memory, in --ranks + 8); with backends in ranks alone",
+      whole_number(2, 100'000));
   arguments.add_flag("--dry-run", options->dry_run,
                      "Print what would be measured and about how long it would take, then exit");
-  arguments.add("--out", options->output.folder, "Folder for the results: tables, samples, provenance")
-      .value_name("FOLDER");
+  arguments.add("--out FOLDER", options->output.folder,
+                "Folder for the results: tables, samples, provenance");
   const Argument resume = arguments.add_flag(
       "--resume", options->output.resume,
       "Continue an interrupted run of the same command: keep the finished rounds of the folder");
@@ -328,11 +316,9 @@ std::function<int()> declare_bench(Arguments& arguments) {
        {"github", SummaryFormat::github}},
       "What to print: table, csv, json, or github (the input of github-action-benchmark, "
       "also written into FOLDER) (default: table)");
-  arguments
-      .add("--verified", options->verified,
-           "Result folder in which this program has already verified these combinations: rely on it, "
-           "and only take samples")
-      .value_name("FOLDER");
+  arguments.add("--verified FOLDER", options->verified,
+                "Result folder in which this program has already verified these combinations: rely on it, "
+                "and only take samples");
   return [options] { return run(*options); };
 }
 

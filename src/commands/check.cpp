@@ -3,8 +3,6 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <optional>
-#include <sstream>
 #include <variant>
 #include <vector>
 
@@ -31,15 +29,6 @@
 namespace mssim {
 namespace {
 
-/// What a scene would be, told without a step of it.
-struct SceneReport {
-  Table scene;  ///< one row: what it is
-  /// A row for each integrator and backend that can step it: the largest stable dt, the memory that a bench
-  /// of this combination takes, and how long a bench and a run of it take, about.
-  Table combinations;
-  std::vector<std::string> warnings;  ///< sentences about what is allowed and seldom meant
-};
-
 /// A bench of these backends and integrators, as it is where nothing else is asked for.
 BenchSettings usual_settings(std::vector<const BackendInfo*> backends,
                              std::vector<const Integrator*> integrators) {
@@ -49,10 +38,6 @@ BenchSettings usual_settings(std::vector<const BackendInfo*> backends,
   settings.execution = complete({});
   settings.rounds = usual_rounds;
   return settings;
-}
-
-double seconds_of(const BenchSettings& settings, const SceneSize& size) {
-  return expected_time(settings, size).with(settings.rounds);
 }
 
 Table scene_table(const PreparedScene& scene) {
@@ -72,17 +57,27 @@ bool can_step(const SceneSize& size, const Integrator& integrator, const Backend
   return !is_implicit(integrator) || backend.make_implicit != nullptr;
 }
 
-void add_combination(Table& table, const PreparedScene& scene, const SceneSize& size,
-                     const Integrator& integrator, const BackendInfo& backend, double largest_dt_s) {
-  const BenchSettings settings = usual_settings({&backend}, {&integrator});
+/// A row for each integrator and backend that can step the scene: the largest stable dt, the memory that a
+/// bench of this combination takes for as many threads as there are processors, and how long a bench of the
+/// usual rounds and a run of the usual duration take, about.
+Table combination_table(const PreparedScene& scene, const SceneSize& size, const ModeBound& modes) {
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
-  table.add({{"integrator", integrator.name},
-             {"largest_stable_dt_s", std::isinf(largest_dt_s) ? Cell() : Cell(largest_dt_s)},
-             {"stable", scene.dt_s <= largest_dt_s},
-             {"backend", backend.name},
-             {"memory_bytes", bench_memory_needed(settings, size)},
-             {"bench_s", seconds_of(settings, size)},
-             {"run_s", expected_run_time(backend, integrator, size, steps)}});
+  Table table;
+  for (const Integrator* integrator : all_integrators) {
+    const double largest_dt_s = largest_stable_dt(*integrator, modes);
+    for (const BackendInfo& backend : backends()) {
+      if (!can_step(size, *integrator, backend)) continue;
+      const BenchSettings settings = usual_settings({&backend}, {integrator});
+      table.add({{"integrator", integrator->name},
+                 {"largest_stable_dt_s", std::isinf(largest_dt_s) ? Cell() : Cell(largest_dt_s)},
+                 {"stable", scene.dt_s <= largest_dt_s},
+                 {"backend", backend.name},
+                 {"memory_bytes", bench_memory_needed(settings, size)},
+                 {"bench_s", expected_time(settings, size).with(settings.rounds)},
+                 {"run_s", expected_run_time(backend, *integrator, size, steps)}});
+    }
+  }
+  return table;
 }
 
 /// The integrators that a bench takes unasked.
@@ -94,8 +89,8 @@ std::vector<const Integrator*> usual_integrators() {
 }
 
 /// Names the integrators, of those that a bench takes unasked, with which the scene may blow up: the limit is
-/// on the safe side.
-std::optional<std::string> warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
+/// on the safe side. Empty where there is none.
+std::string warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
   std::vector<std::string_view> unstable;
   double smallest = scene.dt_s;
   for (const Integrator* integrator : usual_integrators()) {
@@ -105,39 +100,20 @@ std::optional<std::string> warning_of_dt(const PreparedScene& scene, const ModeB
     unstable.push_back(integrator->name);
     smallest = std::min(smallest, limit);
   }
-  if (unstable.empty()) return std::nullopt;
-  std::ostringstream text;
-  text.precision(3);
-  text << "dt_s " << scene.dt_s << " is above the stability limit of " << listed(unstable)
-       << ", with which the scene may blow up: give at most " << smallest << ", or \"auto\"";
-  return text.str();
+  if (unstable.empty()) return "";
+  return fmt::format(
+      "dt_s {:.3g} is above the stability limit of {}, with which the scene may blow up: give at most "
+      "{:.3g}, "
+      "or \"auto\"",
+      scene.dt_s, listed(unstable), smallest);
 }
 
 /// A bench that says nothing of backends and integrators takes them all at once.
-std::optional<std::string> warning_of_memory(const SceneSize& size) {
+std::string warning_of_memory(const SceneSize& size) {
   const BenchSettings settings = usual_settings(comparison_of_suite("").backends(), usual_integrators());
   const auto shortage = memory_shortage(bench_memory_needed(settings, size));
-  if (!shortage) return std::nullopt;
+  if (!shortage) return "";
   return fmt::format("a bench of all backends {}: name fewer with --backend or --integrator", *shortage);
-}
-
-/// Looks at a scene that has been built. The memory is for as many threads as there are processors, the time
-/// of a bench for its usual rounds, that of a run for its usual duration.
-SceneReport report_on(const PreparedScene& scene) {
-  const SceneSize size = size_of(scene.spec, scene.counts);
-  const ModeBound modes = mode_bound(scene.system);
-  SceneReport report;
-  report.scene = scene_table(scene);
-  for (const Integrator* integrator : all_integrators) {
-    const double largest_dt_s = largest_stable_dt(*integrator, modes);
-    for (const BackendInfo& backend : backends())
-      if (can_step(size, *integrator, backend))
-        add_combination(report.combinations, scene, size, *integrator, backend, largest_dt_s);
-  }
-  if (!scene.note.empty()) report.warnings.push_back(scene.note);
-  for (auto&& warning : {warning_of_dt(scene, modes), warning_of_memory(size)})
-    if (warning) report.warnings.push_back(*warning);
-  return report;
 }
 
 struct CheckOptions {
@@ -145,29 +121,21 @@ struct CheckOptions {
   ListingFormat format = ListingFormat::table;
 };
 
-/// For a reader: what the scene is in a line of its own.
-std::string as_tables(const SceneReport& report) {
-  return to_text(report.scene) + '\n' + to_text(report.combinations);
-}
-
-/// Adds each combination with what its scene is.
-void add_rows(Table& rows, const SceneReport& report) {
-  rows.columns = report.scene.columns;
-  std::ranges::copy(report.combinations.columns, std::back_inserter(rows.columns));
-  for (const std::vector<Cell>& combination : report.combinations.rows)
-    std::ranges::copy(combination, std::back_inserter(rows.rows.emplace_back(report.scene.rows.front())));
-}
-
 int run(const CheckOptions& options) {
-  Table rows;
-  std::string tables;
+  Table rows;          // each combination with what its scene is
+  std::string tables;  // for a reader: what the scene is in a line of its own
   for (const std::string& name : options.scenes) {
     const PreparedScene scene = prepare_scene(find_scene(name));
-    const SceneReport report = report_on(scene);
-    for (const std::string& warning : report.warnings)
-      std::cerr << "mssim: " << scene.spec.name << ": " << warning << '\n';
-    tables += (tables.empty() ? "" : "\n") + as_tables(report);
-    add_rows(rows, report);
+    const SceneSize size = size_of(scene.spec, scene.counts);
+    const ModeBound modes = mode_bound(scene.system);
+    const Table what = scene_table(scene), combinations = combination_table(scene, size, modes);
+    for (const std::string& warning : {scene.note, warning_of_dt(scene, modes), warning_of_memory(size)})
+      if (!warning.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << warning << '\n';
+    tables += (tables.empty() ? "" : "\n") + to_text(what) + '\n' + to_text(combinations);
+    rows.columns = what.columns;
+    std::ranges::copy(combinations.columns, std::back_inserter(rows.columns));
+    for (const std::vector<Cell>& combination : combinations.rows)
+      std::ranges::copy(combination, std::back_inserter(rows.rows.emplace_back(what.rows.front())));
   }
   std::cout << (options.format == ListingFormat::table ? tables : to_text(rows, options.format));
   return exit_ok;

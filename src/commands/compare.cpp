@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <sstream>
 #include <vector>
 
 #include "application/bench/ab_comparison.h"
@@ -52,17 +51,12 @@ void tell(const std::string& what, const std::vector<std::string>& combinations)
 std::vector<std::string> regressions(const RunComparison& comparison) {
   std::vector<std::string> sentences;
   for (const ComparedRow& row : comparison.rows) {
-    std::ostringstream text;
-    text.precision(3);
-    text << combination_name(row) << ": " << name_of(row.verdict);
+    const std::string subject = fmt::format("{}: {}", combination_name(row), name_of(row.verdict));
     if (row.verdict == Verdict::slower)
-      text << ", " << row.ratio->ratio << " times the time (" << row.ratio->low << " to " << row.ratio->high
-           << ")";
+      sentences.push_back(fmt::format("{}, {:.3g} times the time ({:.3g} to {:.3g})", subject,
+                                      row.ratio->ratio, row.ratio->low, row.ratio->high));
     else if (row.verdict == Verdict::lost)
-      text << ", " << row.reason;
-    else
-      continue;
-    sentences.push_back(text.str());
+      sentences.push_back(subject + ", " + row.reason);
   }
   return sentences;
 }
@@ -109,10 +103,8 @@ std::function<int()> declare_compare(Arguments& arguments) {
       .required();
   arguments.add("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
       .required();
-  arguments
-      .add_number("--threshold", options->threshold_percent,
-                  "Smallest change that counts, in percent (default: 5)", positive_number())
-      .value_name("PERCENT");
+  arguments.add_number("--threshold PERCENT", options->threshold_percent,
+                       "Smallest change that counts, in percent (default: 5)", positive_number());
   arguments.add_choice<ComparisonFormat>("--format", options->format,
                                          {{"table", ComparisonFormat::table},
                                           {"markdown", ComparisonFormat::markdown},
@@ -127,26 +119,24 @@ std::function<int()> declare_compare(Arguments& arguments) {
       .excludes(ab);
   add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
   arguments
-      .add_list("--backend", options->ab.backends,
+      .add_list("--backend NAME|FILE,...", options->ab.backends,
                 "With --ab: backends, which may be programs of your own (default: openmp)",
                 names_and_files_in)
-      .needs(ab)
-      .value_name("NAME|FILE,...");
+      .needs(ab);
   declare_backend_folders(arguments, options->ab.own_backends).needs(ab);
   declare_backend_limit(arguments, options->ab.own_backends).needs(ab);
-  arguments.add_list("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
-      .needs(ab)
-      .value_name("NAME,...");
   arguments
-      .add_number("--threads", options->ab.threads, "With --ab: threads (default: all processors)",
+      .add_list("--integrator NAME,...", options->ab.integrators,
+                "With --ab: integrators (default: semi-euler)")
+      .needs(ab);
+  arguments
+      .add_number("--threads N", options->ab.threads, "With --ab: threads (default: all processors)",
                   whole_number(1, most_threads))
-      .needs(ab)
-      .value_name("N");
+      .needs(ab);
   arguments
-      .add_number("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)",
-                  number_between(1, 86400))
-      .needs(ab)
-      .value_name("SECONDS");
+      .add_number("--time-budget SECONDS", options->ab.time_budget_s,
+                  "With --ab: seconds it may take (default: 300)", number_between(1, 86400))
+      .needs(ab);
   return [options] { return run(*options); };
 }
 

@@ -111,11 +111,10 @@ std::function<int()> declare_export(Arguments& arguments) {
                   "What to write: obj or ply, triangles, a file a frame; vtkhdf, all frames in one file, "
                   "bodies as tetrahedra")
       .required();
-  arguments
-      .add("--out", options->out,
-           "File to write (default: the trace's name, and .obj, .ply or .vtkhdf); several have their frame's "
-           "number behind the name")
-      .value_name("FILE");
+  arguments.add(
+      "--out FILE", options->out,
+      "File to write (default: the trace's name, and .obj, .ply or .vtkhdf); several have their frame's "
+      "number behind the name");
   declare_frames(arguments, options->frames);
   return [options] { return run(*options); };
 }

@@ -11,42 +11,32 @@ std::function<int()> declare_guide(Arguments& arguments) {
   add_scenes(arguments, "--scene", options->scenes,
              "Scenes to measure: names (see mssim list scenes) or files")
       .required();
-  arguments
-      .add_number("--fps", options->wish.frames_per_second,
-                  "Frames a second that the simulation shall keep up with (default: 60)",
-                  number_between(1, 10'000))
-      .value_name("N");
-  arguments
-      .add_number("--error", options->wish.error,
-                  "Largest distance of a node from where it should be, in mean rest lengths (default: 1e-3)",
-                  positive_number())
-      .value_name("E");
-  arguments
-      .add_number("--horizon", options->horizon_s,
-                  "Simulated time after which errors are measured, at most (default: 0.1)",
-                  number_between(1e-6, 10))
-      .value_name("SECONDS");
-  arguments
-      .add_list("--backend", options->backends,
-                "Backends, which may be programs of your own (default: serial, openmp and opencl; see mssim "
-                "list backends)",
-                names_and_files_in)
-      .value_name("NAME|FILE,...");
+  arguments.add_number("--fps N", options->wish.frames_per_second,
+                       "Frames a second that the simulation shall keep up with (default: 60)",
+                       number_between(1, 10'000));
+  arguments.add_number(
+      "--error E", options->wish.error,
+      "Largest distance of a node from where it should be, in mean rest lengths (default: 1e-3)",
+      positive_number());
+  arguments.add_number("--horizon SECONDS", options->horizon_s,
+                       "Simulated time after which errors are measured, at most (default: 0.1)",
+                       number_between(1e-6, 10));
+  arguments.add_list(
+      "--backend NAME|FILE,...", options->backends,
+      "Backends, which may be programs of your own (default: serial, openmp and opencl; see mssim "
+      "list backends)",
+      names_and_files_in);
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);
-  arguments
-      .add_list("--integrator", options->integrators,
-                "Integrators (default: all; see mssim list integrators)")
-      .value_name("NAME,...");
+  arguments.add_list("--integrator NAME,...", options->integrators,
+                     "Integrators (default: all; see mssim list integrators)");
   declare_execution(arguments, options->execution);
-  arguments
-      .add_number(
-          "--time-budget", options->time_budget_s,
-          "Time for all scenes, about; what it does not suffice for is left out (default: 90 for each)",
-          positive_number())
-      .value_name("SECONDS");
-  arguments.add("--out", options->folder, "Folder for the results: guide.md, tables as CSV, provenance")
-      .value_name("FOLDER");
+  arguments.add_number(
+      "--time-budget SECONDS", options->time_budget_s,
+      "Time for all scenes, about; what it does not suffice for is left out (default: 90 for each)",
+      positive_number());
+  arguments.add("--out FOLDER", options->folder,
+                "Folder for the results: guide.md, tables as CSV, provenance");
   arguments.add_flag("--overwrite", options->overwrite, "Replace the results that the folder has");
   return [options] { return run_guide(*options); };
 }

@@ -32,43 +32,25 @@ struct ListOptions {
   OwnBackendOptions own_backends;
 };
 
-/// Counts what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why:
-/// once, since one cause (TetGen is missing) is behind all of them.
-class SceneCounter {
- public:
-  std::optional<SceneCounts> count(const SceneSpec& spec) {
-    try {
-      return counts_of(spec);
-    } catch (const MissingProgram& reason) {
-      note(spec.name, reason.what());
-    } catch (const SceneError& reason) {
-      note(spec.name, reason.what());
-    }
-    return std::nullopt;
-  }
-
-  void report() const {
-    if (uncounted_.empty()) return;
-    const std::vector<std::string_view> names(uncounted_.begin(), uncounted_.end());
-    std::cerr << "mssim: nodes and springs of " << listed(names) << " are left out: " << first_reason_
-              << '\n';
-  }
-
- private:
-  void note(std::string_view scene, std::string_view reason) {
-    if (uncounted_.empty()) first_reason_ = reason;
-    uncounted_.emplace_back(scene);
-  }
-
-  std::vector<std::string> uncounted_;
-  std::string first_reason_;
-};
-
+/// With what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why: once,
+/// since one cause (TetGen is missing) is behind all of them.
 Table list_scenes(const ListOptions& /*options*/) {
   Table table;
-  SceneCounter counter;
+  std::vector<std::string> uncounted;
+  std::string first_reason;
   for (const SceneSpec& spec : shipped_scenes()) {
-    const std::optional<SceneCounts> counts = counter.count(spec);
+    std::optional<SceneCounts> counts;
+    const auto leave_out = [&](const Error& reason) {
+      if (uncounted.empty()) first_reason = reason.what();
+      uncounted.push_back(spec.name);
+    };
+    try {
+      counts = counts_of(spec);
+    } catch (const MissingProgram& reason) {
+      leave_out(reason);
+    } catch (const SceneError& reason) {
+      leave_out(reason);
+    }
     table.add({{"scene", spec.name},
                {"kind", kind_of(spec).name},
                {"nodes", counts ? Cell(counts->nodes) : Cell()},
@@ -77,7 +59,9 @@ Table list_scenes(const ListOptions& /*options*/) {
                {"dt_s", spec.dt_s ? Cell(*spec.dt_s) : Cell("auto")},
                {"description", spec.description}});
   }
-  counter.report();
+  if (!uncounted.empty())
+    std::cerr << "mssim: nodes and springs of " << listed(uncounted) << " are left out: " << first_reason
+              << '\n';
   return table;
 }
 
@@ -184,10 +168,8 @@ std::function<int()> declare_list(Arguments& arguments) {
            one_of("word", {known.begin(), known.end()}))
       .required();
   declare_listing_format(arguments, options->format);
-  arguments
-      .add("--device", options->execution.device,
-           "OpenCL device that backends are checked with: its number or a part of its name or platform")
-      .value_name("N|NAME");
+  arguments.add("--device N|NAME", options->execution.device,
+                "OpenCL device that backends are checked with: its number or a part of its name or platform");
   declare_backend_folders(arguments, options->own_backends);
   return [options] { return run_list(*options); };
 }

@@ -28,29 +28,13 @@
 namespace mssim {
 namespace {
 
-/// What `mssim measure` has found of a body: rows of measure, value, unit and note.
-class BodyListing {
- public:
-  /// `how` it is known, the same for all three.
-  void add_stance(const BodyStance& stance, const std::string& how);
-  /// `what` has been done about them.
-  void add_openings(std::span<const Opening> openings, const std::string& what);
-  void add_measures(const BodyProfile& profile, const BodyLandmarks& landmarks);
+namespace fs = std::filesystem;
 
-  const Table& rows() const { return rows_; }
-
- private:
-  void add(const std::string& measure, Cell value, const std::string& unit, const std::string& note = {});
-  void add_landmark(const std::string& name, const Landmark& landmark);
-
-  Table rows_;
-};
-
-/// What jeans for a body from a file are made of.
-struct MeasuredJeans {
-  BodyFile body;  ///< its file as the scene is to name it
-  JeansMeasures measures;
-  double hip_girth = 0;  ///< m, of the body
+/// A body from a file that has been measured: what its scene file says of it, and what it is.
+struct MeasuredFile {
+  BodyFile body;
+  BodyProfile profile;
+  BodyLandmarks landmarks;
 };
 
 /// A length for reading, m: to a tenth of a millimetre.
@@ -66,47 +50,58 @@ std::string name_of_unit(double metres) {
   return unit == units.end() ? "" : std::string(unit->name);
 }
 
-void BodyListing::add(const std::string& measure, Cell value, const std::string& unit,
-                      const std::string& note) {
-  const auto text = [](const std::string& words) { return words.empty() ? Cell() : Cell(words); };
-  rows_.add({{"measure", measure}, {"value", std::move(value)}, {"unit", text(unit)}, {"note", text(note)}});
-}
+/// What `mssim measure` has found of a body: rows of measure, value, unit and note.
+class BodyListing {
+ public:
+  /// `how` it is known, the same for all three.
+  void add_stance(const BodyStance& stance, const std::string& how) {
+    const std::string name = name_of_unit(stance.unit_m);
+    add("unit", stance.unit_m, "m", name.empty() ? how : name + ", " + how);
+    add("up", up_axis_names.at(static_cast<std::size_t>(stance.up)), "", how);
+    add("facing", facing_names.at(static_cast<std::size_t>(stance.facing)), "", how);
+    if (stance.turn_deg != 0)
+      add("turn", stance.turn_deg, "degrees", "about the upright axis, towards its left");
+    if (!(stance.move == Vec3d{}))
+      add("move", place(stance.move), "m",
+          "to its left, up, ahead: legs on either side of x = 0, feet on the floor");
+  }
 
-void BodyListing::add_stance(const BodyStance& stance, const std::string& how) {
-  const std::string name = name_of_unit(stance.unit_m);
-  add("unit", stance.unit_m, "m", name.empty() ? how : name + ", " + how);
-  add("up", up_axis_names.at(static_cast<std::size_t>(stance.up)), "", how);
-  add("facing", facing_names.at(static_cast<std::size_t>(stance.facing)), "", how);
-  if (stance.turn_deg != 0)
-    add("turn", stance.turn_deg, "degrees", "about the upright axis, towards its left");
-  if (!(stance.move == Vec3d{}))
-    add("move", place(stance.move), "m",
-        "to its left, up, ahead: legs on either side of x = 0, feet on the floor");
-}
+  /// `what` has been done about them.
+  void add_openings(std::span<const Opening> openings, const std::string& what) {
+    for (std::size_t i = 0; i < openings.size(); ++i)
+      add(fmt::format("opening_{}", i + 1), to_tenths(openings[i].size), "m",
+          fmt::format("{} edges around {}, {}", openings[i].edges(), place(to_tenths(openings[i].centre)),
+                      what));
+  }
 
-void BodyListing::add_openings(std::span<const Opening> openings, const std::string& what) {
-  for (std::size_t i = 0; i < openings.size(); ++i)
-    add(fmt::format("opening_{}", i + 1), to_tenths(openings[i].size), "m",
-        fmt::format("{} edges around {}, {}", openings[i].edges(), place(to_tenths(openings[i].centre)),
-                    what));
-}
+  void add_measures(const BodyProfile& profile, const BodyLandmarks& landmarks) {
+    add("height", to_tenths(profile.highest() - profile.lowest()), "m");
+    add_landmark("waist", landmarks.waist);
+    add_landmark("hip", landmarks.hip);
+    add("crotch_height", to_tenths(landmarks.crotch_height), "m");
+    add_landmark("thigh", landmarks.thigh);
+    add_landmark("knee", landmarks.knee);
+    add_landmark("ankle", landmarks.ankle);
+  }
 
-void BodyListing::add_landmark(const std::string& name, const Landmark& landmark) {
-  const std::string note = landmark.by_proportion ? "by proportion: nothing shows it" : "";
-  add(name + "_height", to_tenths(landmark.height), "m", note);
-  add(name + "_girth", landmark.girth ? Cell(to_tenths(*landmark.girth)) : Cell(), "m",
-      landmark.girth ? "" : "the legs are not apart there");
-}
+  const Table& rows() const { return rows_; }
 
-void BodyListing::add_measures(const BodyProfile& profile, const BodyLandmarks& landmarks) {
-  add("height", to_tenths(profile.highest() - profile.lowest()), "m");
-  add_landmark("waist", landmarks.waist);
-  add_landmark("hip", landmarks.hip);
-  add("crotch_height", to_tenths(landmarks.crotch_height), "m");
-  add_landmark("thigh", landmarks.thigh);
-  add_landmark("knee", landmarks.knee);
-  add_landmark("ankle", landmarks.ankle);
-}
+ private:
+  void add(const std::string& measure, Cell value, const std::string& unit, const std::string& note = {}) {
+    const auto text = [](const std::string& words) { return words.empty() ? Cell() : Cell(words); };
+    rows_.add(
+        {{"measure", measure}, {"value", std::move(value)}, {"unit", text(unit)}, {"note", text(note)}});
+  }
+
+  void add_landmark(const std::string& name, const Landmark& landmark) {
+    add(name + "_height", to_tenths(landmark.height), "m",
+        landmark.by_proportion ? "by proportion: nothing shows it" : "");
+    add(name + "_girth", landmark.girth ? Cell(to_tenths(*landmark.girth)) : Cell(), "m",
+        landmark.girth ? "" : "the legs are not apart there");
+  }
+
+  Table rows_;
+};
 
 using nlohmann::ordered_json;
 
@@ -151,24 +146,25 @@ double shorter_dt(double dt_s, const JeansMeasures& jeans, double hip_girth) {
 /// The text of a scene file to start from: jeans4k for this body. Cloth and dressing are that scene's; dt is
 /// shorter by as much as the jeans, of as many nodes, are smaller. `file` is where it is to stand. Throws
 /// SceneError for what no scene file can hold, such as a name that is no UTF-8.
-std::string jeans_scene(const std::filesystem::path& file, const MeasuredJeans& jeans) {
+std::string jeans_scene(const fs::path& file, const MeasuredFile& found) {
+  const JeansMeasures jeans = jeans_for_body(found.profile, found.landmarks);
   try {
     const SceneSpec example = find_scene("jeans4k");
     ordered_json scene = ordered_json::parse(example.source);
     scene.erase("$schema");
     scene["description"] = "Jeans of about 4,000 nodes for a body that mssim measure has measured";
-    scene["dt_s"] = shorter_dt(example.dt_s.value(), jeans.measures, jeans.hip_girth);
-    scene["garment"] = garment_for(jeans.body, scene.at("garment"));
+    scene["dt_s"] = shorter_dt(example.dt_s.value(), jeans, found.landmarks.hip.girth.value_or(0));
+    scene["garment"] = garment_for(found.body, scene.at("garment"));
     ordered_json& section = scene["garment"]["jeans"];
-    section["waist_height_m"] = jeans.measures.waist_height;
-    section["hip_height_m"] = jeans.measures.hip_height;
-    section["knee_height_m"] = jeans.measures.knee_height;
-    section["hem_height_m"] = jeans.measures.hem_height;
-    section["knee_m"] = jeans.measures.knee;
-    section["hem_m"] = jeans.measures.hem;
-    section["thigh_ease_m"] = jeans.measures.thigh_ease.value();
-    section["waist_ease_m"] = jeans.measures.waist_ease;
-    section["crotch_ease_m"] = jeans.measures.crotch_ease;
+    section["waist_height_m"] = jeans.waist_height;
+    section["hip_height_m"] = jeans.hip_height;
+    section["knee_height_m"] = jeans.knee_height;
+    section["hem_height_m"] = jeans.hem_height;
+    section["knee_m"] = jeans.knee;
+    section["hem_m"] = jeans.hem;
+    section["thigh_ease_m"] = jeans.thigh_ease.value();
+    section["waist_ease_m"] = jeans.waist_ease;
+    section["crotch_ease_m"] = jeans.crotch_ease;
     // As people dress: the waistband in their hands, the legs hanging from it.
     ordered_json& dressing = scene["garment"]["dressing"];
     dressing["held"] = "upper edge";
@@ -183,12 +179,10 @@ std::string jeans_scene(const std::filesystem::path& file, const MeasuredJeans& 
     return text;
   } catch (const ordered_json::exception& error) {
     throw SceneError("{}: the body's file {} cannot be named in a scene file ({}): give it a name in UTF-8",
-                     printable(file.string(), 1000), printable(jeans.body.file, 1000),
+                     printable(file.string(), 1000), printable(found.body.file, 1000),
                      printable(error.what(), 200));
   }
 }
-
-namespace fs = std::filesystem;
 
 /// Eyes, mouth, a neck without its head; narrower than any waist.
 constexpr double largest_closed_m = 0.2;
@@ -226,13 +220,6 @@ void require_free(const MeasureOptions& options) {
     throw UsageError(printable(options.scene, 1000) +
                      " already exists: give another --scene, or --overwrite to replace it");
 }
-
-/// A body that has been measured: what its scene file says of it, and what it is.
-struct MeasuredFile {
-  BodyFile body;
-  BodyProfile profile;
-  BodyLandmarks landmarks;
-};
 
 void tell(const MeasureOptions& options, const BodyListing& listing) {
   std::cout << to_text(listing.rows(), options.format);
@@ -283,8 +270,7 @@ MeasuredFile measure_file(const MeasureOptions& options) {
 int write_scene(const MeasureOptions& options, MeasuredFile found) {
   const fs::path scene = options.scene;
   found.body.file = fs::relative(options.body, fs::absolute(scene).parent_path()).string();
-  const std::string text = jeans_scene(scene, {found.body, jeans_for_body(found.profile, found.landmarks),
-                                               found.landmarks.hip.girth.value_or(0)});
+  const std::string text = jeans_scene(scene, found);
   write_file_atomically(target_of(scene), text);
   try {
     build_system(load_scene(scene));
@@ -297,8 +283,6 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
   std::cerr << "mssim: wrote " << scene_name << "; mssim run --scene " << scene_name << " dresses it\n";
   return exit_ok;
 }
-
-std::string extension_of(const std::string& file) { return to_lower(fs::path(file).extension().string()); }
 
 int measure_scene(const MeasureOptions& options) {
   if (!options.unit.empty() || options.up || options.facing || options.close_holes || !options.scene.empty())
@@ -322,7 +306,7 @@ int measure_scene(const MeasureOptions& options) {
 
 int run_measure(const MeasureOptions& options) {
   try {
-    const std::string extension = extension_of(options.body);
+    const std::string extension = to_lower(fs::path(options.body).extension().string());
     if (extension != ".obj" && extension != ".stl") {
       const bool is_file = !extension.empty() || is_path_of_scene(options.body);
       if (is_file && extension != ".json")
@@ -354,10 +338,9 @@ std::function<int()> declare_measure(Arguments& arguments) {
   const auto options = std::make_shared<MeasureOptions>();
   arguments.add("BODY", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
       .required();
-  arguments
-      .add("--unit", options->unit,
-           fmt::format("Unit of the file: {}or its metres (default: found from the height)", unit_names()))
-      .value_name("UNIT");
+  arguments.add(
+      "--unit UNIT", options->unit,
+      fmt::format("Unit of the file: {}or its metres (default: found from the height)", unit_names()));
   arguments.add_choice("--up", options->up, choices_of<UpAxis>(up_axis_names),
                        "Axis of the file along which the body stands: y or z (default: found)");
   arguments.add_choice("--facing", options->facing, choices_of<Facing>(facing_names),
@@ -365,8 +348,7 @@ std::function<int()> declare_measure(Arguments& arguments) {
   arguments.add_flag("--close-holes", options->close_holes,
                      "Fill openings of the surface that are up to 0.2 m across");
   const Argument scene =
-      arguments.add("--scene", options->scene, "Scene file to write: jeans for the body, for mssim run")
-          .value_name("FILE");
+      arguments.add("--scene FILE", options->scene, "Scene file to write: jeans for the body, for mssim run");
   arguments.add_flag("--overwrite", options->overwrite, "Replace the scene file if it exists").needs(scene);
   declare_listing_format(arguments, options->format);
   return [options] { return run_measure(*options); };

@@ -16,12 +16,14 @@
 namespace mssim {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// What a backend to start from is written in.
 enum class StarterLanguage : std::uint8_t { python, cpp };
 
 /// A file of a backend to start from.
 struct StarterFile {
-  std::filesystem::path name;
+  fs::path name;
   std::string text;
   bool executable = false;
   bool shared = false;  ///< the same for every backend: one that stands there already serves this one, too
@@ -32,8 +34,6 @@ struct Starter {
   std::vector<StarterFile> files;
   std::vector<std::string> commands;  ///< for a shell, in the order of their use
 };
-
-namespace fs = std::filesystem;
 
 /// The name of the examples, which gives way to the new one's.
 constexpr std::string_view example_name = "my_backend";
@@ -107,8 +107,6 @@ Starter starter_of(const std::string& name, StarterLanguage language, const fs::
        bench_command(program)}};
 }
 
-namespace fs = std::filesystem;
-
 struct NewBackendOptions {
   std::string name, out = ".";
   StarterLanguage language = StarterLanguage::python;
@@ -161,7 +159,7 @@ std::function<int()> declare_new_backend(Arguments& arguments) {
           "What to write: python, one file that needs NumPy and h5py; c++, one file and a header that "
           "needs HDF5's C library")
       .required();
-  arguments.add("--out", options->out, "Folder to write into (default: this one)").value_name("DIR");
+  arguments.add("--out DIR", options->out, "Folder to write into (default: this one)");
   return [options] { return run_new_backend(*options); };
 }
 

@@ -1,6 +1,7 @@
 #include "commands/options.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -10,7 +11,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 std::size_t frame_number(const std::string& word, std::size_t frames) {
@@ -30,17 +30,25 @@ std::vector<std::size_t> all_of(std::size_t frames) {
   return list;
 }
 
+/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is:
+/// a path that exists.
+std::size_t length_of_first(std::string_view text) {
+  const std::size_t shortest = std::min(text.find(','), text.size());
+  for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
+       end = text.rfind(',', end - 1))
+    if (is_scene(text.substr(0, end))) return end;
+  return shortest;
+}
+
 }  // namespace
 
 Argument declare_frames(Arguments& arguments, FrameOptions& options) {
-  Argument time = arguments.add_number("--time", options.time_s,
-                                       "Take the frame nearest to this time (default: the last frame)",
-                                       number_between(0, 1e9));
-  time.value_name("SECONDS");
+  const Argument time = arguments.add_number("--time SECONDS", options.time_s,
+                                             "Take the frame nearest to this time (default: the last frame)",
+                                             number_between(0, 1e9));
   arguments
-      .add_list("--frames", options.frames,
+      .add_list("--frames LIST", options.frames,
                 "Take these frames only: numbers from 0 on, ranges like 10-20, last, all")
-      .value_name("LIST")
       .excludes(time);
   return time;
 }
@@ -84,21 +92,18 @@ std::vector<std::size_t> spread_over(const std::vector<std::size_t>& frames, std
 
 void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::string& usual_size,
                       std::optional<Argument> needed) {
-  const auto of_pictures = [&](Argument argument) {
+  const std::array all{
+      arguments.add("--view VIEW", choice.view,
+                    "From where: front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees "
+                    "(default: three-quarter)"),
+      arguments.add("--size WIDTHxHEIGHT", choice.size,
+                    "Size of a picture in pixels (default: " + usual_size + ')'),
+      arguments.add_choice(
+          "--colour", choice.colour,
+          {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
+          "What colours tell apart: object, panel (of a garment) or strain (default: object)")};
+  for (Argument argument : all)
     if (needed) argument.needs(*needed);
-  };
-  of_pictures(arguments
-                  .add("--view", choice.view,
-                       "From where: front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees "
-                       "(default: three-quarter)")
-                  .value_name("VIEW"));
-  of_pictures(
-      arguments.add("--size", choice.size, "Size of a picture in pixels (default: " + usual_size + ')')
-          .value_name("WIDTHxHEIGHT"));
-  of_pictures(arguments.add_choice(
-      "--colour", choice.colour,
-      {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
-      "What colours tell apart: object, panel (of a garment) or strain (default: object)"));
 }
 
 PictureOptions picture_options(const PictureChoice& choice, const std::string& usual_size, int threads) {
@@ -118,26 +123,12 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_v
                                                                    std::uint32_t most) {
   const std::size_t x = text.find('x');
   if (x == std::string_view::npos) return std::nullopt;
-  const auto first = number_in<std::int64_t>(std::string(text.substr(0, x)));
-  const auto second = number_in<std::int64_t>(std::string(text.substr(x + 1)));
+  const auto first = number_in<std::int64_t>(text.substr(0, x));
+  const auto second = number_in<std::int64_t>(text.substr(x + 1));
   const auto good = [&](const std::optional<std::int64_t>& n) { return n && *n >= 1 && *n <= most; };
   if (!good(first) || !good(second)) return std::nullopt;
   return std::pair{static_cast<std::uint32_t>(*first), static_cast<std::uint32_t>(*second)};
 }
-
-namespace {
-
-/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is:
-/// a path that exists.
-std::size_t length_of_first(std::string_view text) {
-  const std::size_t shortest = std::min(text.find(','), text.size());
-  for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
-       end = text.rfind(',', end - 1))
-    if (is_scene(text.substr(0, end))) return end;
-  return shortest;
-}
-
-}  // namespace
 
 std::vector<std::string> names_and_files_in(std::string_view argument) {
   std::vector<std::string> names;
@@ -151,11 +142,10 @@ std::vector<std::string> names_and_files_in(std::string_view argument) {
 
 Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,
                     const std::string& description) {
-  return arguments
-      .add_list(name, target,
-                description + ", separated by commas (but not at a comma in the name of an existing file)",
-                names_and_files_in)
-      .value_name("NAME|FILE,...");
+  return arguments.add_list(
+      name + " NAME|FILE,...", target,
+      description + ", separated by commas (but not at a comma in the name of an existing file)",
+      names_and_files_in);
 }
 
 void declare_listing_format(Arguments& arguments, ListingFormat& target) {
@@ -166,28 +156,19 @@ void declare_listing_format(Arguments& arguments, ListingFormat& target) {
 }
 
 void declare_execution(Arguments& arguments, ExecutionOptions& options) {
-  arguments
-      .add_number(
-          "--threads", options.threads,
-          "Threads, and compute units of an OpenCL device that is a processor (default: one for every "
-          "processor)",
-          whole_number(1, most_threads))
-      .value_name("N");
-  arguments
-      .add_number("--ranks", options.ranks,
-                  "Processes of the backend mpi, of --threads threads each; mpi:N says it of one row "
-                  "(default: as many as --threads, of one thread each)",
-                  whole_number(1, most_ranks))
-      .value_name("N");
-  arguments
-      .add("--launcher", options.launcher,
-           "Command that starts the processes of the backend mpi, to which `-n N PROGRAM` is added (default: "
-           "mpirun)")
-      .value_name("COMMAND");
-  arguments
-      .add("--device", options.device,
-           "OpenCL device: its number or a part of its name or platform (see mssim list devices)")
-      .value_name("N|NAME");
+  arguments.add_number(
+      "--threads N", options.threads,
+      "Threads, and compute units of an OpenCL device that is a processor (default: one for every processor)",
+      whole_number(1, most_threads));
+  arguments.add_number("--ranks N", options.ranks,
+                       "Processes of the backend mpi, of --threads threads each; mpi:N says it of one row "
+                       "(default: as many as --threads, of one thread each)",
+                       whole_number(1, most_ranks));
+  arguments.add("--launcher COMMAND", options.launcher,
+                "Command that starts the processes of the backend mpi, to which `-n N PROGRAM` is added "
+                "(default: mpirun)");
+  arguments.add("--device N|NAME", options.device,
+                "OpenCL device: its number or a part of its name or platform (see mssim list devices)");
   arguments.add_choice<DeviceMemory>(
       "--memory", options.memory,
       {{name_of(DeviceMemory::copy), DeviceMemory::copy},
@@ -197,51 +178,41 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options) {
   arguments.add_choice<Roots>(
       "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
       "How openmp and gather-vectors find the lengths of springs: fast, with AVX-512 by an estimate and a "
-      "Newton step, or "
-      "exact, "
-      "which gives the same bits on every processor that has multiply-adds (default: fast)");
+      "Newton step, or exact, which gives the same bits on every processor that has multiply-adds (default: "
+      "fast)");
 }
 
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
-  return arguments
-      .add_list("--backend-folder", options.folders,
-                "Folders with descriptions of backends, NAME.json (see docs/own-backends.md)")
-      .value_name("DIR,...");
+  return arguments.add_list("--backend-folder DIR,...", options.folders,
+                            "Folders with descriptions of backends, NAME.json (see docs/own-backends.md)");
 }
 
 Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
-  return arguments
-      .add_number("--backend-limit", options.limit_s,
-                  "Longest time in which a program that is a backend must answer (default: 120)",
-                  number_between(0.001, longest_time_limit_s))
-      .value_name("SECONDS");
+  return arguments.add_number("--backend-limit SECONDS", options.limit_s,
+                              "Longest time in which a program that is a backend must answer (default: 120)",
+                              number_between(0.001, longest_time_limit_s));
 }
 
 void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps,
                       std::optional<Argument> needed) {
-  const auto of_a_simulation = [&](Argument argument, const std::string& value_name) {
-    argument.value_name(value_name);
+  const auto of_a_simulation = [&](Argument argument) {
     if (needed) argument.needs(*needed);
   };
   of_a_simulation(
-      arguments.add("--backend", options.backend,
+      arguments.add("--backend NAME|FILE", options.backend,
                     "Backend that simulates it: a name (see mssim list backends), or a program of "
-                    "your own, a path with a slash (default: openmp)"),
-      "NAME|FILE");
-  of_a_simulation(declare_backend_folders(arguments, options.own_backends), "DIR,...");
-  of_a_simulation(declare_backend_limit(arguments, options.own_backends), "SECONDS");
-  of_a_simulation(arguments.add("--integrator", options.integrator, "Integrator (default: semi-euler)"),
-                  "NAME");
+                    "your own, a path with a slash (default: openmp)"));
+  of_a_simulation(declare_backend_folders(arguments, options.own_backends));
+  of_a_simulation(declare_backend_limit(arguments, options.own_backends));
+  of_a_simulation(arguments.add("--integrator NAME", options.integrator, "Integrator (default: semi-euler)"));
   of_a_simulation(
-      arguments.add_number("--duration", options.duration_s,
+      arguments.add_number("--duration SECONDS", options.duration_s,
                            "Simulated time (default: 1); for a garment the longest time that it may take to "
                            "settle (default: 4)",
-                           positive_number()),
-      "SECONDS");
-  arguments.add_number("--fps", options.fps, about_fps, positive_number()).value_name("N");
-  of_a_simulation(
-      arguments.add_number("--dt", options.dt_s, "Time of a step (default: the scene's)", positive_number()),
-      "SECONDS");
+                           positive_number()));
+  arguments.add_number("--fps N", options.fps, about_fps, positive_number());
+  of_a_simulation(arguments.add_number("--dt SECONDS", options.dt_s, "Time of a step (default: the scene's)",
+                                       positive_number()));
   declare_execution(arguments, options.execution);
 }
 

@@ -174,24 +174,21 @@ std::function<int()> declare_render(Arguments& arguments) {
   const auto options = std::make_shared<RenderOptions>();
   const Argument trace = arguments.add("TRACE", options->trace, "Trace to draw, NAME.h5 (mssim run --trace)");
   const Argument scene =
-      arguments.add("--scene", options->run.scene, "Simulate this scene and draw it: a name or a file")
-          .value_name("NAME|FILE")
+      arguments
+          .add("--scene NAME|FILE", options->run.scene, "Simulate this scene and draw it: a name or a file")
           .excludes(trace);
-  arguments
-      .add("--out", options->out,
-           "File to write (default: the trace's or the scene's name, and .png or .webp)")
-      .value_name("FILE");
+  arguments.add("--out FILE", options->out,
+                "File to write (default: the trace's or the scene's name, and .png or .webp)");
   declare_pictures(arguments, options->look,
                    fmt::format("{}, and {} on a sheet and in a movie", usual_picture_size, size_of_many));
   const Argument time = declare_frames(arguments, options->frames);
-  const Argument sheet =
-      arguments.add("--sheet", options->sheet_size, "Put so many moments, evenly spread, on one sheet")
-          .value_name("COLUMNSxROWS")
-          .excludes(time);
+  const Argument sheet = arguments
+                             .add("--sheet COLUMNSxROWS", options->sheet_size,
+                                  "Put so many moments, evenly spread, on one sheet")
+                             .excludes(time);
   arguments
-      .add_flag_with_text("--movie", options->movie,
+      .add_flag_with_text("--movie [FILE]", options->movie,
                           "Write an animated WebP of the frames, to this file or that of --out")
-      .value_name("[FILE]")
       .excludes(sheet)
       .excludes(time);
   declare_stepping(

@@ -27,12 +27,6 @@
 namespace mssim {
 namespace {
 
-/// What a report shows of scenes that it simulates itself.
-struct SimulatedScenes {
-  std::vector<FoundPicture> pictures;
-  std::vector<FoundCurve> curves;  ///< of energy, as long as their references
-};
-
 constexpr double simulated_s = 0.5, patience_s = 0.5;
 constexpr const char* integrator = "semi-euler";
 
@@ -132,21 +126,18 @@ void for_each_sitter(const std::map<ContentKind, Sitter>& sitters, std::vector<s
 
 /// Simulates scenes of the folders anew, by `openmp`: of each kind of scene the largest that takes no more
 /// than about half a second, as the folder's times tell, for half a second of its time, or until its garment
-/// hangs, to draw it; and of each kind the largest of those that has one of `references`, named as the scene,
-/// for its energies. Adds to `problems` why one cannot be simulated, for example because the scene of that
-/// name is not the one that was measured. Throws Interrupted.
-SimulatedScenes simulated_scenes(std::span<const ReportFolder> folders,
-                                 std::span<const FoundCurve> references, std::vector<std::string>& problems) {
-  SimulatedScenes scenes;
-  for_each_sitter(sitters_of(folders, [](const ResultRow&) { return true; }), problems,
-                  [&](const ResultRow& row) { scenes.pictures.push_back(drawn(row)); });
+/// hangs, to draw it; and of each kind the largest of those that has a reference, named as the scene, for its
+/// energies. Adds a problem where one cannot be simulated, for example because the scene of that name is not
+/// the one that was measured. Throws Interrupted.
+void simulate_scenes(ReportInput& input) {
+  for_each_sitter(sitters_of(input.folders, [](const ResultRow&) { return true; }), input.problems,
+                  [&](const ResultRow& row) { input.pictures.push_back(drawn(row)); });
   const auto has_reference = [&](const ResultRow& row) {
-    return reference_of(row.scene, references) != nullptr;
+    return reference_of(row.scene, input.references) != nullptr;
   };
-  for_each_sitter(sitters_of(folders, has_reference), problems, [&](const ResultRow& row) {
-    scenes.curves.push_back(energies(row, *reference_of(row.scene, references)));
+  for_each_sitter(sitters_of(input.folders, has_reference), input.problems, [&](const ResultRow& row) {
+    input.curves.push_back(energies(row, *reference_of(row.scene, input.references)));
   });
-  return scenes;
 }
 
 namespace fs = std::filesystem;
@@ -207,11 +198,7 @@ int report(const ReportOptions& options) {
     input.problems.push_back(std::string(error.what()) + "; nothing published is shown");
   }
   for (const fs::path& folder : folders) input.folders.push_back(read_report_folder(folder));
-  if (!options.no_runs) {
-    SimulatedScenes simulated = simulated_scenes(input.folders, input.references, input.problems);
-    input.pictures = std::move(simulated.pictures);
-    input.curves = std::move(simulated.curves);
-  }
+  if (!options.no_runs) simulate_scenes(input);
   write_file_atomically(out, report_page(input));
   for (const ReportFolder& folder : input.folders)
     input.problems.insert(input.problems.end(), folder.problems.begin(), folder.problems.end());
@@ -229,7 +216,7 @@ std::function<int()> declare_report(Arguments& arguments) {
                 "Folders that mssim bench --out wrote; a folder of such folders stands for all in it",
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })
       .required();
-  arguments.add("--out", options->out, "File to write (default: report.html)").value_name("FILE");
+  arguments.add("--out FILE", options->out, "File to write (default: report.html)");
   arguments.add_flag("--no-runs", options->no_runs,
                      "Simulate no scenes for pictures and energies, which takes seconds; what lies in the "
                      "folders is shown");

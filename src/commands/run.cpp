@@ -10,28 +10,22 @@ namespace mssim {
 std::function<int()> declare_run(Arguments& arguments) {
   const auto options = std::make_shared<RunOptions>();
   const auto look = std::make_shared<PictureChoice>();
-  arguments.add("--scene", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
-      .required()
-      .value_name("NAME|FILE");
+  arguments
+      .add("--scene NAME|FILE", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
+      .required();
   declare_stepping(
       arguments, *options,
       "Frames per simulated second of the trace, the energy curve and the pictures (default: 60)");
-  arguments
-      .add("--precision", options->precision, "single, or double with --backend serial (default: single)",
-           one_of("precision", {"single", "double"}))
-      .value_name("WORD");
-  arguments
-      .add("--trace", options->files.trace,
-           "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView beside it")
-      .value_name("FILE");
-  arguments
-      .add("--energy-curve", options->files.energy_curve, "Write the energies of all frames to this CSV file")
-      .value_name("FILE");
-  const Argument pictures =
-      arguments
-          .add("--pictures", options->files.pictures,
-               "Draw every frame into this folder while the simulation runs, as PNG; it must be new or empty")
-          .value_name("DIR");
+  arguments.add("--precision WORD", options->precision,
+                "single, or double with --backend serial (default: single)",
+                one_of("precision", {"single", "double"}));
+  arguments.add("--trace FILE", options->files.trace,
+                "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView beside it");
+  arguments.add("--energy-curve FILE", options->files.energy_curve,
+                "Write the energies of all frames to this CSV file");
+  const Argument pictures = arguments.add(
+      "--pictures DIR", options->files.pictures,
+      "Draw every frame into this folder while the simulation runs, as PNG; it must be new or empty");
   declare_pictures(arguments, *look, usual_picture_size, pictures);
   arguments.add_flag(
       "--losses", options->losses,

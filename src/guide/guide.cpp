@@ -35,14 +35,10 @@ double frame_seconds(const WorkPoint& point, double frames_per_second) {
   return steps_a_frame(point.dt_s, frames_per_second) * point.seconds_a_step;
 }
 
-bool holds(const WorkPoint& point, double frames_per_second) {
-  return frame_seconds(point, frames_per_second) * frames_per_second <= 1;
-}
-
 std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
-  const double rate = 1 / frame_seconds(point, wish.frames_per_second);
+  const double seconds = frame_seconds(point, wish.frames_per_second), rate = 1 / seconds;
   const std::string asked = decimal(wish.frames_per_second);
-  return holds(point, wish.frames_per_second)
+  return seconds * wish.frames_per_second <= 1
              ? fmt::format("and {} frames a second hold ({} would)", asked, three_digits(rate))
              : fmt::format("so that {} frames a second do not hold ({} would)", asked, three_digits(rate));
 }
@@ -61,8 +57,7 @@ std::string what_to_take(std::span<const WorkPoint> points, const Recommendation
   const WorkPoint& point = points[*chosen.best];
   const int steps = steps_a_frame(point.dt_s, wish.frames_per_second);
   return fmt::format("Take {} with a step of {} s, which is {} a frame at {} frames a second.", named(point),
-                     two_digits(point.dt_s), pluralize(static_cast<std::uint64_t>(steps), "step"),
-                     decimal(wish.frames_per_second));
+                     two_digits(point.dt_s), pluralize(steps, "step"), decimal(wish.frames_per_second));
 }
 
 std::string what_it_costs(const WorkPoint& point, const Wish& wish, double horizon_s) {
@@ -158,16 +153,13 @@ class GuideClock {
   Stopwatch watch_;
 };
 
-/// A third of the stability limit of rk4 by theory: well within its order.
-double first_trusted_step(const SceneGuide& guide, const GuideRequest& request) {
+void find_trusted_state(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch) {
   const double limit =
       step_theory(*find_integrator("rk4"), *request.system, guide.at_start, guide.at_start).at_start_s;
-  return std::isfinite(limit) && limit > 0 ? limit / 3 : request.longest_horizon_s / 100;
-}
-
-void find_trusted_state(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch) {
+  // A third of the stability limit of rk4 by theory: well within its order.
+  const double first_dt_s = std::isfinite(limit) && limit > 0 ? limit / 3 : request.longest_horizon_s / 100;
   guide.trusted = trusted_state(*request.system, {.longest_s = request.longest_horizon_s,
-                                                  .first_dt_s = first_trusted_step(guide, request),
+                                                  .first_dt_s = first_dt_s,
                                                   .seconds = share_of_trust * request.seconds,
                                                   .stop = watch.stop});
 }
@@ -387,7 +379,6 @@ Recommendation recommend(std::span<const WorkPoint> points, const Wish& wish, do
     chosen.runner_up = least(
         points, [&](const WorkPoint& p) { return p.integrator != taken.integrator; }, error_of);
   }
-  chosen.holds_frames = holds(taken, wish.frames_per_second);
   chosen.sentences.push_back(what_it_costs(taken, wish, horizon_s));
   chosen.sentences.push_back(who_comes_second(points, chosen));
   return chosen;

@@ -82,7 +82,6 @@ struct Recommendation {
   std::optional<std::size_t>
       runner_up;  ///< the cheapest such one of another integrator, else of another backend
   std::optional<std::size_t> nearest;  ///< the most accurate, where none is accurate enough
-  bool holds_frames = false;           ///< the best computes a frame within its time
   std::vector<std::string> sentences;  ///< three, each with its full stop
 };
 

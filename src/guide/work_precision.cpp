@@ -77,10 +77,6 @@ State neighbour_of(const System& system, double distance_m) {
   return state;
 }
 
-bool is_in_the_air(const System& system, const State& state) {
-  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > system.floor.height; });
-}
-
 /// Two trajectories side by side until one of the conditions of a horizon ends them.
 class HorizonWalk {
  public:
@@ -103,7 +99,7 @@ class HorizonWalk {
     beside.get();
     State state = near_->state();
     if (first_bad_node(state)) return end_with("the trajectory cannot be followed any longer");
-    if (!is_in_the_air(system_, state)) return end_with("a node meets the floor next");
+    if (!is_in_the_air(state, system_.floor)) return end_with("a node meets the floor next");
     const double parting = position_deviation(system_, state, beside_->state()) / first_distance_;
     if (!(parting <= allowed_parting)) return end_with("neighbouring trajectories part next");
     steps_ += steps;
@@ -179,17 +175,9 @@ std::vector<int> by_cost(std::span<const WorkPoint> points, std::span<const Impl
 }
 
 std::optional<double> evaluations_of(const Integrator& integrator, const System& system) {
-  switch (integrator.solver) {
-    case Solver::none:
-      return static_cast<double>(integrator.stage_count);
-    case Solver::local_global:
-      return system.solver.iterations;
-    case Solver::constraints:
-      return system.solver.substeps;
-    case Solver::newton_step:
-    case Solver::newton:
-      break;
-  }
+  if (!is_implicit(integrator)) return static_cast<double>(integrator.stage_count);
+  if (integrator.solver == Solver::local_global) return system.solver.iterations;
+  if (integrator.solver == Solver::constraints) return system.solver.substeps;
   return std::nullopt;
 }
 

@@ -351,14 +351,11 @@ std::vector<Hdf5Filter> filters_of(const Hdf5Dataset& dataset) {
   return filters;
 }
 
-hsize_t bytes_of(hid_t file) {
+void require_room(hid_t file, const std::string& path, hsize_t items, hsize_t bytes_per_item, hsize_t ratio) {
+  if (bytes_per_item == 0) return;
   hsize_t bytes = 0;
   checked(H5Fget_filesize(file, &bytes), "asking for the length of the file");
-  return bytes;
-}
-
-void require_room(hid_t file, const std::string& path, hsize_t items, hsize_t bytes_per_item, hsize_t ratio) {
-  if (bytes_per_item > 0 && items > bytes_of(file) * ratio / bytes_per_item)
+  if (items > bytes * ratio / bytes_per_item)
     throw Hdf5ContentError(path + " says that it is larger than the file can hold");
 }
 

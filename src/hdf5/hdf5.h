@@ -160,9 +160,6 @@ struct Hdf5Filter {
 /// The filters of a dataset in the order of writing.
 std::vector<Hdf5Filter> filters_of(const Hdf5Dataset& dataset);
 
-/// The length of a file in bytes.
-hsize_t bytes_of(hid_t file);
-
 /// Throws unless the file can hold so many `items` of `bytes_per_item`, each byte of it standing for `ratio`.
 void require_room(hid_t file, const std::string& path, hsize_t items, hsize_t bytes_per_item,
                   hsize_t ratio = 1);

@@ -8,7 +8,6 @@
 #include <utility>
 
 namespace mssim {
-
 namespace {
 
 /// What deflation makes of a byte at most: two bits of its stream stand for 258 bytes.

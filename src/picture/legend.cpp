@@ -28,34 +28,6 @@ double decimal_product(double mantissa, int exponent) {
   return exponent < 0 ? mantissa / std::pow(10.0, -exponent) : mantissa * std::pow(10.0, exponent);
 }
 
-}  // namespace
-
-std::vector<Tick> ticks_between(double low, double high, int most) {
-  const double distance = high - low;
-  if (!std::isfinite(distance) || distance < 0)
-    throw std::invalid_argument("a scale goes from a number to one that is not less");
-  // Multiples of smaller steps could not be counted, nor could steps below the smallest numbers.
-  if (distance <= 1e-9 * std::max(std::abs(low), std::abs(high)) || distance < 1e-290)
-    return {{low, (low < 0 ? "−" : "") + decimal(std::abs(low))}};
-  // Ends that a rounding has moved across a multiple still have it.
-  const double slack = 1e-9;
-  const int largest = static_cast<int>(std::floor(std::log10(distance)));
-  for (int exponent = largest - 2;; ++exponent)
-    for (const int digit : {1, 2, 5}) {
-      const double step = decimal_product(digit, exponent);
-      const double first = std::ceil(low / step - slack), last = std::floor(high / step + slack);
-      if (last - first + 1 > most) continue;
-      std::vector<Tick> ticks;
-      for (double multiple = first; multiple <= last; ++multiple) {
-        const double value = decimal_product(multiple * digit, exponent);
-        ticks.push_back({value, tick_label(value, exponent)});
-      }
-      return ticks;
-    }
-}
-
-namespace {
-
 /// Lightness L* of CIE 1976, from 0 (black) to 100 (white), which is what remains in black and white. Chroma
 /// (0 is grey) and hue of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020), which
 /// keep their look when it changes.
@@ -127,47 +99,6 @@ ColourMap map_of(const ColourAt& colour_at) {
   return map;
 }
 
-}  // namespace
-
-Rgb ColourMap::at(double share) const {
-  if (std::isnan(share)) return {128, 128, 128};
-  const auto last = static_cast<double>(colours.size() - 1);
-  return colours[static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * last))];
-}
-
-const ColourMap& sequential_map() {
-  // The hue goes up through red (20 degrees) to yellow. Chroma is largest in the middle, where sRGB has most
-  // of it.
-  static const ColourMap map = map_of([](double share) {
-    return Lch{12 + 82 * share, 0.12 + 0.24 * share * (1 - share), -75 + 178 * share};
-  });
-  return map;
-}
-
-const ColourMap& diverging_map() {
-  static const ColourMap map = map_of([](double share) {
-    const double distance = std::abs(2 * share - 1);
-    return Lch{94 - 58 * distance, 0.155 * distance, share < 0.5 ? 258.0 : 30.0};
-  });
-  return map;
-}
-
-const std::array<Rgb, 8>& category_colours() {
-  static const std::array<Rgb, 8> colours{
-      srgb({32.5, 0.16, 257}),  // blue
-      srgb({75, 0.16, 65}),     // orange
-      srgb({57.5, 0.14, 152}),  // green
-      srgb({92, 0.16, 102}),    // yellow
-      srgb({19, 0.15, 305}),    // violet
-      srgb({83, 0.09, 225}),    // light blue
-      srgb({41.5, 0.19, 27}),   // red
-      srgb({66.5, 0.16, 350}),  // pink
-  };
-  return colours;
-}
-
-namespace {
-
 /// The sizes of what is written on a picture, in pixels.
 struct LegendSizes {
   Letters letters;
@@ -198,7 +129,65 @@ PixelBox draw_panel(Picture& picture, int content_width, int content_height) {
   return {left + margin, top + margin, content_width, content_height};
 }
 
+/// The pixel of a bar of `length` pixels at which `value` lies, from its low end.
+int place_of(double value, const ColourBar& bar, int length) {
+  if (bar.low == bar.high) return length / 2;
+  return static_cast<int>(std::lround((value - bar.low) / (bar.high - bar.low) * (length - 1)));
+}
+
 }  // namespace
+
+std::vector<Tick> ticks_between(double low, double high, int most) {
+  const double distance = high - low;
+  if (!std::isfinite(distance) || distance < 0)
+    throw std::invalid_argument("a scale goes from a number to one that is not less");
+  // Multiples of smaller steps could not be counted, nor could steps below the smallest numbers.
+  if (distance <= 1e-9 * std::max(std::abs(low), std::abs(high)) || distance < 1e-290)
+    return {{low, (low < 0 ? "−" : "") + decimal(std::abs(low))}};
+  // Ends that a rounding has moved across a multiple still have it.
+  const double slack = 1e-9;
+  const int largest = static_cast<int>(std::floor(std::log10(distance)));
+  for (int exponent = largest - 2;; ++exponent)
+    for (const int digit : {1, 2, 5}) {
+      const double step = decimal_product(digit, exponent);
+      const double first = std::ceil(low / step - slack), last = std::floor(high / step + slack);
+      if (last - first + 1 > most) continue;
+      std::vector<Tick> ticks;
+      for (double multiple = first; multiple <= last; ++multiple) {
+        const double value = decimal_product(multiple * digit, exponent);
+        ticks.push_back({value, tick_label(value, exponent)});
+      }
+      return ticks;
+    }
+}
+
+Rgb ColourMap::at(double share) const {
+  if (std::isnan(share)) return {128, 128, 128};
+  const auto last = static_cast<double>(colours.size() - 1);
+  return colours[static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * last))];
+}
+
+const ColourMap& diverging_map() {
+  static const ColourMap map = map_of([](double share) {
+    const double distance = std::abs(2 * share - 1);
+    return Lch{94 - 58 * distance, 0.155 * distance, share < 0.5 ? 258.0 : 30.0};
+  });
+  return map;
+}
+
+const std::array<Rgb, 8>& category_colours() {
+  static const std::array<Rgb, 8> colours{
+      srgb({32.5, 0.16, 257}),  // blue
+      srgb({75, 0.16, 65}),     // orange
+      srgb({57.5, 0.14, 152}),  // green
+      srgb({92, 0.16, 102}),    // yellow
+      srgb({19, 0.15, 305}),    // violet
+      srgb({83, 0.09, 225}),    // light blue
+      srgb({41.5, 0.19, 27}),   // red
+      srgb({66.5, 0.16, 350}),  // pink
+  };
+  return colours;
+}
 
 void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
   if (entries.empty()) return;
@@ -226,60 +215,31 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
   }
 }
 
-namespace {
-
-/// Where things lie, in pixels.
-struct BarLayout {
-  LegendSizes sizes;
-  std::vector<Tick> ticks;
-  std::string title;
-  int title_width, title_height;  ///< with the space below it
-  int length, thickness;          ///< of the bar
-  int dash;                       ///< of the line beside a number, and the space after it
-
-  BarLayout(const Picture& picture, const ColourBar& bar) : sizes(picture) {
-    const Letters& letters = sizes.letters;
-    title = shortened(bar.title, sizes.most_width, letters);
-    title_width = text_width(title, letters);
-    title_height = title.empty() ? 0 : letters.line_distance();
-    thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
-    dash = static_cast<int>(std::lround(0.3 * letters.size_px));
-    const int free = sizes.most_height - title_height - letters.capital_height();
-    length = std::max(8, std::min(free, static_cast<int>(std::lround(11 * letters.size_px))));
-    ticks = ticks_between(bar.low, bar.high, 6);
-  }
-
-  int widest_label() const {
-    int widest = 0;
-    for (const Tick& tick : ticks) widest = std::max(widest, text_width(tick.label, sizes.letters));
-    return widest;
-  }
-};
-
-/// The pixel of a bar of `length` pixels at which `value` lies, from its low end.
-int place_of(double value, const ColourBar& bar, int length) {
-  if (bar.low == bar.high) return length / 2;
-  return static_cast<int>(std::lround((value - bar.low) / (bar.high - bar.low) * (length - 1)));
-}
-
-}  // namespace
-
 void draw_colour_bar(Picture& picture, const ColourBar& bar) {
-  const BarLayout layout(picture, bar);
-  const Letters& letters = layout.sizes.letters;
-  const int capital = letters.capital_height(), labels_from = layout.thickness + 2 * layout.dash;
-  const int width = std::max(layout.title_width, labels_from + layout.widest_label());
+  const LegendSizes sizes(picture);
+  const Letters& letters = sizes.letters;
+  const std::string title = shortened(bar.title, sizes.most_width, letters);
+  const std::vector<Tick> ticks = ticks_between(bar.low, bar.high, 6);
+  const int capital = letters.capital_height();
+  const int thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
+  // Of the line beside a number, and the space after it.
+  const int dash = static_cast<int>(std::lround(0.3 * letters.size_px)), labels_from = thickness + 2 * dash;
+  int width = text_width(title, letters);
+  for (const Tick& tick : ticks) width = std::max(width, labels_from + text_width(tick.label, letters));
+  const int title_height = title.empty() ? 0 : letters.line_distance();
+  const int free = sizes.most_height - title_height - capital;
+  const int length = std::max(8, std::min(free, static_cast<int>(std::lround(11 * letters.size_px))));
   // A number at an end reaches half its height beyond the bar.
-  const int bar_from = layout.title_height + capital / 2;
-  const PixelBox content = draw_panel(picture, width, bar_from + layout.length + capital / 2);
-  draw_text(picture, layout.title, content.left, content.top + capital, letters);
-  const int low_end = content.top + bar_from + layout.length - 1;
-  for (int i = 0; i < layout.length; ++i)
-    fill(picture, {content.left, low_end - i, layout.thickness, 1},
-         bar.map.at(static_cast<double>(i) / (layout.length - 1)));
-  for (const Tick& tick : layout.ticks) {
-    const int y = low_end - place_of(tick.value, bar, layout.length);
-    fill(picture, {content.left + layout.thickness, y, layout.dash, 1}, letters.colour);
+  const int bar_from = title_height + capital / 2;
+  const PixelBox content = draw_panel(picture, width, bar_from + length + capital / 2);
+  draw_text(picture, title, content.left, content.top + capital, letters);
+  const int low_end = content.top + bar_from + length - 1;
+  for (int i = 0; i < length; ++i)
+    fill(picture, {content.left, low_end - i, thickness, 1},
+         bar.map.at(static_cast<double>(i) / (length - 1)));
+  for (const Tick& tick : ticks) {
+    const int y = low_end - place_of(tick.value, bar, length);
+    fill(picture, {content.left + thickness, y, dash, 1}, letters.colour);
     draw_text(picture, tick.label, content.left + labels_from, y + (capital + 1) / 2, letters);
   }
 }

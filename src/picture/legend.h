@@ -31,10 +31,6 @@ struct ColourMap {
   Rgb at(double share) const;
 };
 
-/// For an amount, from dark violet over red to light yellow. Lightness grows evenly, so that it reads in
-/// black and white.
-const ColourMap& sequential_map();
-
 /// For what is less or more than the middle, such as compression and stretch: from blue over light grey to
 /// red. Lightness falls evenly from the middle to both ends.
 const ColourMap& diverging_map();

@@ -157,8 +157,8 @@ void draw_text(Picture& picture, std::string_view text, int x, int baseline, con
     for (int row = 0; row < mask.height; ++row)
       for (int column = 0; column < mask.width; ++column, ++covered)
         if (*covered > 0)
-          blend(picture, x + from_start + mask.left + column, baseline - mask.above + row, letters.colour,
-                *covered);
+          fill(picture, {x + from_start + mask.left + column, baseline - mask.above + row, 1, 1},
+               letters.colour, *covered);
   });
 }
 

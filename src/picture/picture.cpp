@@ -26,46 +26,6 @@ PixelRange pixels_inside(std::int64_t first, std::int64_t count, std::int64_t si
   return {std::clamp<std::int64_t>(first, 0, size), std::clamp<std::int64_t>(first + count, 0, size)};
 }
 
-}  // namespace
-
-double srgb_code(double light) {
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
-
-double srgb_light(double code) {
-  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
-}
-
-Picture::Picture(std::uint32_t w, std::uint32_t h, Rgb colour)
-    : width(w), height(h), pixels(std::size_t{w} * h, colour) {}
-
-void blend(Picture& picture, int x, int y, Rgb colour, std::uint8_t coverage) {
-  fill(picture, {x, y, 1, 1}, colour, coverage);
-}
-
-void fill(Picture& picture, const PixelBox& box, Rgb colour, std::uint8_t coverage) {
-  const PixelRange columns = pixels_inside(box.left, box.width, picture.width);
-  const PixelRange rows = pixels_inside(box.top, box.height, picture.height);
-  for (std::int64_t y = rows.begin; y < rows.end; ++y)
-    for (std::int64_t x = columns.begin; x < columns.end; ++x) {
-      Rgb& pixel = picture.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-      pixel = blended(pixel, colour, coverage);
-    }
-}
-
-void paste(Picture& picture, const Picture& pasted, int left, int top) {
-  const PixelRange columns = pixels_inside(left, pasted.width, picture.width);
-  const PixelRange rows = pixels_inside(top, pasted.height, picture.height);
-  if (columns.begin == columns.end) return;
-  for (std::int64_t y = rows.begin; y < rows.end; ++y)
-    std::copy_n(
-        &pasted.at(static_cast<std::uint32_t>(columns.begin - left), static_cast<std::uint32_t>(y - top)),
-        columns.end - columns.begin,
-        &picture.at(static_cast<std::uint32_t>(columns.begin), static_cast<std::uint32_t>(y)));
-}
-
-namespace {
-
 /// What libpng said last before it gave up.
 using PngMessage = std::array<char, 200>;
 
@@ -123,6 +83,38 @@ bool write_png(png_structp png, png_infop info, const Picture& picture) {
 }
 
 }  // namespace
+
+double srgb_code(double light) {
+  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+}
+
+double srgb_light(double code) {
+  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
+}
+
+Picture::Picture(std::uint32_t w, std::uint32_t h, Rgb colour)
+    : width(w), height(h), pixels(std::size_t{w} * h, colour) {}
+
+void fill(Picture& picture, const PixelBox& box, Rgb colour, std::uint8_t coverage) {
+  const PixelRange columns = pixels_inside(box.left, box.width, picture.width);
+  const PixelRange rows = pixels_inside(box.top, box.height, picture.height);
+  for (std::int64_t y = rows.begin; y < rows.end; ++y)
+    for (std::int64_t x = columns.begin; x < columns.end; ++x) {
+      Rgb& pixel = picture.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      pixel = blended(pixel, colour, coverage);
+    }
+}
+
+void paste(Picture& picture, const Picture& pasted, int left, int top) {
+  const PixelRange columns = pixels_inside(left, pasted.width, picture.width);
+  const PixelRange rows = pixels_inside(top, pasted.height, picture.height);
+  if (columns.begin == columns.end) return;
+  for (std::int64_t y = rows.begin; y < rows.end; ++y)
+    std::copy_n(
+        &pasted.at(static_cast<std::uint32_t>(columns.begin - left), static_cast<std::uint32_t>(y - top)),
+        columns.end - columns.begin,
+        &picture.at(static_cast<std::uint32_t>(columns.begin), static_cast<std::uint32_t>(y)));
+}
 
 std::string png_of(const Picture& picture) {
   PngWriter writer;

@@ -48,9 +48,6 @@ constexpr Rgb blended(Rgb under, Rgb over, std::uint8_t coverage) {
   return {channel(under.red, over.red), channel(under.green, over.green), channel(under.blue, over.blue)};
 }
 
-/// Blends `colour` over the pixel in column `x` of row `y`; nothing happens outside of the picture.
-void blend(Picture& picture, int x, int y, Rgb colour, std::uint8_t coverage);
-
 /// Blends `colour` over every pixel of `box`; by default it replaces them.
 void fill(Picture& picture, const PixelBox& box, Rgb colour, std::uint8_t coverage = 255);
 

@@ -19,7 +19,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,45 +36,6 @@ std::error_code last_error() { return {errno, std::generic_category()}; }
                                         ? fmt::format("is longer than {} KiB", most_bytes >> 10)
                                         : fmt::format("is longer than {} MiB", most_bytes >> 20));
 }
-
-}  // namespace
-
-std::string ReadError::sentence(const fs::path& file, std::string_view remedy) const {
-  std::string text = printable(file.string(), 1000) + ": " + what();
-  if (cause != Cause::other) text.append(": ").append(remedy);
-  return text;
-}
-
-void require_regular_file(const fs::path& file) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) throw ReadError(Cause::missing, "there is no such file");
-  if (error) fail("cannot be looked up", error, "check the path and its permissions");
-  if (!fs::is_regular_file(status)) throw ReadError(Cause::not_regular, "is not a regular file");
-}
-
-std::string read_file(const fs::path& file, std::size_t most_bytes) {
-  require_regular_file(file);
-  const Descriptor open(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!open.is_open()) fail("cannot be opened", last_error(), "check its permissions");
-  std::error_code error;
-  if (const std::uintmax_t bytes = fs::file_size(file, error); !error && bytes > most_bytes)
-    refuse_size(most_bytes);
-  std::string text;
-  std::vector<char> block(std::size_t{1} << 16);
-  // The length is counted while reading, too, because the one that the file system states can be wrong
-  // (/proc).
-  while (true) {
-    const ssize_t bytes = ::read(open.get(), block.data(), block.size());
-    if (bytes < 0 && errno == EINTR) continue;
-    if (bytes < 0) fail("cannot be read", last_error(), "check the file and its disk");
-    if (bytes == 0) return text;
-    text.append(block.data(), static_cast<std::size_t>(bytes));
-    if (text.size() > most_bytes) refuse_size(most_bytes);
-  }
-}
-
-namespace {
 
 const char* remedy(int error_number) {
   switch (error_number) {
@@ -98,16 +58,6 @@ const char* remedy(int error_number) {
       return "choose another folder";
   }
 }
-
-}  // namespace
-
-std::string write_failure(const fs::path& file, const std::string& action, int error_number,
-                          const std::string& reason) {
-  const std::string why = !reason.empty() ? reason : std::generic_category().message(error_number);
-  return fmt::format("cannot write {}: {} failed: {}; {}", file.string(), action, why, remedy(error_number));
-}
-
-namespace {
 
 [[noreturn]] void fail(const fs::path& file, const std::string& action) {
   throw WriteError(write_failure(file, action, errno));
@@ -172,7 +122,89 @@ void sync_folder_of(const fs::path& file) {
   if (::fsync(handle.get()) != 0 && errno != EINVAL) fail(file, "syncing folder " + folder.string());
 }
 
+std::optional<TemporaryFolder>& folder_of_process() {
+  static std::optional<TemporaryFolder> folder;
+  return folder;
+}
+
+/// The system's folder for temporary files.
+fs::path system_folder() {
+  const char* chosen = std::getenv("TMPDIR");
+  return chosen && *chosen ? chosen : "/tmp";
+}
+
+fs::path own_program() {
+  std::error_code error;
+  fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error)
+    throw std::runtime_error("mssim cannot find its own program file through /proc/self/exe (" +
+                             error.message() + "), beside which its data folder lies");
+  return program;
+}
+
+/// What `bin`, which has mssim, and `libexec/mssim`, which has its helpers, lie in.
+fs::path own_prefix() {
+  const fs::path folder = own_program().parent_path();
+  return folder.parent_path().filename() == "libexec" ? folder.parent_path().parent_path()
+                                                      : folder.parent_path();
+}
+
+bool may_be_executed(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
+}
+
+/// First line of a script, from #! on. Empty for what is no script.
+std::string first_line(const fs::path& file) {
+  std::array<char, 256> bytes{};  // no system reads more of it
+  std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size() - 1);
+  std::string line(bytes.data());
+  line.resize(std::min(line.find('\n'), line.size()));
+  return line.starts_with("#!") ? line : "";
+}
+
 }  // namespace
+
+std::string ReadError::sentence(const fs::path& file, std::string_view remedy) const {
+  std::string text = printable(file.string(), 1000) + ": " + what();
+  if (cause != Cause::other) text.append(": ").append(remedy);
+  return text;
+}
+
+void require_regular_file(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) throw ReadError(Cause::missing, "there is no such file");
+  if (error) fail("cannot be looked up", error, "check the path and its permissions");
+  if (!fs::is_regular_file(status)) throw ReadError(Cause::not_regular, "is not a regular file");
+}
+
+std::string read_file(const fs::path& file, std::size_t most_bytes) {
+  require_regular_file(file);
+  const Descriptor open(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!open.is_open()) fail("cannot be opened", last_error(), "check its permissions");
+  std::error_code error;
+  if (const std::uintmax_t bytes = fs::file_size(file, error); !error && bytes > most_bytes)
+    refuse_size(most_bytes);
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  // The length is counted while reading, too, because the one that the file system states can be wrong
+  // (/proc).
+  while (true) {
+    const ssize_t bytes = ::read(open.get(), block.data(), block.size());
+    if (bytes < 0 && errno == EINTR) continue;
+    if (bytes < 0) fail("cannot be read", last_error(), "check the file and its disk");
+    if (bytes == 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(bytes));
+    if (text.size() > most_bytes) refuse_size(most_bytes);
+  }
+}
+
+std::string write_failure(const fs::path& file, const std::string& action, int error_number,
+                          const std::string& reason) {
+  const std::string why = !reason.empty() ? reason : std::generic_category().message(error_number);
+  return fmt::format("cannot write {}: {} failed: {}; {}", file.string(), action, why, remedy(error_number));
+}
 
 fs::path temporary_of(const fs::path& file) {
   fs::path temporary = file;
@@ -287,21 +319,6 @@ FolderLock::FolderLock(const fs::path& folder)
                      folder.string());
 }
 
-namespace {
-
-std::optional<TemporaryFolder>& folder_of_process() {
-  static std::optional<TemporaryFolder> folder;
-  return folder;
-}
-
-/// The system's folder for temporary files.
-fs::path system_folder() {
-  const char* chosen = std::getenv("TMPDIR");
-  return chosen && *chosen ? chosen : "/tmp";
-}
-
-}  // namespace
-
 TemporaryFolder::TemporaryFolder() : TemporaryFolder(system_folder()) {}
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent) {
@@ -327,26 +344,6 @@ const fs::path& temporary_folder_of_process() {
 
 void remove_temporary_folder_of_process() { folder_of_process().reset(); }
 
-namespace {
-
-fs::path own_program() {
-  std::error_code error;
-  fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error)
-    throw std::runtime_error("mssim cannot find its own program file through /proc/self/exe (" +
-                             error.message() + "), beside which its data folder lies");
-  return program;
-}
-
-/// What `bin`, which has mssim, and `libexec/mssim`, which has its helpers, lie in.
-fs::path own_prefix() {
-  const fs::path folder = own_program().parent_path();
-  return folder.parent_path().filename() == "libexec" ? folder.parent_path().parent_path()
-                                                      : folder.parent_path();
-}
-
-}  // namespace
-
 fs::path data_folder() {
   std::error_code error;
   fs::path folder = own_prefix() / "share" / "mssim";
@@ -364,24 +361,6 @@ fs::path mssim_program() {
   const fs::path emulated = helper_program("mssim");
   return fs::exists(emulated, error) ? emulated : own_prefix() / "bin" / "mssim";
 }
-
-namespace {
-
-bool may_be_executed(const fs::path& file) {
-  std::error_code error;
-  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
-}
-
-/// First line of a script, from #! on. Empty for what is no script.
-std::string first_line(const fs::path& file) {
-  std::array<char, 256> bytes{};  // no system reads more of it
-  std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size() - 1);
-  std::string line(bytes.data());
-  line.resize(std::min(line.find('\n'), line.size()));
-  return line.starts_with("#!") ? line : "";
-}
-
-}  // namespace
 
 std::optional<fs::path> find_program(const std::string& name) {
   if (name.find('/') != std::string::npos)

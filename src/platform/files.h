@@ -70,9 +70,6 @@ class AtomicFile {
   /// cannot be created.
   explicit AtomicFile(std::filesystem::path file);
   AtomicFile(AtomicFile&&) = default;
-  AtomicFile& operator=(AtomicFile&&) = delete;
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
   /// Removes FILE.part unless the writing has ended.
   ~AtomicFile() { remove(); }
 

@@ -54,6 +54,17 @@ OnAllProcessCpus::~OnAllProcessCpus() {
   if (changed_) sched_setaffinity(0, sizeof before_, &before_);
 }
 
+void for_each_at_once(std::size_t count, std::size_t at_once, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
+  std::vector<std::future<void>> threads;
+  for (std::size_t thread = 0; thread < std::min(at_once, count); ++thread)
+    threads.push_back(std::async(as_the_system_can, [&] {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    }));
+  for (std::future<void>& thread : threads) thread.get();
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -164,21 +175,6 @@ void add_group(ContainerLimits& limits, const Dialect& dialect, const fs::path& 
   take_least(limits.memory_left, bytes - std::min(bytes, in_use - files));
 }
 
-}  // namespace
-
-ContainerLimits container_limits(const fs::path& root) {
-  ContainerLimits limits;
-  for (const Mount& mount : mounts(root)) {
-    const fs::path group = own_group(mount, root);
-    fs::path folder = mount.folder;
-    add_group(limits, *mount.dialect, folder);
-    for (const fs::path& name : group) add_group(limits, *mount.dialect, folder /= name);
-  }
-  return limits;
-}
-
-namespace {
-
 /// MemAvailable of /proc/meminfo; all there could be where the kernel does not say.
 std::uint64_t kernel_available() {
   std::ifstream meminfo("/proc/meminfo");
@@ -204,28 +200,6 @@ std::uint64_t limit_available() {
 std::string in_gigabytes(std::uint64_t bytes, int digits) {
   return fmt::format("{:.{}f} GB", static_cast<double>(bytes) * 1e-9, digits);
 }
-
-}  // namespace
-
-std::uint64_t available_memory() {
-  const std::uint64_t available = std::min(kernel_available(), limit_available());
-  return std::min(available, container_limits().memory_left.value_or(available));
-}
-
-std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t available) {
-  if (needed <= available) return std::nullopt;
-  constexpr int single_bytes = 9;
-  int digits = 2;
-  while (digits < single_bytes && in_gigabytes(needed, digits) == in_gigabytes(available, digits)) ++digits;
-  return fmt::format("needs at least {} of memory, but {} are available", in_gigabytes(needed, digits),
-                     in_gigabytes(available, digits));
-}
-
-std::optional<std::string> memory_shortage(std::uint64_t needed) {
-  return memory_shortage(needed, available_memory());
-}
-
-namespace {
 
 constexpr const char* spin_variable = "GOMP_SPINCOUNT";
 /// Some ten or hundred microseconds, as long as a pause takes on the processor. Nobody but this program
@@ -310,7 +284,51 @@ Trial try_threads(int wanted, ThreadStack stack) {
   return trial;
 }
 
+std::string_view variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? std::string_view() : value;
+}
+
+/// As the C library looks a locale up: the first of the three that is not empty.
+bool is_utf8(const StreamFacts& facts) {
+  const std::string_view locale = !facts.lc_all.empty()     ? facts.lc_all
+                                  : !facts.lc_ctype.empty() ? facts.lc_ctype
+                                                            : facts.lang;
+  for (const std::string_view name : {"UTF-8", "utf-8", "UTF8", "utf8"})
+    if (locale.find(name) != std::string_view::npos) return true;
+  return false;
+}
+
 }  // namespace
+
+ContainerLimits container_limits(const fs::path& root) {
+  ContainerLimits limits;
+  for (const Mount& mount : mounts(root)) {
+    const fs::path group = own_group(mount, root);
+    fs::path folder = mount.folder;
+    add_group(limits, *mount.dialect, folder);
+    for (const fs::path& name : group) add_group(limits, *mount.dialect, folder /= name);
+  }
+  return limits;
+}
+
+std::uint64_t available_memory() {
+  const std::uint64_t available = std::min(kernel_available(), limit_available());
+  return std::min(available, container_limits().memory_left.value_or(available));
+}
+
+std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t available) {
+  if (needed <= available) return std::nullopt;
+  constexpr int single_bytes = 9;
+  int digits = 2;
+  while (digits < single_bytes && in_gigabytes(needed, digits) == in_gigabytes(available, digits)) ++digits;
+  return fmt::format("needs at least {} of memory, but {} are available", in_gigabytes(needed, digits),
+                     in_gigabytes(available, digits));
+}
+
+std::optional<std::string> memory_shortage(std::uint64_t needed) {
+  return memory_shortage(needed, available_memory());
+}
 
 void start_with_short_waits(char** argv) {
   const char* spins = std::getenv(spin_variable);
@@ -336,8 +354,7 @@ std::optional<std::string> thread_shortage(int threads, ThreadStack stack) {
   return fmt::format(
       "{} were asked for; the system makes {} ({}): ask for fewer with --threads, raise the limit of "
       "processes (ulimit -u, or pids.max of a container){}",
-      pluralize(static_cast<std::uint64_t>(threads), "thread"), trial.made,
-      std::generic_category().message(trial.error),
+      pluralize(threads, "thread"), trial.made, std::generic_category().message(trial.error),
       stack == ThreadStack::openmp && size ? fmt::format(", or lower OMP_STACKSIZE, which is {}", size) : "");
 }
 
@@ -345,25 +362,6 @@ int openmp_team(int wanted) {
   const int threads = wanted > 0 ? wanted : omp_get_max_threads();
   return std::min(threads, try_threads(threads, ThreadStack::openmp).made);
 }
-
-namespace {
-
-std::string_view variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? std::string_view() : value;
-}
-
-/// As the C library looks a locale up: the first of the three that is not empty.
-bool is_utf8(const StreamFacts& facts) {
-  const std::string_view locale = !facts.lc_all.empty()     ? facts.lc_all
-                                  : !facts.lc_ctype.empty() ? facts.lc_ctype
-                                                            : facts.lang;
-  for (const std::string_view name : {"UTF-8", "utf-8", "UTF8", "utf8"})
-    if (locale.find(name) != std::string_view::npos) return true;
-  return false;
-}
-
-}  // namespace
 
 Terminal terminal_with(const StreamFacts& facts) {
   constexpr int usual_width = 80;

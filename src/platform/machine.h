@@ -3,8 +3,10 @@
 #include <sched.h>
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <optional>
 #include <string>
@@ -35,6 +37,9 @@ class OnAllProcessCpus {
 /// How std::async starts what should run beside the caller: in a thread, or where the system makes none, in
 /// that which waits for it.
 inline constexpr std::launch as_the_system_can = std::launch::async | std::launch::deferred;
+
+/// Calls `work` with 0 to `count` - 1, so many at the same time. Throws what `work` throws.
+void for_each_at_once(std::size_t count, std::size_t at_once, const std::function<void(std::size_t)>& work);
 
 /// What control groups (cgroups) let this process have, as containers, Slurm and systemd set them: of the
 /// group that it is in and of those that this is in, each the least. None where there is no limit.

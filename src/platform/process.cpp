@@ -20,7 +20,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 [[noreturn]] void fail(const ChildProcess& child, const std::string& why) {
@@ -32,26 +31,14 @@ namespace {
 }
 
 /// The two ends of a pipe; the child inherits neither but as stdout and stderr.
-class Pipe {
- public:
+struct Pipe {
   explicit Pipe(const ChildProcess& child) {
-    if (::pipe2(ends_.data(), O_CLOEXEC) != 0) fail(child, "opening a pipe", errno);
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(child, "opening a pipe", errno);
+    reader = Descriptor(ends[0]);
+    writer = Descriptor(ends[1]);
   }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  ~Pipe() {
-    close_writer();
-    ::close(ends_[0]);
-  }
-  int reader() const { return ends_[0]; }
-  int writer() const { return ends_[1]; }
-  void close_writer() {
-    if (ends_[1] >= 0) ::close(ends_[1]);
-    ends_[1] = -1;
-  }
-
- private:
-  std::array<int, 2> ends_{-1, -1};
+  Descriptor reader, writer;
 };
 
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
@@ -157,20 +144,18 @@ class Running {
     if (process_ == 0) {
       interruption.release_child();
       const StartError error =
-          become(child, argument_pointers.data(), environment_pointers.data(), output_.writer(), group);
-      [[maybe_unused]] const ssize_t written = ::write(start_error_.writer(), &error, sizeof error);
+          become(child, argument_pointers.data(), environment_pointers.data(), output_.writer.get(), group);
+      [[maybe_unused]] const ssize_t written = ::write(start_error_.writer.get(), &error, sizeof error);
       ::_exit(127);
     }
     // Here as well, so that the group exists before it is watched.
     group_ = group == 0 ? process_ : group;
     ::setpgid(process_, group_);
     if (child.elapsed_seconds > 0) deadline_ = Clock::now() + std::chrono::seconds(child.elapsed_seconds);
-    output_.close_writer();
-    start_error_.close_writer();
+    output_.writer.close();
+    start_error_.writer.close();
   }
 
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
   /// Where it has not ended because another could not be started, it is ended now.
   ~Running() {
     if (ended_) return;
@@ -183,7 +168,7 @@ class Running {
 
   /// Waits until it has ended.
   void end() {
-    result_.output = read_tail(output_.reader(), deadline_);
+    result_.output = read_tail(output_.reader.get(), deadline_);
     int status = 0;
     rusage used{};
     // What it started may hold the pipe open without it, and it may close the pipe and go on.
@@ -197,7 +182,7 @@ class Running {
       constexpr std::chrono::milliseconds between{1};
       std::this_thread::sleep_for(between);
     }
-    if (::read(start_error_.reader(), &error_, sizeof error_) != sizeof error_) error_ = {};
+    if (::read(start_error_.reader.get(), &error_, sizeof error_) != sizeof error_) error_ = {};
     if (WIFSIGNALED(status))
       result_.signal = WTERMSIG(status);
     else
@@ -245,6 +230,35 @@ class Running {
   ChildResult result_;
 };
 
+/// Ends quietly whatever happens: without messages, a core file or the handlers of a sanitizer.
+[[noreturn]] void try_out(const std::function<void()>& work, unsigned most_seconds) {
+  const rlimit no_core{0, 0}, seconds{most_seconds, most_seconds};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  ::setrlimit(RLIMIT_CPU, &seconds);
+  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(crash, SIG_DFL);
+  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+  }
+  try {
+    work();
+  } catch (...) {  // NOLINT(bugprone-empty-catch): it will be thrown again where somebody hears it
+  }
+  ::_exit(0);
+}
+
+// What a signal handler may touch has to be global. The system chooses the thread that handles a signal,
+// hence atomic.
+std::atomic<int> noted = 0;
+std::atomic<pid_t> watched_group = 0;
+std::atomic<int> received_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a handler may not wait for a lock");
+
+void end_group(int signal) {
+  received_signal = signal;
+  if (const pid_t group = watched_group; group > 0) ::kill(-group, SIGKILL);
+}
+
 }  // namespace
 
 std::string failed_end(const ChildResult& result, const std::string& doing) {
@@ -279,27 +293,6 @@ std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
   return results;
 }
 
-namespace {
-
-/// Ends quietly whatever happens: without messages, a core file or the handlers of a sanitizer.
-[[noreturn]] void try_out(const std::function<void()>& work, unsigned most_seconds) {
-  const rlimit no_core{0, 0}, seconds{most_seconds, most_seconds};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-  ::setrlimit(RLIMIT_CPU, &seconds);
-  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(crash, SIG_DFL);
-  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
-    ::dup2(nowhere, STDOUT_FILENO);
-    ::dup2(nowhere, STDERR_FILENO);
-  }
-  try {
-    work();
-  } catch (...) {  // NOLINT(bugprone-empty-catch): it will be thrown again where somebody hears it
-  }
-  ::_exit(0);
-}
-
-}  // namespace
-
 bool ends_in_trial(const std::function<void()>& work, unsigned most_seconds) {
   const pid_t trial = ::fork();
   if (trial < 0) return true;
@@ -309,15 +302,6 @@ bool ends_in_trial(const std::function<void()>& work, unsigned most_seconds) {
     if (errno != EINTR) return true;
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
-
-namespace {
-
-// What a signal handler may touch has to be global. The system chooses the thread that handles a signal,
-// hence atomic.
-std::atomic<int> noted = 0;
-static_assert(std::atomic<int>::is_always_lock_free, "a handler may not wait for a lock");
-
-}  // namespace
 
 void note_ending_signal(int signal) { noted = signal; }
 
@@ -340,18 +324,6 @@ void EndingSignals::restore() const {
   for (std::size_t i = 0; i < ending_signals.size(); ++i)
     ::sigaction(ending_signals[i], &before_[i], nullptr);
 }
-
-namespace {
-
-std::atomic<pid_t> watched_group = 0;
-std::atomic<int> received_signal = 0;
-
-void end_group(int signal) {
-  received_signal = signal;
-  if (const pid_t group = watched_group; group > 0) ::kill(-group, SIGKILL);
-}
-
-}  // namespace
 
 void throw_if_ending_signal_noted() {
   if (const int signal = take_ending_signal(); signal != 0) throw Interrupted{signal};

@@ -128,8 +128,6 @@ class InterruptionGuard {
   /// Until watch() the signals are held back, so that none falls between a fork and its watch.
   InterruptionGuard();
   ~InterruptionGuard();
-  InterruptionGuard(const InterruptionGuard&) = delete;
-  InterruptionGuard& operator=(const InterruptionGuard&) = delete;
 
   /// To be called in a forked child: its signals become what they were before the guard. Async-signal-safe.
   void release_child() const;

@@ -19,7 +19,6 @@
 #include "platform/machine.h"
 
 namespace mssim {
-
 namespace {
 
 /// How long the supervisor may take for what takes it a millisecond, and to end what SIGKILL ends.

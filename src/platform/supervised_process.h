@@ -79,8 +79,6 @@ class SupervisedProcess {
   explicit SupervisedProcess(const SupervisedProgram& program);
   /// Ends all of it at once.
   ~SupervisedProcess();
-  SupervisedProcess(const SupervisedProcess&) = delete;
-  SupervisedProcess& operator=(const SupervisedProcess&) = delete;
 
   /// Stops all its processes, also those that have left its group, until resume(). Nothing once it has ended.
   void pause();

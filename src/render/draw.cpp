@@ -25,6 +25,11 @@ std::uint8_t channel_of(float light) {
   return codes[static_cast<std::size_t>(std::clamp(light, 0.0F, 1.0F) * (entries - 1) + 0.5F)];
 }
 
+/// The TABLE of views.
+struct NamedView {
+  std::string_view name;
+  ViewDirection direction;
+};
 constexpr auto views = std::to_array<NamedView>({
     {"front", {0, 8}},
     {"side", {90, 8}},
@@ -244,8 +249,6 @@ Light light_of(const Rgb& colour) {
 }
 
 Rgb colour_of(const Light& light) { return {channel_of(light.x), channel_of(light.y), channel_of(light.z)}; }
-
-std::vector<NamedView> named_views() { return {views.begin(), views.end()}; }
 
 std::optional<ViewDirection> view_direction(std::string_view text) {
   if (const auto* row = std::ranges::find(views, text, &NamedView::name); row != views.end())

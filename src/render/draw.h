@@ -37,15 +37,8 @@ struct ViewDirection {
   double elevation = 0;  ///< degrees above the horizon, -90 to 90
 };
 
-/// A row of the TABLE of views.
-struct NamedView {
-  std::string_view name;
-  ViewDirection direction;
-};
-std::vector<NamedView> named_views();
-
-/// The direction that `text` means: a name of the table or AZIMUTH,ELEVATION in degrees. None where it is
-/// neither.
+/// The direction that `text` means: front, side, back, three-quarter or AZIMUTH,ELEVATION in degrees. None
+/// where it is neither.
 std::optional<ViewDirection> view_direction(std::string_view text);
 
 /// The axes of a camera: what it sees of a point lies at (x to the right, y upwards, z towards the camera).

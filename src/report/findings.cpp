@@ -43,13 +43,7 @@ std::optional<double> exponent_of(std::span<const double> x, std::span<const dou
 
 PaperScenes::PaperScenes(std::span<const ResultRow> rows, const PaperLegend& legend,
                          const PublishedTable& published)
-    : rows_(rows), legend_(legend), published_(published) {
-  for (const ResultRow& row : rows)
-    if (published.has_scene(row.nodes, row.springs_published) &&
-        std::ranges::find(scenes_, row.scene, &PaperScene::name) == scenes_.end())
-      scenes_.push_back({row.scene, row.nodes, row.springs_published});
-  std::ranges::stable_sort(scenes_, {}, &PaperScene::nodes);
-}
+    : rows_(rows), legend_(legend), published_(published), scenes_(published.scenes_of(rows)) {}
 
 std::string PaperScenes::label() const {
   // The title says what is measured, the table, and whose it is: "Cloth: Table 1 of Hong et al. (2016)".
@@ -60,14 +54,12 @@ std::string PaperScenes::label() const {
 
 std::optional<double> PaperScenes::published_ms(const PaperScene& scene, std::string_view integrator,
                                                 std::string_view configuration) const {
-  return published_.ms(integrator, configuration, scene.nodes, scene.springs_published);
+  return published_.ms(integrator, configuration, scene.nodes, scene.springs);
 }
 
 std::optional<double> PaperScenes::published_speedup(const PaperScene& scene, std::string_view integrator,
                                                      std::string_view configuration) const {
-  const auto ms = published_ms(scene, integrator, configuration);
-  const auto base = published_ms(scene, integrator, one_thread_configuration);
-  return ms && base ? std::optional(*base / *ms) : std::nullopt;
+  return published_.speedup(integrator, configuration, scene);
 }
 
 const ResultRow* PaperScenes::row(const PaperScene& scene, std::string_view backend,
@@ -171,21 +163,6 @@ std::optional<Finding> order_finding(const PaperScenes& scenes, const PaperConfi
                   first_backend, faster, slower, all - faster - slower, crossovers(measured_crossovers))};
 }
 
-}  // namespace
-
-std::vector<Finding> order_findings(const PaperScenes& scenes) {
-  std::vector<Finding> findings;
-  for (auto first = paper_configurations.begin(); first != paper_configurations.end(); ++first)
-    for (auto second = first + 1; second != paper_configurations.end(); ++second)
-      for (const std::string& first_backend : scenes.backends_of(first->name))
-        for (const std::string& second_backend : scenes.backends_of(second->name))
-          if (auto finding = order_finding(scenes, *first, *second, first_backend, second_backend))
-            findings.push_back(std::move(*finding));
-  return findings;
-}
-
-namespace {
-
 // Falls of speed-ups
 
 /// A speed-up at two neighbouring sizes.
@@ -260,24 +237,6 @@ Finding trend_finding(const PaperScenes& scenes, const std::vector<SizeStep>& st
                   falls - also_falls - rises)};
 }
 
-}  // namespace
-
-std::vector<Finding> trend_findings(const PaperScenes& scenes) {
-  std::vector<Finding> findings;
-  const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
-  if (one_thread.empty()) return findings;
-  for (const PaperConfiguration& configuration : paper_configurations) {
-    if (configuration.name == one_thread_configuration) continue;
-    for (const std::string& backend : scenes.backends_of(configuration.name)) {
-      const auto steps = steps_of(scenes, configuration.name, backend, one_thread.front());
-      if (!steps.empty()) findings.push_back(trend_finding(scenes, steps, configuration.caption, backend));
-    }
-  }
-  return findings;
-}
-
-namespace {
-
 // Costs of integrators: ratios over the sizes of a table
 
 std::vector<double> published_costs(const PaperScenes& scenes, const std::string& integrator,
@@ -310,9 +269,7 @@ std::string mean_and_range(const std::vector<double>& ratios) {
       below == 0 ? "" : fmt::format(", below 1 at {} of {}", below, pluralize(ratios.size(), "size")));
 }
 
-std::string evaluations(int number) {
-  return pluralize(static_cast<std::uint64_t>(number), "force evaluation");
-}
+std::string evaluations(int number) { return pluralize(number, "force evaluation"); }
 
 /// What a published cost suggests of a method that evaluates the forces so many times.
 std::string suggestion(double published_mean, int number) {
@@ -322,7 +279,73 @@ std::string suggestion(double published_mean, int number) {
              : fmt::format("about what its {} cost", evaluations(number));
 }
 
+// Rows
+
+std::string subject(std::size_t number, const std::string& noun, const std::string& one,
+                    const std::string& several) {
+  return pluralize(number, noun) + (number == 1 ? one : several);
+}
+
+/// "`opencl` on DEVICE", of every backend that ran on one.
+std::string devices_of(std::span<const ResultRow> rows, const Provenance& provenance) {
+  const std::vector<const ResultRow*> pointers = pointers_to(rows);
+  std::vector<std::string> labels;
+  for (const ResultRow& row : rows) {
+    if (opencl_device(row).empty()) continue;
+    const std::string label = backend_label(pointers, row.backend, provenance);
+    if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
+  }
+  return join(labels, "; ");
+}
+
+Finding about_speedups(std::span<const ResultRow> rows) {
+  const std::vector<const ResultRow*> pointers = pointers_to(rows);
+  std::vector<std::string> near_one;
+  std::size_t all = 0;
+  for (const ResultRow& row : rows) {
+    const ResultRow* serial = find_row(pointers, row.scene, baseline_name, row.integrator);
+    const auto ratio = serial == &row ? std::nullopt : times_as_fast(&row, serial);
+    if (!ratio) continue;
+    ++all;
+    if (ratio->side_of_one() == 0)
+      near_one.push_back(
+          fmt::format("{} ({} to {})", row_name(row), three_digits(ratio->low), three_digits(ratio->high)));
+  }
+  if (all == 0)
+    return {Outcome::fact, "There are no speed-ups: no row that counts stands beside one of `serial`."};
+  return {Outcome::fact, "Of " + pluralize(all, "speed-up") + " over `serial`, " +
+                             (near_one.empty() ? "all have an interval that does not hold 1."
+                                               : subject(near_one.size(), "interval", " holds 1", " hold 1") +
+                                                     ", so that neither is certainly the faster: " +
+                                                     join(near_one, "; ") + ".")};
+}
+
 }  // namespace
+
+std::vector<Finding> order_findings(const PaperScenes& scenes) {
+  std::vector<Finding> findings;
+  for (auto first = paper_configurations.begin(); first != paper_configurations.end(); ++first)
+    for (auto second = first + 1; second != paper_configurations.end(); ++second)
+      for (const std::string& first_backend : scenes.backends_of(first->name))
+        for (const std::string& second_backend : scenes.backends_of(second->name))
+          if (auto finding = order_finding(scenes, *first, *second, first_backend, second_backend))
+            findings.push_back(std::move(*finding));
+  return findings;
+}
+
+std::vector<Finding> trend_findings(const PaperScenes& scenes) {
+  std::vector<Finding> findings;
+  const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
+  if (one_thread.empty()) return findings;
+  for (const PaperConfiguration& configuration : paper_configurations) {
+    if (configuration.name == one_thread_configuration) continue;
+    for (const std::string& backend : scenes.backends_of(configuration.name)) {
+      const auto steps = steps_of(scenes, configuration.name, backend, one_thread.front());
+      if (!steps.empty()) findings.push_back(trend_finding(scenes, steps, configuration.caption, backend));
+    }
+  }
+  return findings;
+}
 
 std::vector<Finding> cost_findings(const PaperScenes& scenes) {
   std::vector<Finding> findings;
@@ -394,51 +417,6 @@ std::vector<Finding> garment_findings(std::span<const ResultRow> rows) {
   }
   return findings;
 }
-
-namespace {
-
-// Rows
-
-std::string subject(std::size_t number, const std::string& noun, const std::string& one,
-                    const std::string& several) {
-  return pluralize(number, noun) + (number == 1 ? one : several);
-}
-
-/// "`opencl` on DEVICE", of every backend that ran on one.
-std::string devices_of(std::span<const ResultRow> rows, const Provenance& provenance) {
-  const std::vector<const ResultRow*> pointers = pointers_to(rows);
-  std::vector<std::string> labels;
-  for (const ResultRow& row : rows) {
-    if (opencl_device(row).empty()) continue;
-    const std::string label = backend_label(pointers, row.backend, provenance);
-    if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
-  }
-  return join(labels, "; ");
-}
-
-Finding about_speedups(std::span<const ResultRow> rows) {
-  const std::vector<const ResultRow*> pointers = pointers_to(rows);
-  std::vector<std::string> near_one;
-  std::size_t all = 0;
-  for (const ResultRow& row : rows) {
-    const ResultRow* serial = find_row(pointers, row.scene, baseline_name, row.integrator);
-    const auto ratio = serial == &row ? std::nullopt : times_as_fast(&row, serial);
-    if (!ratio) continue;
-    ++all;
-    if (ratio->side_of_one() == 0)
-      near_one.push_back(
-          fmt::format("{} ({} to {})", row_name(row), three_digits(ratio->low), three_digits(ratio->high)));
-  }
-  if (all == 0)
-    return {Outcome::fact, "There are no speed-ups: no row that counts stands beside one of `serial`."};
-  return {Outcome::fact, "Of " + pluralize(all, "speed-up") + " over `serial`, " +
-                             (near_one.empty() ? "all have an interval that does not hold 1."
-                                               : subject(near_one.size(), "interval", " holds 1", " hold 1") +
-                                                     ", so that neither is certainly the faster: " +
-                                                     join(near_one, "; ") + ".")};
-}
-
-}  // namespace
 
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance) {
   std::vector<Finding> findings;

@@ -74,18 +74,14 @@ Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::s
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Series uncompared{.name = "not compared", .origin = Origin::reference, .mark = PointMark::square},
       diverged{.name = "diverged", .origin = Origin::reference, .mark = PointMark::cross};
-  const auto put = [](Series& series, double x, double y) {
-    series.x.push_back(x);
-    series.y.push_back(y);
-  };
   for (const GuideLine& line : lines) {
     Series series{.name = line.integrator, .family = line.integrator};
     for (const GuidePoint* point : line.points) {
       const auto x = point->*along;
       if (!x) continue;
       const double error = point->position_error.value_or(none);
-      put(point->diverged ? diverged : series, *x, point->diverged ? edge : error);
-      if (!point->diverged && point->status != "ok") put(uncompared, *x, error);
+      (point->diverged ? diverged : series).add(*x, point->diverged ? edge : error);
+      if (!point->diverged && point->status != "ok") uncompared.add(*x, error);
     }
     if (!series.x.empty()) chart.series.push_back(std::move(series));
   }
@@ -105,10 +101,8 @@ void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   Series front{.name = "on the front", .origin = Origin::reference, .mark = PointMark::ring};
   for (const GuideLine& line : lines)
     for (const GuidePoint* point : line.points)
-      if (point->on_front && point->wall_s_per_s && point->position_error) {
-        front.x.push_back(*point->wall_s_per_s);
-        front.y.push_back(*point->position_error);
-      }
+      if (point->on_front && point->wall_s_per_s && point->position_error)
+        front.add(*point->wall_s_per_s, *point->position_error);
   if (!front.x.empty()) work.series.push_back(std::move(front));
 }
 
@@ -213,8 +207,7 @@ std::optional<Chart> size_chart(const FoundGuide& guide, const std::string& scen
     auto series = std::ranges::find(chart.series, time.backend, &Series::name);
     if (series == chart.series.end())
       series = chart.series.insert(series, Series{.name = time.backend, .family = time.backend});
-    series->x.push_back(time.nodes);
-    series->y.push_back(time.ms_per_step);
+    series->add(time.nodes, time.ms_per_step);
   }
   std::erase_if(chart.series, [](const Series& series) { return series.x.size() < 2; });
   return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));

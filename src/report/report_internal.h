@@ -33,13 +33,6 @@ std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow
 /// two different x. All are above zero.
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
 
-/// A scene of a published table that was measured.
-struct PaperScene {
-  std::string name;
-  std::uint64_t nodes = 0;
-  std::optional<std::uint64_t> springs_published;
-};
-
 /// A published table and the rows that were measured of its scenes: what verdicts and charts ask of both.
 class PaperScenes {
  public:
@@ -67,9 +60,6 @@ class PaperScenes {
   const PublishedTable& published_;
   std::vector<PaperScene> scenes_;
 };
-
-/// The configuration that speed-ups are over.
-inline constexpr std::string_view one_thread_configuration = "cpu-only";
 
 /// What measured rows say about something that a paper says, or about themselves.
 enum class Outcome : std::uint8_t {

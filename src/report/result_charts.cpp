@@ -11,10 +11,6 @@
 namespace mssim {
 namespace {
 
-Series measured_series(const std::string& name, const std::string& family) {
-  return {.name = name, .family = family};
-}
-
 Series published_series(std::string_view configuration, const std::string& family) {
   const auto found = std::ranges::find(paper_configurations, configuration, &PaperConfiguration::name);
   return {.name = std::string(found == paper_configurations.end() ? configuration : found->caption) +
@@ -23,10 +19,7 @@ Series published_series(std::string_view configuration, const std::string& famil
           .family = family};
 }
 
-void add_point(Series& series, std::uint64_t nodes, double y) {
-  series.x.push_back(static_cast<double>(nodes));
-  series.y.push_back(y);
-}
+void add_point(Series& series, std::uint64_t nodes, double y) { series.add(static_cast<double>(nodes), y); }
 
 /// The time of a row that counts, with its interval.
 void add_time(Series& series, const ResultRow& row) {
@@ -45,69 +38,6 @@ Chart chart_of(const std::string& id, const std::string& title, Axis x, Axis y,
   chart.y = std::move(y);
   return chart;
 }
-
-}  // namespace
-
-std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& id) {
-  std::vector<Chart> charts;
-  const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
-  if (one_thread.empty()) return charts;
-  for (const PaperLegend::Integrator& integrator : scenes.legend().integrators) {
-    if (integrator.name != integrator.paper_name) continue;
-    Chart chart =
-        chart_of(id + "-speed-up-" + integrator.name, integrator.name + ": speed-up over one thread",
-                 {"nodes", true}, {"times as fast as one thread", true});
-    bool is_measured = false;
-    for (const PaperConfiguration& configuration : paper_configurations) {
-      if (configuration.name == one_thread_configuration) continue;
-      const std::vector<std::string> backends = scenes.backends_of(configuration.name);
-      Series published = published_series(configuration.name, backends.empty() ? "" : backends.front());
-      for (const PaperScene& scene : scenes.scenes())
-        if (const auto speedup = scenes.published_speedup(scene, integrator.paper_name, configuration.name))
-          add_point(published, scene.nodes, *speedup);
-      if (!published.x.empty()) chart.series.push_back(std::move(published));
-      for (const std::string& backend : backends) {
-        Series measured = measured_series(backend + ", measured", backend);
-        for (const PaperScene& scene : scenes.scenes()) {
-          const auto speedup = times_as_fast(scenes.row(scene, backend, integrator.name),
-                                             scenes.row(scene, one_thread.front(), integrator.name));
-          if (!speedup) continue;
-          add_point(measured, scene.nodes, speedup->ratio);
-          measured.low.push_back(speedup->low);
-          measured.high.push_back(speedup->high);
-        }
-        if (measured.x.empty()) continue;
-        is_measured = true;
-        chart.series.push_back(std::move(measured));
-      }
-    }
-    if (is_measured) charts.push_back(std::move(chart));
-  }
-  return charts;
-}
-
-std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::string& id) {
-  Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of jeans", {"vertices", false},
-                         {"time of an iteration (ms)", false});
-  for (const ResultRow& row : rows) {
-    if (!row.dressing || !counts(row)) continue;
-    const std::string name =
-        row.backend + (row.backend == baseline_name ? ", without parallelisation" : ", with parallelisation");
-    auto series = std::ranges::find(chart.series, name, &Series::name);
-    if (series == chart.series.end())
-      series = chart.series.insert(series, measured_series(name, row.backend));
-    add_time(*series, row);
-  }
-  return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
-}
-
-ContentKind kind_of(const ResultRow& row) {
-  if (row.springs_published == 2 * row.springs_unique) return ContentKind::cloth;
-  if (row.springs_published == 3 * row.springs_unique) return ContentKind::bodies;
-  return row.dressing ? ContentKind::garment : ContentKind::other;
-}
-
-namespace {
 
 constexpr std::array<std::string_view, 4> kind_names{"cloths", "bodies", "garments", "other scenes"};
 
@@ -131,7 +61,7 @@ SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
   const auto of_backend = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
   if (of_backend != legend.backends.end()) lines.configuration = of_backend->configuration;
   const auto method = std::ranges::find(legend.integrators, integrator, &PaperLegend::Integrator::name);
-  lines.measured = measured_series(backend + ", measured", backend);
+  lines.measured = {.name = backend + ", measured", .family = backend};
   lines.published = published_series(lines.configuration, backend);
   for (const ResultRow* row : lines.rows) {
     add_time(lines.measured, *row);
@@ -159,7 +89,106 @@ std::vector<std::string> distinct(std::span<const ResultRow> rows, std::string R
   return values;
 }
 
+/// Where a row stands in a roofline: operations a byte, and 1e9 operations a second.
+struct RoofDot {
+  double intensity = 0, gigaflops = 0;
+  std::optional<double> roof;  ///< at this intensity
+};
+
+std::optional<RoofDot> dot_of(const ResultRow& row) {
+  const Integrator* integrator = find_integrator(row.integrator);
+  if (!integrator || is_implicit(*integrator) || !counts(row) || !row.gigabytes_per_second ||
+      !(*row.gigabytes_per_second > 0))
+    return std::nullopt;
+  // Operations do not depend on how springs lie in memory or how often a backend passes over the state.
+  const double flops = step_cost(*integrator, {row.nodes, row.springs_unique, 0}).flops;
+  RoofDot dot;
+  dot.gigaflops = flops / *row.ms_per_step / 1e6;
+  dot.intensity = dot.gigaflops / *row.gigabytes_per_second;
+  if (row.roofline_fraction && *row.roofline_fraction > 0) dot.roof = dot.gigaflops / *row.roofline_fraction;
+  return dot;
+}
+
+/// The roof that dots of as many threads lie under: bandwidth times intensity, up to a ceiling where any dot
+/// shows that there is one. Such dots were held against the same peaks.
+Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, double to) {
+  double bandwidth = 0, ceiling = 0;
+  for (const RoofDot& dot : dots) {
+    bandwidth = std::max(bandwidth, *dot.roof / dot.intensity);
+    ceiling = std::max(ceiling, *dot.roof);
+  }
+  const bool has_ceiling = std::ranges::any_of(
+      dots, [&](const RoofDot& dot) { return *dot.roof < 0.999 * bandwidth * dot.intensity; });
+  Series line{.name = "roof of " + pluralize(threads, "thread"),
+              .origin = Origin::reference,
+              .x = {from},
+              .y = {from * bandwidth}};
+  if (const double ridge = ceiling / bandwidth; has_ceiling && ridge > from && ridge < to)
+    line.add(ridge, ceiling);
+  line.add(to, has_ceiling ? std::min(to * bandwidth, ceiling) : to * bandwidth);
+  return line;
+}
+
 }  // namespace
+
+std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& id) {
+  std::vector<Chart> charts;
+  const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
+  if (one_thread.empty()) return charts;
+  for (const PaperLegend::Integrator& integrator : scenes.legend().integrators) {
+    if (integrator.name != integrator.paper_name) continue;
+    Chart chart =
+        chart_of(id + "-speed-up-" + integrator.name, integrator.name + ": speed-up over one thread",
+                 {"nodes", true}, {"times as fast as one thread", true});
+    bool is_measured = false;
+    for (const PaperConfiguration& configuration : paper_configurations) {
+      if (configuration.name == one_thread_configuration) continue;
+      const std::vector<std::string> backends = scenes.backends_of(configuration.name);
+      Series published = published_series(configuration.name, backends.empty() ? "" : backends.front());
+      for (const PaperScene& scene : scenes.scenes())
+        if (const auto speedup = scenes.published_speedup(scene, integrator.paper_name, configuration.name))
+          add_point(published, scene.nodes, *speedup);
+      if (!published.x.empty()) chart.series.push_back(std::move(published));
+      for (const std::string& backend : backends) {
+        Series measured{.name = backend + ", measured", .family = backend};
+        for (const PaperScene& scene : scenes.scenes()) {
+          const auto speedup = times_as_fast(scenes.row(scene, backend, integrator.name),
+                                             scenes.row(scene, one_thread.front(), integrator.name));
+          if (!speedup) continue;
+          add_point(measured, scene.nodes, speedup->ratio);
+          measured.low.push_back(speedup->low);
+          measured.high.push_back(speedup->high);
+        }
+        if (measured.x.empty()) continue;
+        is_measured = true;
+        chart.series.push_back(std::move(measured));
+      }
+    }
+    if (is_measured) charts.push_back(std::move(chart));
+  }
+  return charts;
+}
+
+std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::string& id) {
+  Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of jeans", {"vertices", false},
+                         {"time of an iteration (ms)", false});
+  for (const ResultRow& row : rows) {
+    if (!row.dressing || !counts(row)) continue;
+    const std::string name =
+        row.backend + (row.backend == baseline_name ? ", without parallelisation" : ", with parallelisation");
+    auto series = std::ranges::find(chart.series, name, &Series::name);
+    if (series == chart.series.end())
+      series = chart.series.insert(series, Series{.name = name, .family = row.backend});
+    add_time(*series, row);
+  }
+  return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
+}
+
+ContentKind kind_of(const ResultRow& row) {
+  if (row.springs_published == 2 * row.springs_unique) return ContentKind::cloth;
+  if (row.springs_published == 3 * row.springs_unique) return ContentKind::bodies;
+  return row.dressing ? ContentKind::garment : ContentKind::other;
+}
 
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
                                   std::span<const PublishedTable> published, const std::string& id) {
@@ -204,53 +233,6 @@ Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
   return table;
 }
 
-namespace {
-
-/// Where a row stands in a roofline: operations a byte, and 1e9 operations a second.
-struct RoofDot {
-  double intensity = 0, gigaflops = 0;
-  std::optional<double> roof;  ///< at this intensity
-};
-
-std::optional<RoofDot> dot_of(const ResultRow& row) {
-  const Integrator* integrator = find_integrator(row.integrator);
-  if (!integrator || is_implicit(*integrator) || !counts(row) || !row.gigabytes_per_second ||
-      !(*row.gigabytes_per_second > 0))
-    return std::nullopt;
-  // Operations do not depend on how springs lie in memory or how often a backend passes over the state.
-  const double flops = step_cost(*integrator, {row.nodes, row.springs_unique, 0}).flops;
-  RoofDot dot;
-  dot.gigaflops = flops / *row.ms_per_step / 1e6;
-  dot.intensity = dot.gigaflops / *row.gigabytes_per_second;
-  if (row.roofline_fraction && *row.roofline_fraction > 0) dot.roof = dot.gigaflops / *row.roofline_fraction;
-  return dot;
-}
-
-/// The roof that dots of as many threads lie under: bandwidth times intensity, up to a ceiling where any dot
-/// shows that there is one. Such dots were held against the same peaks.
-Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, double to) {
-  double bandwidth = 0, ceiling = 0;
-  for (const RoofDot& dot : dots) {
-    bandwidth = std::max(bandwidth, *dot.roof / dot.intensity);
-    ceiling = std::max(ceiling, *dot.roof);
-  }
-  const bool has_ceiling = std::ranges::any_of(
-      dots, [&](const RoofDot& dot) { return *dot.roof < 0.999 * bandwidth * dot.intensity; });
-  Series line{.name = "roof of " + pluralize(static_cast<std::uint64_t>(threads), "thread"),
-              .origin = Origin::reference,
-              .x = {from},
-              .y = {from * bandwidth}};
-  if (const double ridge = ceiling / bandwidth; has_ceiling && ridge > from && ridge < to) {
-    line.x.push_back(ridge);
-    line.y.push_back(ceiling);
-  }
-  line.x.push_back(to);
-  line.y.push_back(has_ceiling ? std::min(to * bandwidth, ceiling) : to * bandwidth);
-  return line;
-}
-
-}  // namespace
-
 std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const std::string& id) {
   const ResultRow* largest = nullptr;
   for (const ResultRow& row : rows)
@@ -279,12 +261,9 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
   // More points would hide the reference.
   constexpr std::size_t most_points = 40;
   Chart chart = chart_of(id, "Total energy: " + curve.name, {"time (s)", false}, {"total energy (J)", false});
-  Series& points = chart.series.emplace_back(measured_series(curve.name, ""));
+  Series& points = chart.series.emplace_back(Series{.name = curve.name, .family = ""});
   const std::size_t count = curve.time_s.size(), apart = std::max<std::size_t>(1, count / most_points);
-  for (std::size_t i = 0; i < count; i += apart) {
-    points.x.push_back(curve.time_s[i]);
-    points.y.push_back(curve.total_j[i]);
-  }
+  for (std::size_t i = 0; i < count; i += apart) points.add(curve.time_s[i], curve.total_j[i]);
   const FoundCurve* best = nullptr;
   for (const FoundCurve& reference : references)
     if (curve.name.starts_with(reference.name) && (!best || reference.name.size() > best->name.size()))

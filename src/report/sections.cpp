@@ -142,9 +142,8 @@ std::string count_of(const std::vector<Finding>& findings) {
   const auto published = std::ssize(findings) - number(Outcome::fact) - number(Outcome::warning);
   if (published == 0) return "<p>Nothing published stands beside these rows.</p>\n";
   return fmt::format("<p>Of {}, {} are reproduced, {} partly, {} are not, and {} are undecided.</p>\n",
-                     pluralize(static_cast<std::uint64_t>(published), "published statement"),
-                     number(Outcome::reproduced), number(Outcome::partly), number(Outcome::not_reproduced),
-                     number(Outcome::undecided));
+                     pluralize(published, "published statement"), number(Outcome::reproduced),
+                     number(Outcome::partly), number(Outcome::not_reproduced), number(Outcome::undecided));
 }
 
 std::string verdict_section(const ReportInput& input) {
@@ -192,8 +191,6 @@ std::string changes_section(const ReportInput& input) {
 
 // Tables
 
-std::string interval(double low, double high) { return three_digits(low) + " to " + three_digits(high); }
-
 /// The words say it, the sign only helps to see it.
 std::string verified_mark(const ResultRow& row) {
   if (counts(row)) return "✓ yes";
@@ -223,10 +220,10 @@ Table times_of(const std::vector<const ResultRow*>& rows, RowPointers all) {
                           row->threads > 0 ? Cell(row->threads) : Cell(),
                           shown ? Cell(row->ms_per_step) : Cell(),
                           shown && row->ms_per_step_low && row->ms_per_step_high
-                              ? Cell(interval(*row->ms_per_step_low, *row->ms_per_step_high))
+                              ? Cell(interval_text(*row->ms_per_step_low, *row->ms_per_step_high))
                               : Cell(),
                           speedup ? Cell(speedup->ratio) : Cell(),
-                          speedup ? Cell(interval(speedup->low, speedup->high)) : Cell(), published,
+                          speedup ? Cell(interval_text(speedup->low, speedup->high)) : Cell(), published,
                           shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
                           verified_mark(*row)});
   }

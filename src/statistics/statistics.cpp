@@ -11,7 +11,6 @@
 #include "statistics/rank_tests.h"
 
 namespace mssim {
-
 namespace {
 
 /// P(B(n, 1/2) = k). By logarithms, because 2^-n is no double from n = 1075 on.
@@ -115,15 +114,7 @@ Quartiles quartiles(std::span<const double> samples) {
 }
 
 std::string_view name_of(Outlier outlier) {
-  switch (outlier) {
-    case Outlier::mild:
-      return "mild";
-    case Outlier::extreme:
-      return "extreme";
-    case Outlier::no:
-      break;
-  }
-  return "";
+  return outlier == Outlier::mild ? "mild" : outlier == Outlier::extreme ? "extreme" : "";
 }
 
 std::vector<Outlier> outliers(std::span<const double> samples) {

@@ -118,10 +118,6 @@ std::optional<std::uint64_t> from_hex(std::string_view text) {
   return value;
 }
 
-std::string pluralize(std::uint64_t number, std::string_view noun) {
-  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
-}
-
 std::string join(std::span<const std::string> texts, std::string_view separator) {
   return fmt::format("{}", fmt::join(texts, separator));
 }

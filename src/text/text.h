@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -63,7 +64,9 @@ std::string to_hex(std::uint64_t value);
 std::optional<std::uint64_t> from_hex(std::string_view text);
 
 /// "1 thread", "2 threads": a number and a noun whose plural ends in s.
-std::string pluralize(std::uint64_t number, std::string_view noun);
+std::string pluralize(std::integral auto number, std::string_view noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
 
 /// The texts one behind the other, with `separator` between each two.
 std::string join(std::span<const std::string> texts, std::string_view separator);

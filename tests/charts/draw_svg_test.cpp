@@ -25,27 +25,19 @@ Chart small_chart(ChartForm form) {
   chart.id = "small";
   chart.title = "Time of a step";
   chart.form = form;
-  chart.x = {"nodes", form != ChartForm::bars};
-  chart.y = {"time of a step (ms)", form != ChartForm::bars};
-  std::vector<double> nodes{2500, 10000};
-  if (form == ChartForm::bars) {
-    nodes.clear();
-    chart.groups = {"cloth2500", "cloth10k"};
-  }
-  chart.series = {{.name = "serial",
-                   .origin = Origin::measured,
-                   .family = "cpu",
-                   .x = nodes,
-                   .y = {0.1, 0.3},
-                   .low = {0.09, 0.2},
-                   .high = {0.2, 0.4}},
-                  {.name = "CPU, published",
-                   .origin = Origin::published,
-                   .family = "cpu",
-                   .x = nodes,
-                   .y = {19.5, 80.5}}};
-  if (form != ChartForm::bars)
-    chart.series.push_back({.name = "bandwidth", .origin = Origin::reference, .x = nodes, .y = {0.01, 0.04}});
+  chart.x = {"nodes", true};
+  chart.y = {"time of a step (ms)", true};
+  const std::vector<double> nodes{2500, 10000};
+  chart.series = {
+      {.name = "serial",
+       .origin = Origin::measured,
+       .family = "cpu",
+       .x = nodes,
+       .y = {0.1, 0.3},
+       .low = {0.09, 0.2},
+       .high = {0.2, 0.4}},
+      {.name = "CPU, published", .origin = Origin::published, .family = "cpu", .x = nodes, .y = {19.5, 80.5}},
+      {.name = "bandwidth", .origin = Origin::reference, .x = nodes, .y = {0.01, 0.04}}};
   return chart;
 }
 
@@ -68,29 +60,25 @@ class DrawSvg : public TemporaryFolderTest {
 };
 
 TEST_F(DrawSvg, EachFormIsWellFormedAndHasItsTexts) {
-  for (const ChartForm form : {ChartForm::lines, ChartForm::points, ChartForm::bars}) {
+  for (const ChartForm form : {ChartForm::lines, ChartForm::points}) {
     const std::string svg = drawn(small_chart(form));
     expect_well_formed(svg);
     for (const char* text :
          {">Time of a step<", ">nodes<", ">time of a step (ms)<", ">serial<", ">CPU, published<"})
       EXPECT_THAT(svg, HasSubstr(text));
-    EXPECT_EQ(count(svg.substr(std::min(svg.size(), svg.rfind("<g "))), "L"),
-              form == ChartForm::bars ? 0U : 1U)
+    EXPECT_EQ(count(svg.substr(std::min(svg.size(), svg.rfind("<g "))), "L"), 1U)
         << "the reference is a line";
-    EXPECT_EQ(svg.find("<pattern") != std::string::npos, form == ChartForm::bars);
     EXPECT_EQ(svg.find("stroke-dasharray") != std::string::npos, form == ChartForm::lines)
         << "of the published";
   }
 }
 
 TEST_F(DrawSvg, HasNoColourOfLightPagesAndNoSize) {
-  for (const ChartForm form : {ChartForm::lines, ChartForm::bars}) {
-    const std::string svg = drawn(small_chart(form));
-    EXPECT_THAT(svg, AllOf(HasSubstr("currentColor"), HasSubstr("viewBox=\"0 0 480 ")));
-    for (const char* colour : {"black", "white", "#000", "#fff"})
-      EXPECT_THAT(svg, Not(HasSubstr(std::string("\"") + colour))) << colour;
-    EXPECT_THAT(svg.substr(0, svg.find('>')), AllOf(Not(HasSubstr(" width=")), Not(HasSubstr(" height="))));
-  }
+  const std::string svg = drawn(small_chart(ChartForm::lines));
+  EXPECT_THAT(svg, AllOf(HasSubstr("currentColor"), HasSubstr("viewBox=\"0 0 480 ")));
+  for (const char* colour : {"black", "white", "#000", "#fff"})
+    EXPECT_THAT(svg, Not(HasSubstr(std::string("\"") + colour))) << colour;
+  EXPECT_THAT(svg.substr(0, svg.find('>')), AllOf(Not(HasSubstr(" width=")), Not(HasSubstr(" height="))));
 }
 
 TEST_F(DrawSvg, MarksAreSignsInTheColourOfTheText) {
@@ -128,18 +116,6 @@ TEST_F(DrawSvg, TwelveLinesDifferWithoutColours) {
   EXPECT_EQ(looks.size(), 12U);
 }
 
-TEST_F(DrawSvg, SixSeriesOfBarsDifferWithoutColours) {
-  Chart chart = small_chart(ChartForm::bars);
-  chart.series.assign(6, {.name = "a", .y = {1, 2}});
-  const std::string svg = drawn(chart);
-  std::set<std::string> patterns;
-  for (std::size_t at = 0; (at = svg.find("<pattern", at)) != std::string::npos; ++at) {
-    const std::size_t lines = svg.find(" d=", at), end = svg.find("</pattern", at);
-    patterns.insert(lines < end ? svg.substr(lines, svg.find(" fill", lines) - lines) : "");
-  }
-  EXPECT_EQ(patterns.size(), 6U);
-}
-
 TEST_F(DrawSvg, ValuesStandWhereTheAxesSay) {
   Chart chart = small_chart(ChartForm::points);
   chart.y.logarithmic = false;
@@ -171,19 +147,17 @@ TEST_F(DrawSvg, ALineHasAGapWhereAValueIsMissing) {
 
 TEST_F(DrawSvg, NoTextIsAnElement) {
   const std::string hostile = "\"/><script>1</script> &lt; ]]> --> \\n '\n \xff \xEF\xBF\xBF \x1b[0m é漢";
-  for (const ChartForm form : {ChartForm::lines, ChartForm::points, ChartForm::bars}) {
+  for (const ChartForm form : {ChartForm::lines, ChartForm::points}) {
     Chart chart = small_chart(form);
     for (std::string* text : {&chart.title, &chart.x.label, &chart.y.label, &chart.series[0].name,
                               &chart.series[0].family, &chart.series[1].name})
       *text = hostile;
-    for (std::string& group : chart.groups) group = "%g'\"\n@\\<&";
     const std::string svg = drawn(chart);
     expect_well_formed(svg);
     EXPECT_THAT(svg, Not(HasSubstr("<script")));
     EXPECT_THAT(
         svg,
         HasSubstr("<title id=\"small-title\">&quot;/&gt;&lt;script&gt;1&lt;/script&gt; &amp;lt; ]]&gt;"));
-    EXPECT_EQ(count(svg, ">%g&#39;&quot; @\\&lt;&amp;</text>"), chart.groups.size());
   }
 }
 

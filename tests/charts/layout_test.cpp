@@ -71,24 +71,12 @@ TEST(PlottedValues, ASeriesWithoutValuesIsSaid) {
   EXPECT_THAT(plotted_values(chart_of({.name = "a", .x = {1}, .y = {1}})).notes, IsEmpty());
 }
 
-TEST(PlottedValues, BarsStandInTheirGroups) {
-  Chart chart = chart_of({.name = "a", .y = {7, not_a_number, 9}});
-  chart.form = ChartForm::bars;
-  chart.groups = {"p", "q", "r"};
-  const PlottedValues values = plotted_values(chart);
-  ASSERT_EQ(values.series[0].size(), 2U);
-  EXPECT_EQ(values.series[0][1].x, 2);
-}
-
 TEST(PlottedValues, NumbersOfValuesMustAgree) {
   EXPECT_THROW(plotted_values(chart_of({.name = "a", .x = {1, 2}, .y = {1}})), std::invalid_argument);
   EXPECT_THROW(plotted_values(chart_of({.name = "a", .x = {1}, .y = {1}, .low = {1}})),
                std::invalid_argument);
   EXPECT_THROW(plotted_values(chart_of({.name = "a", .x = {1}, .y = {1}, .low = {}, .high = {1, 2}})),
                std::invalid_argument);
-  Chart bars = chart_of({.name = "a", .y = {1}});
-  bars.form = ChartForm::bars;
-  EXPECT_THROW(plotted_values(bars), std::invalid_argument);
 }
 
 /// WCAG 2.2: https://www.w3.org/TR/WCAG22/#dfn-relative-luminance
@@ -213,12 +201,6 @@ TEST(AxisScale, ZeroIsShownWhereItIsNear) {
   EXPECT_EQ(linear_scale(-10, -1).high, 0);
 }
 
-TEST(AxisScale, BarsBeginAtZero) {
-  EXPECT_EQ(scale_from_zero(9, 10).low, 0);
-  EXPECT_EQ(scale_from_zero(-10, -9).high, 0);
-  EXPECT_LT(scale_from_zero(-1, 5).low, -1);
-}
-
 TEST(AxisScale, AValueStandsAtItsFraction) {
   EXPECT_DOUBLE_EQ((AxisScale{-10, 30, {}}).fraction(0), 0.25);
   EXPECT_DOUBLE_EQ((AxisScale{0.01, 100, {}, true}).fraction(0.1), 0.25);
@@ -227,7 +209,7 @@ TEST(AxisScale, AValueStandsAtItsFraction) {
 TEST(AxisScale, EachPairOfValuesHasRoomAndTicks) {
   using Scale = AxisScale (*)(double, double);
   const std::vector<double> values{1 / largest_plotted, 1e-9, 0.1, 1, 1 + 1e-12, 3, 1e5, largest_plotted};
-  for (const Scale scale : {Scale{linear_scale}, Scale{scale_from_zero}, Scale{logarithmic_scale}})
+  for (const Scale scale : {Scale{linear_scale}, Scale{logarithmic_scale}})
     for (const double low : values)
       for (const double high : values) {
         if (low > high) continue;
@@ -243,11 +225,10 @@ TEST(AxisScale, EachPairOfValuesHasRoomAndTicks) {
           EXPECT_GE(made.high * (1 + 1e-8), tick.value);
         }
       }
-  for (const auto& [low, high] : {std::pair{0.0, 0.0}, {-1.0, 1.0}, {-largest_plotted, largest_plotted}})
-    for (const Scale scale : {Scale{linear_scale}, Scale{scale_from_zero}}) {
-      EXPECT_LT(scale(low, high).low, scale(low, high).high);
-      EXPECT_GE(scale(low, high).ticks.size(), 2U);
-    }
+  for (const auto& [low, high] : {std::pair{0.0, 0.0}, {-1.0, 1.0}, {-largest_plotted, largest_plotted}}) {
+    EXPECT_LT(linear_scale(low, high).low, linear_scale(low, high).high);
+    EXPECT_GE(linear_scale(low, high).ticks.size(), 2U);
+  }
 }
 
 }  // namespace

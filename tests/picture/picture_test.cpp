@@ -55,9 +55,9 @@ TEST(Picture, FillsWhatLiesInside) {
 
 TEST(Picture, BlendsSinglePixelsInside) {
   Picture picture(2, 2, black);
-  blend(picture, 1, 0, white, 100);
-  blend(picture, 2, 0, white, 100);
-  blend(picture, 0, -1, white, 100);
+  fill(picture, {1, 0, 1, 1}, white, 100);
+  fill(picture, {2, 0, 1, 1}, white, 100);
+  fill(picture, {0, -1, 1, 1}, white, 100);
   EXPECT_EQ(picture.at(1, 0), (Rgb{100, 100, 100}));
   EXPECT_EQ(pixels_of(picture, black), 3u);
 }

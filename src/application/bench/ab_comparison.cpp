@@ -17,7 +17,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,28 +39,103 @@ unsigned whole_seconds(double seconds) { return static_cast<unsigned>(seconds + 
 class AbProgram {
  public:
   /// Throws MissingProgram for a file that cannot be run.
-  AbProgram(const std::string& file, const AbOptions& options);
+  AbProgram(const std::string& file, const AbOptions& options) : file_(file), options_(options) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || ::access(file.c_str(), X_OK) != 0)
+      throw MissingProgram("cannot run {}: give the path of an mssim program", file);
+    child_.program = fs::absolute(file);
+    child_.folder = fs::current_path();  // scenes may be files named from here
+    // One that never ends shall not run for ever.
+    child_.cpu_seconds =
+        static_cast<unsigned>(options.time_budget_s + 60) * std::max(1U, std::thread::hardware_concurrency());
+    child_.elapsed_seconds = whole_seconds(verification_limit * (options.time_budget_s + 60));
+  }
 
   /// Whether its bench takes --verified, as its help says. Throws UsageError where it says nothing in a
   /// minute.
-  bool takes_verified() const;
+  bool takes_verified() const {
+    ChildProcess child = child_;
+    child.arguments = {"bench", "--help"};
+    child.elapsed_seconds = whole_seconds(std::min(longest_help_s, options_.time_budget_s + spare_help_s));
+    const ChildResult result = run(child);
+    if (result.out_of_time)
+      throw UsageError("{} bench --help has not ended within {} s: give the path of an mssim program", file_,
+                       child.elapsed_seconds);
+    return result.signal == 0 && result.exit_code == exit_ok &&
+           result.output.find("--verified") != std::string::npos;
+  }
+
   /// The process that verifies everything, so that what is sampled later can rest on it.
-  ChildProcess verification() const;
+  ChildProcess verification() const {
+    return bench_process(options_.backends, options_.integrators, 1, verified_folder());
+  }
   /// Takes what came of it: the rows of a bench of one round.
-  std::vector<CombinationTime> take_verification(const ChildResult& result);
+  std::vector<CombinationTime> take_verification(const ChildResult& result) {
+    verified_ = true;
+    return rows_of(result, verified_folder());
+  }
   /// After a verification that took so long, samples may take ten times that, where that is more.
-  void allow(double verification_s);
+  void allow(double verification_s) {
+    child_.elapsed_seconds =
+        std::max(child_.elapsed_seconds, whole_seconds(verifications_a_sample * verification_s));
+  }
+
   /// Samples of these backends and integrators, which verifies them again where no verification was taken.
   std::vector<CombinationTime> bench(const std::vector<std::string>& backends,
-                                     const std::vector<std::string>& integrators) const;
+                                     const std::vector<std::string>& integrators) const {
+    const TemporaryFolder folder;
+    const fs::path out = folder.path() / "results";
+    ChildProcess child = bench_process(backends, integrators, samples_a_process, out);
+    if (verified_) add(child, "--verified", verified_folder().string());
+    return rows_of(run(child), out);
+  }
 
  private:
+  static void add(ChildProcess& child, const char* option, const std::string& value) {
+    child.arguments.insert(child.arguments.end(), {option, value});
+  }
+
   ChildProcess bench_process(const std::vector<std::string>& backends,
                              const std::vector<std::string>& integrators, int rounds,
-                             const std::filesystem::path& out) const;
-  std::vector<CombinationTime> rows_of(const ChildResult& result, const std::filesystem::path& out) const;
-  std::filesystem::path verified_folder() const { return folder_.path() / "verified"; }
-  [[noreturn]] void fail(const ChildResult& result) const;
+                             const fs::path& out) const {
+    ChildProcess child = child_;
+    child.arguments = {"bench"};
+    add(child, "--scene", join(options_.scenes, ","));
+    add(child, "--backend", join(backends, ","));
+    add(child, "--integrator", join(integrators, ","));
+    add(child, "--rounds", std::to_string(rounds));
+    add(child, "--out", out.string());
+    const OwnBackendOptions& own = options_.own_backends;
+    if (!own.folders.empty()) add(child, "--backend-folder", join(own.folders, ","));
+    if (own.limit_s) add(child, "--backend-limit", decimal(*own.limit_s));
+    if (options_.threads > 0) add(child, "--threads", std::to_string(options_.threads));
+    return child;
+  }
+
+  std::vector<CombinationTime> rows_of(const ChildResult& result, const fs::path& out) const {
+    // A row that is not verified ends a bench with 1; the row says so itself.
+    const bool measured = !result.out_of_time && result.signal == 0 &&
+                          (result.exit_code == exit_ok || result.exit_code == exit_not_verified);
+    if (!measured || !fs::exists(out / "timings.csv")) fail(result);
+    return read_combination_times(out / "timings.csv");
+  }
+
+  fs::path verified_folder() const { return folder_.path() / "verified"; }
+
+  [[noreturn]] void fail(const ChildResult& result) const {
+    std::cerr << result.output;
+    if (!result.output.empty() && !result.output.ends_with('\n')) std::cerr << '\n';
+    if (result.out_of_time)
+      throw UsageError(
+          "{} bench has not ended within {} s: run it alone to see why, or give a longer --time-budget",
+          file_, child_.elapsed_seconds);
+    const std::string how = result.signal != 0 ? fmt::format("was ended by signal {}", result.signal)
+                                               : fmt::format("exited with {}", result.exit_code);
+    const std::string sentence = file_ + " bench " + how + " instead of measuring" +
+                                 (result.output.empty() ? ", without a message" : "; its messages are above");
+    if (result.signal == 0 && result.exit_code == exit_unavailable) throw Unavailable(sentence);
+    throw UsageError(sentence);
+  }
 
   std::string file_;
   const AbOptions& options_;
@@ -69,100 +143,6 @@ class AbProgram {
   TemporaryFolder folder_;
   bool verified_ = false;
 };
-
-AbProgram::AbProgram(const std::string& file, const AbOptions& options) : file_(file), options_(options) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error) || ::access(file.c_str(), X_OK) != 0)
-    throw MissingProgram("cannot run {}: give the path of an mssim program", file);
-  child_.program = fs::absolute(file);
-  child_.folder = fs::current_path();  // scenes may be files named from here
-  // One that never ends shall not run for ever.
-  child_.cpu_seconds =
-      static_cast<unsigned>(options.time_budget_s + 60) * std::max(1U, std::thread::hardware_concurrency());
-  child_.elapsed_seconds = whole_seconds(verification_limit * (options.time_budget_s + 60));
-}
-
-bool AbProgram::takes_verified() const {
-  ChildProcess child = child_;
-  child.arguments = {"bench", "--help"};
-  child.elapsed_seconds = whole_seconds(std::min(longest_help_s, options_.time_budget_s + spare_help_s));
-  const ChildResult result = run(child);
-  if (result.out_of_time)
-    throw UsageError("{} bench --help has not ended within {} s: give the path of an mssim program", file_,
-                     child.elapsed_seconds);
-  return result.signal == 0 && result.exit_code == exit_ok &&
-         result.output.find("--verified") != std::string::npos;
-}
-
-void AbProgram::allow(double verification_s) {
-  child_.elapsed_seconds =
-      std::max(child_.elapsed_seconds, whole_seconds(verifications_a_sample * verification_s));
-}
-
-ChildProcess AbProgram::verification() const {
-  return bench_process(options_.backends, options_.integrators, 1, verified_folder());
-}
-
-std::vector<CombinationTime> AbProgram::take_verification(const ChildResult& result) {
-  verified_ = true;
-  return rows_of(result, verified_folder());
-}
-
-std::vector<CombinationTime> AbProgram::bench(const std::vector<std::string>& backends,
-                                              const std::vector<std::string>& integrators) const {
-  const TemporaryFolder folder;
-  const fs::path out = folder.path() / "results";
-  ChildProcess child = bench_process(backends, integrators, samples_a_process, out);
-  if (verified_) child.arguments.insert(child.arguments.end(), {"--verified", verified_folder().string()});
-  return rows_of(run(child), out);
-}
-
-ChildProcess AbProgram::bench_process(const std::vector<std::string>& backends,
-                                      const std::vector<std::string>& integrators, int rounds,
-                                      const fs::path& out) const {
-  ChildProcess child = child_;
-  child.arguments = {"bench",
-                     "--scene",
-                     join(options_.scenes, ","),
-                     "--backend",
-                     join(backends, ","),
-                     "--integrator",
-                     join(integrators, ","),
-                     "--rounds",
-                     std::to_string(rounds),
-                     "--out",
-                     out.string()};
-  const OwnBackendOptions& own = options_.own_backends;
-  if (!own.folders.empty())
-    child.arguments.insert(child.arguments.end(), {"--backend-folder", join(own.folders, ",")});
-  if (own.limit_s) child.arguments.insert(child.arguments.end(), {"--backend-limit", decimal(*own.limit_s)});
-  if (options_.threads > 0)
-    child.arguments.insert(child.arguments.end(), {"--threads", std::to_string(options_.threads)});
-  return child;
-}
-
-std::vector<CombinationTime> AbProgram::rows_of(const ChildResult& result, const fs::path& out) const {
-  // A row that is not verified ends a bench with 1; the row says so itself.
-  const bool measured = !result.out_of_time && result.signal == 0 &&
-                        (result.exit_code == exit_ok || result.exit_code == exit_not_verified);
-  if (!measured || !fs::exists(out / "timings.csv")) fail(result);
-  return read_combination_times(out / "timings.csv");
-}
-
-void AbProgram::fail(const ChildResult& result) const {
-  std::cerr << result.output;
-  if (!result.output.empty() && !result.output.ends_with('\n')) std::cerr << '\n';
-  if (result.out_of_time)
-    throw UsageError(
-        "{} bench has not ended within {} s: run it alone to see why, or give a longer --time-budget", file_,
-        child_.elapsed_seconds);
-  const std::string how = result.signal != 0 ? fmt::format("was ended by signal {}", result.signal)
-                                             : fmt::format("exited with {}", result.exit_code);
-  const std::string sentence = file_ + " bench " + how + " instead of measuring" +
-                               (result.output.empty() ? ", without a message" : "; its messages are above");
-  if (result.signal == 0 && result.exit_code == exit_unavailable) throw Unavailable(sentence);
-  throw UsageError(sentence);
-}
 
 /// A combination under way. Its pairs grow until they are settled.
 struct Series {

@@ -73,41 +73,6 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
           std::move(windows)};
 }
 
-}  // namespace
-
-PreparedScene outline_of(const PlannedScene& planned) {
-  PreparedScene scene;
-  scene.spec = planned.spec;
-  scene.system = outline_of_cloth(scene.spec);
-  round_start_to_single(scene.system);
-  scene.counts = planned.parts.counts;
-  if (scene.spec.dt_s) {
-    scene.dt_s = *scene.spec.dt_s;
-    return scene;
-  }
-  // Nodes of all kinds, and around some of them every spring that a node has.
-  constexpr std::uint32_t all_kinds = 9;
-  const auto& cloth = std::get<ClothSpec>(scene.spec.content);
-  scene.dt_s = auto_dt(mode_bound(build_window(
-      scene.spec, {.rows = std::min(cloth.rows, all_kinds), .columns = std::min(cloth.columns, all_kinds)})));
-  return scene;
-}
-
-System build_window(const SceneSpec& spec, const GridWindow& window) {
-  System system = build_cloth_window(spec, window);
-  system.springs = springs_of(std::get<GridPatch>(system.topology));
-  round_start_to_single(system);
-  return system;
-}
-
-std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes) {
-  std::vector<ExpectedTime> times;
-  for (const PlannedScene& scene : scenes) times.push_back(scene.time);
-  return times;
-}
-
-namespace {
-
 std::vector<std::string> timed_names(const BenchOptions& options) {
   std::vector<std::string> scenes = scenes_of_suite(options.suite, true);
   for (const std::string& scene : options.scenes)
@@ -153,29 +118,11 @@ void require_folder_where_needed(const BenchOutput& output) {
                      " needs the folder of an earlier run: give --out too");
 }
 
-/// Scenes by what they were asked for with, and their parts by their file, each read once.
-class SceneReader {
- public:
-  std::vector<SceneSpec> read(const std::vector<std::string>& names) {
-    std::vector<SceneSpec> specs;
-    for (const std::string& name : names) {
-      auto found = known_.find(name);
-      if (found == known_.end()) found = known_.emplace(name, find_scene(name)).first;
-      specs.push_back(found->second);
-    }
-    return specs;
-  }
-
-  SceneParts parts_of(const SceneSpec& spec) {
-    auto found = parts_.find(spec.file);
-    if (found == parts_.end()) found = parts_.emplace(spec.file, read_parts(spec)).first;
-    return found->second;
-  }
-
- private:
-  std::map<std::string, SceneSpec> known_;
-  std::map<std::filesystem::path, SceneParts> parts_;
-};
+std::vector<SceneSpec> find_scenes(const std::vector<std::string>& names) {
+  std::vector<SceneSpec> specs;
+  for (const std::string& name : names) specs.push_back(find_scene(name));
+  return specs;
+}
 
 /// The settings with the backends that the suite has for this scene.
 BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
@@ -207,6 +154,37 @@ void require_traceable(const SceneSpec& spec) {
 
 }  // namespace
 
+PreparedScene outline_of(const PlannedScene& planned) {
+  PreparedScene scene;
+  scene.spec = planned.spec;
+  scene.system = outline_of_cloth(scene.spec);
+  round_start_to_single(scene.system);
+  scene.counts = planned.parts.counts;
+  if (scene.spec.dt_s) {
+    scene.dt_s = *scene.spec.dt_s;
+    return scene;
+  }
+  // Nodes of all kinds, and around some of them every spring that a node has.
+  constexpr std::uint32_t all_kinds = 9;
+  const auto& cloth = std::get<ClothSpec>(scene.spec.content);
+  scene.dt_s = auto_dt(mode_bound(build_window(
+      scene.spec, {.rows = std::min(cloth.rows, all_kinds), .columns = std::min(cloth.columns, all_kinds)})));
+  return scene;
+}
+
+System build_window(const SceneSpec& spec, const GridWindow& window) {
+  System system = build_cloth_window(spec, window);
+  system.springs = springs_of(std::get<GridPatch>(system.topology));
+  round_start_to_single(system);
+  return system;
+}
+
+std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes) {
+  std::vector<ExpectedTime> times;
+  for (const PlannedScene& scene : scenes) times.push_back(scene.time);
+  return times;
+}
+
 double expected_rounds(const BenchPlan& plan) {
   const double most = plan.settings.rounds;
   return plan.time_budget_s ? std::min(most, rounds_within(*plan.time_budget_s, total(times_of(plan.timed))))
@@ -228,13 +206,18 @@ BenchPlan plan_of(const BenchOptions& options) {
   plan.published = published_tables();
   plan.tables = comparison.tables();
 
-  SceneReader scenes;
-  for (SceneSpec& spec : scenes.read(described_ones)) {
-    SceneParts parts = scenes.parts_of(spec);
+  std::map<std::filesystem::path, SceneParts> known_parts;  // by the scene's file, each read once
+  const auto parts_of = [&](const SceneSpec& spec) {
+    auto found = known_parts.find(spec.file);
+    if (found == known_parts.end()) found = known_parts.emplace(spec.file, read_parts(spec)).first;
+    return found->second;
+  };
+  for (SceneSpec& spec : find_scenes(described_ones)) {
+    SceneParts parts = parts_of(spec);
     require_memory(spec, parts.counts);
     plan.described.push_back({std::move(spec), std::move(parts)});
   }
-  std::vector<SceneSpec> timed = scenes.read(timed_ones);
+  std::vector<SceneSpec> timed = find_scenes(timed_ones);
   std::erase_if(timed, [&](const SceneSpec& spec) {
     return settings_of_scene(plan.settings, comparison, spec.name).backends.empty();
   });
@@ -251,7 +234,7 @@ BenchPlan plan_of(const BenchOptions& options) {
   if (!options.verified.empty())
     plan.settings.verified = verified_rows(options.verified, plan.provenance, plan.settings, timed);
   for (SceneSpec& spec : timed) {
-    SceneParts parts = scenes.parts_of(spec);
+    SceneParts parts = parts_of(spec);
     const BenchSettings settings = settings_of_scene(plan.settings, comparison, spec.name);
     plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
     if (options.output.trace && !plan.timed.back().windows.empty())

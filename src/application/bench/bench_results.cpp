@@ -78,17 +78,6 @@ void require_samples(const ResultRow& row, const fs::path& folder) {
           round + 1);
 }
 
-}  // namespace
-
-MeasuredRun read_run(const fs::path& path) {
-  const fs::path folder = folder_of(path);
-  MeasuredRun run{read_provenance(folder / "provenance.json"), read_results(folder)};
-  for (const ResultRow& row : run.rows) require_samples(row, folder);
-  return run;
-}
-
-namespace {
-
 /// Throws UsageError where there are sentences that say why --resume cannot continue in the folder.
 void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
   if (!differences.empty())
@@ -169,23 +158,6 @@ void require_row(const std::vector<ResultRow>& rows, const std::string& scene, c
                      folder, scene, backend.name, integrator.name);
 }
 
-}  // namespace
-
-std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now,
-                                     const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
-  MeasuredRun earlier = read_run(folder);
-  if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
-    throw UsageError("--verified cannot rely on {}: {}; leave it out to verify anew", folder,
-                     join(all, "; "));
-  for (const SceneSpec& scene : scenes)
-    for (const Integrator* integrator : settings.integrators)
-      for (const BackendInfo* backend : settings.backends)
-        require_row(earlier.rows, scene.name, *backend, *integrator, folder);
-  return std::move(earlier.rows);
-}
-
-namespace {
-
 std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
   if (plan.output.folder.empty()) return std::nullopt;
   return std::make_optional<ResultFolder>(plan.output.folder, plan.provenance, plan.tables);
@@ -202,6 +174,26 @@ void add_published_times(std::vector<ResultRow>& rows, const BenchPlan& plan) {
 }
 
 }  // namespace
+
+MeasuredRun read_run(const fs::path& path) {
+  const fs::path folder = folder_of(path);
+  MeasuredRun run{read_provenance(folder / "provenance.json"), read_results(folder)};
+  for (const ResultRow& row : run.rows) require_samples(row, folder);
+  return run;
+}
+
+std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now,
+                                     const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
+  MeasuredRun earlier = read_run(folder);
+  if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
+    throw UsageError("--verified cannot rely on {}: {}; leave it out to verify anew", folder,
+                     join(all, "; "));
+  for (const SceneSpec& scene : scenes)
+    for (const Integrator* integrator : settings.integrators)
+      for (const BackendInfo* backend : settings.backends)
+        require_row(earlier.rows, scene.name, *backend, *integrator, folder);
+  return std::move(earlier.rows);
+}
 
 BenchResults::BenchResults(const BenchPlan& plan)
     : plan_(plan),

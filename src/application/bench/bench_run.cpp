@@ -13,7 +13,6 @@
 #include "platform/process.h"
 
 namespace mssim {
-
 namespace {
 
 bool is_wrong(const ResultRow& row) {
@@ -38,22 +37,6 @@ std::vector<std::string> reasons(const std::vector<ResultRow>& rows, IsBad is_ba
   return sentences;
 }
 
-}  // namespace
-
-BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& asked_backends,
-                        const std::vector<std::string>& asked_integrators) {
-  BenchVerdict verdict{exit_not_verified, reasons(rows, is_wrong)};
-  if (!verdict.reasons.empty()) return verdict;
-  verdict = {exit_unavailable, reasons(rows, [&](const ResultRow& row) {
-               return is_missed(row, asked_backends, &ResultRow::backend, rows) ||
-                      is_missed(row, asked_integrators, &ResultRow::integrator, rows);
-             })};
-  if (verdict.reasons.empty()) verdict.exit_code = exit_ok;
-  return verdict;
-}
-
-namespace {
-
 /// Frames after the first.
 constexpr int frames = 10;
 
@@ -71,7 +54,36 @@ void write_trace(const std::filesystem::path& file, const SceneJob& job, const P
   trace.close();
 }
 
+double seconds_of(TimeBudget::Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+TimeBudget::Clock::duration duration_of(double seconds) {
+  return std::chrono::duration_cast<TimeBudget::Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+/// Adds to a job what the scene is. `scene` must outlive it.
+void add_scene(SceneJob& job, const PreparedScene& scene) {
+  job.system = &scene.system;
+  job.springs_published = scene.counts.springs_published;
+  job.note = scene.note;
+  job.dt_s = scene.dt_s;
+  if (scene.body) job.garment.emplace(GarmentJob{.body = fit_body(scene.body)});
+}
+
 }  // namespace
+
+BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& asked_backends,
+                        const std::vector<std::string>& asked_integrators) {
+  BenchVerdict verdict{exit_not_verified, reasons(rows, is_wrong)};
+  if (!verdict.reasons.empty()) return verdict;
+  verdict = {exit_unavailable, reasons(rows, [&](const ResultRow& row) {
+               return is_missed(row, asked_backends, &ResultRow::backend, rows) ||
+                      is_missed(row, asked_integrators, &ResultRow::integrator, rows);
+             })};
+  if (verdict.reasons.empty()) verdict.exit_code = exit_ok;
+  return verdict;
+}
 
 bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::vector<ResultRow>& rows,
                         const std::vector<std::string>& stems, const Provenance& provenance,
@@ -101,18 +113,6 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
   return failed;
 }
 
-namespace {
-
-double seconds_of(TimeBudget::Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
-
-TimeBudget::Clock::duration duration_of(double seconds) {
-  return std::chrono::duration_cast<TimeBudget::Clock::duration>(std::chrono::duration<double>(seconds));
-}
-
-}  // namespace
-
 TimeBudget::TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> scenes)
     : scenes_(std::move(scenes)), present_start_(Clock::now()) {
   if (!seconds) return;
@@ -140,19 +140,6 @@ void TimeBudget::first_round_done() {
   expected_ += present_.preparation + present_.round;
   taken_ += seconds_of(Clock::now() - present_start_);
 }
-
-namespace {
-
-/// Adds to a job what the scene is. `scene` must outlive it.
-void add_scene(SceneJob& job, const PreparedScene& scene) {
-  job.system = &scene.system;
-  job.springs_published = scene.counts.springs_published;
-  job.note = scene.note;
-  job.dt_s = scene.dt_s;
-  if (scene.body) job.garment.emplace(GarmentJob{.body = fit_body(scene.body)});
-}
-
-}  // namespace
 
 void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
   const double rounds = expected_rounds(plan);

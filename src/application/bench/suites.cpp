@@ -11,7 +11,6 @@
 #include "platform/machine.h"
 
 namespace mssim {
-
 namespace {
 
 constexpr std::string_view suites_of_tables = "tables";

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "integrators/all_integrators.h"
@@ -57,10 +56,8 @@ SampleTime time_sample(Combination& combination, int steps) {
 
 /// What a row is about, beyond its names.
 std::string subject_of(const ResultRow& row) {
-  std::ostringstream text;
-  text << row.nodes << " nodes and " << row.springs_unique << " springs in steps of " << row.dt_s << " s on "
-       << row.device << " with " << pluralize(static_cast<std::uint64_t>(row.threads), "thread");
-  return text.str();
+  return fmt::format("{} nodes and {} springs in steps of {:.6g} s on {} with {}", row.nodes,
+                     row.springs_unique, row.dt_s, row.device, pluralize(row.threads, "thread"));
 }
 
 void find_sample_steps(Combination& combination, const SceneJob& job) {
@@ -72,7 +69,7 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
     if (combination.step_seconds < least_step_s)
       return fail(combination,
                   fmt::format("failed: its steps are not done when it says so: {} take less than 10 ns each",
-                              pluralize(static_cast<std::uint64_t>(steps), "step")));
+                              pluralize(steps, "step")));
     const int fit =
         sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
     if (fit <= (job.verified ? 10 : 2) * steps) {
@@ -93,6 +90,15 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
   combination.step_seconds = median(trials) / trial_steps;
   combination.steps =
       sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
+}
+
+/// Ends a combination that is not measured any further.
+void drop(Combination& combination, const std::string& status) {
+  combination.row.status = status;
+  end(combination);
+  combination.backend.reset();
+  combination.dressing = nullptr;
+  combination.windows = nullptr;
 }
 
 /// What reading a state that has just come to be takes, the shortest of some times.
@@ -144,21 +150,14 @@ void end(Combination& combination) {
 }
 
 void fail(Combination& combination, const std::string& status) {
-  combination.row.status = status;
   combination.row.verified = false;
-  end(combination);
-  combination.backend.reset();
-  combination.dressing = nullptr;
-  combination.windows = nullptr;
+  drop(combination, status);
 }
 
 void leave_untimed(Combination& combination) {
   const std::string reason = combination.backend->reason_not_to_time();
   if (reason.empty()) return;
-  combination.row.status = "not timed: " + reason;
-  end(combination);
-  combination.backend.reset();
-  combination.windows = nullptr;
+  drop(combination, "not timed: " + reason);
 }
 
 void attempt(Combination& combination, const std::function<void()>& work) {
@@ -286,12 +285,12 @@ void require_prompt_steps(Combination& combination) {
     return;
   const double sample = median(combination.sample_seconds), reading = median(combination.reading_seconds);
   if (reading - combination.step_reading_seconds <= sample) return;
-  std::ostringstream why;
-  why << "failed: its steps are not done when it says so: it takes " << 1e3 * sample << " ms for "
-      << pluralize(static_cast<std::uint64_t>(combination.steps), "step") << ", and then " << 1e3 * reading
-      << " ms to give the state, where that takes " << 1e3 * combination.step_reading_seconds
-      << " ms after one step";
-  fail(combination, why.str());
+  fail(combination,
+       fmt::format(
+           "failed: its steps are not done when it says so: it takes {:.6g} ms for {}, and then {:.6g} "
+           "ms to give the state, where that takes {:.6g} ms after one step",
+           1e3 * sample, pluralize(combination.steps, "step"), 1e3 * reading,
+           1e3 * combination.step_reading_seconds));
 }
 
 void summarise(ResultRow& row, const ResultRow* serial) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -109,16 +108,8 @@ int count_cpus(const std::string& list) {
 /// "48K", "1024K", "32M" as the kernel writes the size of a cache.
 std::uint64_t bytes_of(const std::string& size) {
   const auto number = leading_number<std::uint64_t>(size);
-  switch (size.empty() ? ' ' : size.back()) {
-    case 'K':
-      return number << 10;
-    case 'M':
-      return number << 20;
-    case 'G':
-      return number << 30;
-    default:
-      return number;
-  }
+  const std::size_t unit = size.empty() ? std::string::npos : std::string_view("KMG").find(size.back());
+  return unit == std::string::npos ? number : number << 10 * (unit + 1);
 }
 
 std::vector<Cache> read_caches(const fs::path& cpus) {
@@ -238,12 +229,6 @@ bool binds_threads(const Provenance& provenance) {
   });
 }
 
-std::string one_decimal(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
-
 }  // namespace
 
 std::string_view cpu_generation(const CpuIdentification& cpu) {
@@ -327,8 +312,9 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
   const Machine& machine = provenance.machine;
   std::vector<std::string> noise;
   if (!machine.load_average.empty() && machine.load_average.front() >= least_load)
-    noise.push_back(fmt::format("other programs are running (load {} over the last minute): end them or wait",
-                                one_decimal(machine.load_average.front())));
+    noise.push_back(
+        fmt::format("other programs are running (load {:.1f} over the last minute): end them or wait",
+                    machine.load_average.front()));
   if (machine.governor && *machine.governor != "performance")
     noise.push_back("the frequency governor is \"" + *machine.governor +
                     "\": choose \"performance\" (cpupower frequency-set -g performance)");
@@ -341,8 +327,8 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
                                 pluralize(cpus, "logical CPU")));
   if (machine.cpu_quota && provenance.threads > *machine.cpu_quota)
     noise.push_back(fmt::format(
-        "a quota of this container lets {} run for the time of {} processors and then stops them: {}",
-        pluralize(static_cast<std::uint64_t>(provenance.threads), "thread"), one_decimal(*machine.cpu_quota),
+        "a quota of this container lets {} run for the time of {:.1f} processors and then stops them: {}",
+        pluralize(provenance.threads, "thread"), *machine.cpu_quota,
         provenance.threads > 1 ? "ask for fewer with --threads, or raise the quota" : "raise the quota"));
   if (provenance.threads > 1 && !binds_threads(provenance))
     noise.emplace_back("threads may move from CPU to CPU: set OMP_PROC_BIND=true");

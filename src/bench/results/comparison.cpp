@@ -36,17 +36,26 @@ const ResultRow* find(std::span<const ResultRow> rows, const ResultRow& row) {
   return same == rows.end() ? nullptr : &*same;
 }
 
-ComparedRow compare_rows(const ResultRow& base, const ResultRow& next, double threshold) {
+/// A combination with its time in BASE.
+template <class Combination>
+ComparedRow row_of(const Combination& combination, std::span<const double> base_ms) {
   ComparedRow row;
-  row.scene = base.scene;
-  row.backend = base.backend;
-  row.integrator = base.integrator;
-  row.base_ms = median(base.samples_ms);
-  if (!counts(next)) {
-    row.verdict = Verdict::lost;
-    row.reason = status_of(next);
-    return row;
-  }
+  row.scene = combination.scene;
+  row.backend = combination.backend;
+  row.integrator = combination.integrator;
+  row.base_ms = median(base_ms);
+  return row;
+}
+
+ComparedRow lost(ComparedRow row, const std::string& reason) {
+  row.verdict = Verdict::lost;
+  row.reason = reason;
+  return row;
+}
+
+ComparedRow compare_rows(const ResultRow& base, const ResultRow& next, double threshold) {
+  ComparedRow row = row_of(base, base.samples_ms);
+  if (!counts(next)) return lost(std::move(row), status_of(next));
   row.new_ms = median(next.samples_ms);
   row.ratio = ratio_of(base.samples_ms, next.samples_ms);
   row.verdict = verdict_of(*row.ratio, threshold);
@@ -80,9 +89,8 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
 std::vector<std::string> differences(std::span<const ResultRow> before, std::span<const ResultRow> now) {
   std::vector<std::string> sentences;
   for (const ResultRow& row : before) {
-    const auto same = std::ranges::find_if(
-        now, [&](const ResultRow& candidate) { return same_combination(candidate, row); });
-    if (same == now.end() || !row.ms_per_step || !same->ms_per_step) continue;
+    const ResultRow* same = find(now, row);
+    if (!same || !row.ms_per_step || !same->ms_per_step) continue;
     add(sentences, "the device of " + row.backend, row.device, same->device);
     add(sentences, "scene " + row.scene, size_of(row), size_of(*same));
   }
@@ -163,16 +171,8 @@ bool is_settled(const PairedTimes& times, double threshold) {
 }
 
 ComparedRow compare_pairs(const PairedTimes& times, double threshold) {
-  ComparedRow row;
-  row.scene = times.scene;
-  row.backend = times.backend;
-  row.integrator = times.integrator;
-  row.base_ms = median(times.base_ms);
-  if (!times.lost.empty()) {
-    row.verdict = Verdict::lost;
-    row.reason = times.lost;
-    return row;
-  }
+  ComparedRow row = row_of(times, times.base_ms);
+  if (!times.lost.empty()) return lost(std::move(row), times.lost);
   row.new_ms = median(times.new_ms);
   row.ratio = ratio_at_look(times);
   if (times.base_ms.size() >= first_look_pairs) row.verdict = verdict_of(*row.ratio, threshold);

@@ -62,10 +62,7 @@ struct StepSize {
   double bytes_per_spring = 0;  ///< memory that says which nodes a spring joins, and its rest length
 };
 
-/// Bytes that a spring takes in memory at least: none on a grid, where the place of a node says it all; two
-/// node indices and a rest length, as in the packed unit of Hong et al., in a body.
-std::size_t bytes_per_spring(const Topology& topology);
-
+/// With the bytes that a spring takes in memory at least.
 StepSize step_size(const System& system);
 
 /// The size where only so many of the springs are in memory (Backend::stored_springs): others share theirs.

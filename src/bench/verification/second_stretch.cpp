@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <sstream>
 
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
@@ -181,13 +180,12 @@ std::optional<std::string> verify_second(Backend& backend, const SecondStretch& 
   backend.step(stretch.steps);
   const State state = backend.state();
   const std::string after = fmt::format(" after {} of a small scene of its kind that meets the floor",
-                                        pluralize(static_cast<std::uint64_t>(stretch.steps), "step"));
+                                        pluralize(stretch.steps, "step"));
   if (first_bad_node(state)) return "not finite" + after;
   const double error = position_deviation(stretch.system, stretch.state, state);
   if (error <= stretch.tolerance) return std::nullopt;
-  std::ostringstream why;
-  why << "position error " << error << " of a rest length exceeds " << stretch.tolerance << after;
-  return why.str();
+  return fmt::format("position error {:.6g} of a rest length exceeds {:.6g}{}", error, stretch.tolerance,
+                     after);
 }
 
 }  // namespace mssim

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <random>
-#include <sstream>
 
 #include "backends/backends.h"
 #include "integrators/stability.h"
@@ -17,11 +16,6 @@
 
 namespace mssim {
 namespace {
-
-bool touches_floor(const System& system, const State& state) {
-  return std::any_of(state.position.begin(), state.position.end(),
-                     [&](const Vec3d& x) { return x.y <= system.floor.height; });
-}
 
 double largest_coordinate(const State& state) {
   double largest = 0;
@@ -105,6 +99,10 @@ std::optional<std::size_t> first_bad_node(const State& state) {
   return std::nullopt;
 }
 
+bool is_in_the_air(const State& state, const Floor& floor) {
+  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > floor.height; });
+}
+
 std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps) {
   return find_blow_up(
       [&](int count) {
@@ -134,10 +132,10 @@ std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t
 
 std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before) {
   const std::int64_t step = steps_before + blow_up.step;
-  std::ostringstream text;
-  text << "blew up at step " << step << " (t = " << static_cast<double>(step) * dt_s << " s): node "
-       << blow_up.node << " is not finite in single precision; take a smaller dt_s or \"auto\"";
-  return text.str();
+  return fmt::format(
+      "blew up at step {} (t = {:.6g} s): node {} is not finite in single precision; take a smaller dt_s or "
+      "\"auto\"",
+      step, static_cast<double>(step) * dt_s, blow_up.node);
 }
 
 double position_deviation(const System& system, const State& reference, const State& state) {
@@ -225,7 +223,7 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
       return reference;
     }
     steps = next;
-    in_the_air = in_the_air && !touches_floor(system, state);
+    in_the_air = in_the_air && is_in_the_air(state, system.floor);
     if (in_the_air && steps <= comparable) {
       reference.state = state;
       reference.steps = steps;
@@ -272,15 +270,14 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   result.position_error = deviation.position;
   result.energy_drift = deviation.energy;
 
-  std::ostringstream why;
-  if (!(result.position_error <= reference.tolerance)) {
-    why << "position error " << result.position_error << " of a rest length exceeds " << reference.tolerance
-        << " after " << pluralize(static_cast<std::uint64_t>(reference.steps), "step");
-  } else if (!(std::abs(result.energy_drift) <= energy_tolerance)) {
-    why << "energy is off by " << result.energy_drift << " of the energy in motion, more than "
-        << energy_tolerance << ", after " << pluralize(static_cast<std::uint64_t>(reference.steps), "step");
-  }
-  if (!why.str().empty()) result.failure = why.str();
+  const std::string steps = pluralize(reference.steps, "step");
+  if (!(result.position_error <= reference.tolerance))
+    result.failure = fmt::format("position error {:.6g} of a rest length exceeds {:.6g} after {}",
+                                 result.position_error, reference.tolerance, steps);
+  else if (!(std::abs(result.energy_drift) <= energy_tolerance))
+    result.failure =
+        fmt::format("energy is off by {:.6g} of the energy in motion, more than {:.6g}, after {}",
+                    result.energy_drift, energy_tolerance, steps);
   return result;
 }
 
@@ -329,9 +326,7 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
   for (const std::size_t i : order) {
     const SampleEnd& end = ends[i];
     way.go_to(end.steps);
-    std::ostringstream why;
-    const std::string after =
-        fmt::format(" after the {} of a sample", pluralize(static_cast<std::uint64_t>(end.steps), "step"));
+    const std::string after = fmt::format(" after the {} of a sample", pluralize(end.steps, "step"));
     if (first_bad_node(way.state())) {
       reasons[i] = "the double-precision reference is not finite" + after;
       continue;
@@ -350,10 +345,11 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
     const double error = largest_distance(end.positions, expected) / unit;
     const double energy_off = end.energy_j - energy.total();
     if (!(error <= tolerance))
-      why << "position error " << error << " of a rest length exceeds " << tolerance << after;
+      reasons[i] =
+          fmt::format("position error {:.6g} of a rest length exceeds {:.6g}{}", error, tolerance, after);
     else if (!(std::abs(energy_off) <= energy_allowed))
-      why << "energy is off by " << energy_off << " J, more than " << energy_allowed << " J," << after;
-    reasons[i] = why.str();
+      reasons[i] =
+          fmt::format("energy is off by {:.6g} J, more than {:.6g} J,{}", energy_off, energy_allowed, after);
   }
   return reasons;
 }

@@ -31,6 +31,9 @@ inline constexpr std::string_view finite_in_the_next =
 /// The first node whose position or velocity is not finite in single precision.
 std::optional<std::size_t> first_bad_node(const State& state);
 
+/// Whether no node is on the floor, or below it.
+bool is_in_the_air(const State& state, const Floor& floor);
+
 /// Finds the first bad step of a simulation that was found bad `steps` steps after `from`, by bisection: a
 /// number that is not finite stays so. Leaves the backend in any state. Empty if the simulation is good after
 /// all.

@@ -1,10 +1,7 @@
 #include "bench/windows/windows.h"
 
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include "backends/backends.h"
@@ -56,10 +53,6 @@ State cut(const State& state, const GridWindow& from, const GridWindow& to) {
     copy(state.velocity, part.velocity);
   }
   return part;
-}
-
-bool is_in_the_air(const State& state, const Floor& floor) {
-  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > floor.height; });
 }
 
 }  // namespace
@@ -156,17 +149,9 @@ WindowReferences run_window_references(const WindowedCloth& cloth, const Integra
                                        std::size_t at_once) {
   WindowReferences all;
   all.windows.resize(cloth.windows.size());
-  std::atomic<std::size_t> next = 0;
-  {
-    const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
-    std::vector<std::future<void>> threads;
-    for (std::size_t thread = 0; thread < std::min(at_once, all.windows.size()); ++thread)
-      threads.push_back(std::async(as_the_system_can, [&] {
-        for (std::size_t i = next++; i < all.windows.size(); i = next++)
-          all.windows[i] = run_window_reference(cloth, cloth.windows[i], integrator, dt_s);
-      }));
-    for (std::future<void>& thread : threads) thread.get();
-  }
+  for_each_at_once(all.windows.size(), at_once, [&](std::size_t i) {
+    all.windows[i] = run_window_reference(cloth, cloth.windows[i], integrator, dt_s);
+  });
   std::size_t looks = window_looks.size();
   for (const WindowReference& window : all.windows) {
     if (window.failure) all.failure = window.failure;
@@ -209,9 +194,8 @@ Verification verify_windows(WindowBackend& backend, const WindowedCloth& cloth, 
 Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
                              const WindowReferences& reference, int steps, double dt_s) {
   Verification result;
-  const std::string after = " after " + pluralize(static_cast<std::uint64_t>(steps), "step");
+  const std::string after = " after " + pluralize(steps, "step");
   double energy_off = 0, in_motion = 0, worst = 0;  // worst: in tolerances
-  std::ostringstream why;
   for (const WindowReference& one : reference.windows) {
     const State state = backend.window(one.window);
     if (first_bad_node(state)) {
@@ -228,25 +212,22 @@ Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth,
     result.position_error = std::max(result.position_error, error);
     if (error <= tolerance || error / tolerance <= worst) continue;
     worst = error / tolerance;
-    why.str("");
-    why << "position error " << error << " of a rest length exceeds " << tolerance << after
-        << " in the window from row " << one.window.row << " and column " << one.window.column << " on";
+    result.failure = fmt::format(
+        "position error {:.6g} of a rest length exceeds {:.6g}{} in the window from row {} and column {} on",
+        error, tolerance, after, one.window.row, one.window.column);
   }
   result.energy_drift = energy_off / in_motion;
-  if (why.str().empty() && !(std::abs(result.energy_drift) <= energy_tolerance))
-    why << "energy in the windows is off by " << result.energy_drift << " of the energy in motion, more than "
-        << energy_tolerance << ',' << after;
-  if (!why.str().empty()) result.failure = why.str();
+  if (!result.failure && !(std::abs(result.energy_drift) <= energy_tolerance))
+    result.failure =
+        fmt::format("energy in the windows is off by {:.6g} of the energy in motion, more than {:.6g},{}",
+                    result.energy_drift, energy_tolerance, after);
   return result;
 }
 
 std::string share_seen(const WindowedCloth& cloth) {
-  std::ostringstream text;
-  text.precision(2);
-  text << "verified in " << pluralize(static_cast<std::uint64_t>(cloth.windows.size()), "window") << ", "
-       << 100 * static_cast<double>(cloth.nodes_in_windows()) / static_cast<double>(cloth.nodes())
-       << " % of the nodes";
-  return text.str();
+  return fmt::format(
+      "verified in {}, {:.2g} % of the nodes", pluralize(cloth.windows.size(), "window"),
+      100 * static_cast<double>(cloth.nodes_in_windows()) / static_cast<double>(cloth.nodes()));
 }
 
 }  // namespace mssim

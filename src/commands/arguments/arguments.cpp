@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <sstream>
 
 namespace mssim {
-
 namespace {
 
 /// The rule for a number that `accepts` takes; `what` is what it is then.
@@ -19,6 +17,14 @@ ValueRule number_that(std::string what, Accepts accepts) {
   };
 }
 
+/// What is given empty, for example by a script whose variable is not set, would else count as not given.
+std::string filled(const std::string& text) {
+  return text.empty() ? "\"\" is empty: give a value, or leave the option out" : "";
+}
+
+/// Without the word for its value.
+std::string name_alone(const std::string& name) { return name.substr(0, name.find(' ')); }
+
 }  // namespace
 
 ValueRule positive_number() {
@@ -27,9 +33,7 @@ ValueRule positive_number() {
 }
 
 ValueRule number_between(double low, double high) {
-  std::ostringstream range;
-  range << "a number from " << low << " to " << high;
-  return number_that<double>(range.str(),
+  return number_that<double>(fmt::format("a number from {:.6g} to {:.6g}", low, high),
                              [low, high](double number) { return number >= low && number <= high; });
 }
 
@@ -50,9 +54,9 @@ ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<O
   };
 }
 
-Argument& Argument::value_name(const std::string& word) {
-  option_->type_name(word);
-  return *this;
+Argument::Argument(CLI::Option& option, const std::string& name) : option_(&option) {
+  if (const std::size_t blank = name.find(' '); blank != std::string::npos)
+    option.type_name(name.substr(blank + 1));
 }
 
 Argument& Argument::required() {
@@ -70,15 +74,6 @@ Argument& Argument::excludes(const Argument& other) {
   return *this;
 }
 
-namespace {
-
-/// What is given empty, for example by a script whose variable is not set, would else count as not given.
-std::string filled(const std::string& text) {
-  return text.empty() ? "\"\" is empty: give a value, or leave the option out" : "";
-}
-
-}  // namespace
-
 Argument Arguments::add(const std::string& name, std::string& target, const std::string& description,
                         const ValueRule& rule) {
   return add_taken(
@@ -90,9 +85,9 @@ Argument Arguments::add(const std::string& name, std::string& target, const std:
 
 Argument Arguments::add_taken(const std::string& name, const std::function<void(const std::string&)>& take,
                               const std::string& description, const ValueRule& rule) {
-  CLI::Option* option = command_->add_option_function<std::string>(name, take, description);
+  CLI::Option* option = command_->add_option_function<std::string>(name_alone(name), take, description);
   if (rule) option->transform(CLI::Validator(rule, ""));
-  return Argument(*option);
+  return {*option, name};
 }
 
 Argument Arguments::add_list(const std::string& name, std::vector<std::string>& target,
@@ -100,24 +95,26 @@ Argument Arguments::add_list(const std::string& name, std::vector<std::string>& 
                              const std::function<std::vector<std::string>(std::string_view)>& split) {
   const CLI::Validator all_filled(filled, "");
   if (!split)
-    return Argument(*command_->add_option(name, target, description)->delimiter(',')->check(all_filled));
+    return {*command_->add_option(name_alone(name), target, description)->delimiter(',')->check(all_filled),
+            name};
   const auto take = [&target, split](const std::vector<std::string>& texts) {
     target.clear();
     for (const std::string& text : texts) std::ranges::move(split(text), std::back_inserter(target));
   };
-  return Argument(
-      *command_->add_option_function<std::vector<std::string>>(name, take, description)->check(all_filled));
+  using Texts = std::vector<std::string>;
+  return {*command_->add_option_function<Texts>(name_alone(name), take, description)->check(all_filled),
+          name};
 }
 
 Argument Arguments::add_flag(const std::string& name, bool& target, const std::string& description) {
-  return Argument(*command_->add_flag(name, target, description));
+  return {*command_->add_flag(name, target, description), name};
 }
 
 Argument Arguments::add_flag_with_text(const std::string& name, std::optional<std::string>& target,
                                        const std::string& description) {
-  const auto take = [&target](const std::string& text) { target = text; };
-  return Argument(
-      *command_->add_option_function<std::string>(name, take, description)->expected(0, 1)->default_str(""));
+  CLI::Option* option = command_->add_option_function<std::string>(
+      name_alone(name), [&target](const std::string& text) { target = text; }, description);
+  return {*option->expected(0, 1)->default_str(""), name};
 }
 
 std::string Arguments::help_page(const std::string& name) const {

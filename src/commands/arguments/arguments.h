@@ -35,10 +35,9 @@ ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<O
 /// An argument that has been declared: an option, a flag, or a word without a name.
 class Argument {
  public:
-  explicit Argument(CLI::Option& option) : option_(&option) {}
+  /// `name`: as Arguments takes it.
+  Argument(CLI::Option& option, const std::string& name);
 
-  /// The word for its value in --help.
-  Argument& value_name(const std::string& word);
   Argument& required();
   /// It is an error without `other`.
   Argument& needs(const Argument& other);
@@ -51,8 +50,8 @@ class Argument {
 
 /// Declares what a command takes on its command line. The command-line library stands behind it, in three
 /// files of this folder: its header costs each file that includes it seconds of compiling. A name is
-/// `--NAME`, or `WORD` of an argument without a name. A target must outlive the parsing and keeps its value,
-/// the default, where the argument is not given.
+/// `--NAME`, or `--NAME VALUE` with the word for its value in --help, or `WORD` of an argument without a
+/// name. A target must outlive the parsing and keeps its value, the default, where the argument is not given.
 class Arguments {
  public:
   explicit Arguments(CLI::App& command) : command_(&command) {}
@@ -77,9 +76,8 @@ class Arguments {
     std::vector<std::string> words;
     for (const auto& [word, value] : choices) words.push_back(word);
     return add_taken(
-               name, [&target, choices](const std::string& word) { target = choices.at(word); }, description,
-               one_of("value", std::move(words)))
-        .value_name("WORD");
+        name + " WORD", [&target, choices](const std::string& word) { target = choices.at(word); },
+        description, one_of("value", std::move(words)));
   }
 
   /// Several texts, separated by commas or, with `split`, by what it takes one text apart at.
@@ -108,7 +106,7 @@ class Arguments {
   }
   template <class Number>
   static void assign(std::optional<Number>& target, const std::string& text) {
-    target = number_in<Number>(text).value();
+    assign(target.emplace(), text);
   }
 
   CLI::App* command_;

@@ -10,7 +10,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// An entry of a help page, in lines that fit a terminal: `name` on the left, the text on the right in as
@@ -84,16 +83,13 @@ std::string subject_of(std::string_view message) {
   return std::string(message.substr(0, message.find_first_of(": ")));
 }
 
-std::string small_first(std::string text) {
-  if (!text.empty()) text.front() = to_lower(text.substr(0, 1)).front();
-  return text;
-}
-
 /// The option of that name and what it wants.
 std::string missing(const std::string& name, const CLI::App& command) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return name + " is missing";
-  if (option->get_positional()) return name + " is missing: give " + small_first(option->get_description());
+  if (const std::string what = option->get_description(); option->get_positional())
+    return name + " is missing: give " + to_lower(what.substr(0, 1)) +
+           what.substr(std::min<std::size_t>(1, what.size()));
   return fmt::format("{} {} is missing", name, option->get_type_name());
 }
 

@@ -17,7 +17,6 @@ class ProgramParser {
   /// `version` is what --version prints.
   ProgramParser(const std::string& name, const std::string& description, const std::string& version);
   ~ProgramParser();
-  ProgramParser(ProgramParser&&) = delete;
 
   /// A command; `end` stands at the end of its help page. Its arguments are to be declared before parsing.
   Arguments add_command(const std::string& name, const std::string& description, const std::string& end);

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <functional>
 #include <limits>
-#include <optional>
 #include <string_view>
 
 #include "text/text.h"
@@ -100,8 +99,7 @@ void add_cloths(Document& page, const SceneGuide& guide, const std::vector<Resul
   });
   add_table(page, "Where backends change places",
             "Nodes from which `other` is the faster one. Of pairs that are not here one is faster at all "
-            "sizes that "
-            "both have.",
+            "sizes that both have.",
             std::move(crossovers));
 }
 
@@ -170,17 +168,11 @@ void add_scene(Document& page, const SceneGuide& guide, const std::vector<Result
   if (!guide.trusted.failure.empty()) {
     add_sentence(page, "No errors were measured: " + guide.trusted.failure);
   } else {
-    std::string recommendation;
-    for (const std::string& sentence : guide.recommendation.sentences)
-      recommendation += (recommendation.empty() ? "" : " ") + sentence;
-    page.emplace_back(Paragraph{recommendation});
+    page.emplace_back(Paragraph{join(guide.recommendation.sentences, " ")});
     Table summary = guide_summary(guide);
     show_small_numbers(summary);
     page.emplace_back(std::move(summary));
-    std::string trusted;
-    for (const std::string& sentence : about_trusted_state(guide.trusted))
-      trusted += (trusted.empty() ? "" : " ") + sentence;
-    page.emplace_back(Paragraph{trusted});
+    page.emplace_back(Paragraph{join(about_trusted_state(guide.trusted), " ")});
     add_table(page, "The front",
               "No other point that was measured is both as fast and as accurate as one of these.",
               front_table(guide));
@@ -206,55 +198,31 @@ std::string_view state_of(const WorkPoint& point) {
   return point.beyond_trust ? "within the reference's error" : "ok";
 }
 
-void add_point(Table& table, const SceneGuide& guide, const WorkPoint& point) {
-  const std::optional<double> evaluations =
-      point.evaluations ? std::optional(*point.evaluations / point.dt_s) : std::nullopt;
-  table.add({{"scene", guide.scene},
-             {"nodes", guide.nodes},
-             {"springs_unique", guide.springs},
-             {"integrator", point.integrator->name},
-             {"backend", point.backend},
-             {"dt_s", point.dt_s},
-             {"steps", point.steps},
-             {"horizon_s", guide.trusted.horizon_s},
-             {"position_error", point.position_error},
-             {"energy_error", point.energy_error},
-             {"solver_error", point.solver_error},
-             {"step_error", point.step_error},
-             {"reference_error", guide.trusted.error()},
-             {"ms_per_step", 1000 * point.seconds_a_step},
-             {"wall_s_per_s", point.seconds_a_second()},
-             {"force_evaluations_per_s", evaluations},
-             {"samples", point.samples},
-             {"diverged", point.diverged},
-             {"on_front", point.on_front},
-             {"status", state_of(point)},
-             {"note", point.note}});
-}
-
-/// A method without points says why in a row of its own.
-void add_reason(Table& table, const SceneGuide& guide, const GuidedMethod& method) {
+/// A point of the method, or where it has none (null) why.
+void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method, const WorkPoint* point) {
+  const auto of_point = [&](const auto& value) { return point ? Cell(std::invoke(value, *point)) : Cell(); };
   table.add({{"scene", guide.scene},
              {"nodes", guide.nodes},
              {"springs_unique", guide.springs},
              {"integrator", method.integrator->name},
              {"backend", method.backend->name},
-             {"dt_s", {}},
-             {"steps", {}},
+             {"dt_s", of_point(&WorkPoint::dt_s)},
+             {"steps", of_point(&WorkPoint::steps)},
              {"horizon_s", guide.trusted.horizon_s},
-             {"position_error", {}},
-             {"energy_error", {}},
-             {"solver_error", {}},
-             {"step_error", {}},
-             {"reference_error", {}},
-             {"ms_per_step", {}},
-             {"wall_s_per_s", {}},
-             {"force_evaluations_per_s", {}},
-             {"samples", {}},
-             {"diverged", {}},
-             {"on_front", {}},
-             {"status", method.status},
-             {"note", {}}});
+             {"position_error", of_point(&WorkPoint::position_error)},
+             {"energy_error", of_point(&WorkPoint::energy_error)},
+             {"solver_error", of_point(&WorkPoint::solver_error)},
+             {"step_error", of_point(&WorkPoint::step_error)},
+             {"reference_error", point ? Cell(guide.trusted.error()) : Cell()},
+             {"ms_per_step", point ? Cell(1000 * point->seconds_a_step) : Cell()},
+             {"wall_s_per_s", of_point(&WorkPoint::seconds_a_second)},
+             {"force_evaluations_per_s",
+              point && point->evaluations ? Cell(*point->evaluations / point->dt_s) : Cell()},
+             {"samples", of_point(&WorkPoint::samples)},
+             {"diverged", of_point(&WorkPoint::diverged)},
+             {"on_front", of_point(&WorkPoint::on_front)},
+             {"status", point ? Cell(state_of(*point)) : Cell(method.status)},
+             {"note", of_point(&WorkPoint::note)}});
 }
 
 Table points_table(std::span<const SceneGuide> guides) {
@@ -264,10 +232,10 @@ Table points_table(std::span<const SceneGuide> guides) {
       bool any = false;
       for (const WorkPoint& point : guide.points)
         if (is_of(point, method)) {
-          add_point(table, guide, point);
+          add_point(table, guide, method, &point);
           any = true;
         }
-      if (!any) add_reason(table, guide, method);
+      if (!any) add_point(table, guide, method, nullptr);
     }
   return table;
 }
@@ -436,7 +404,7 @@ Table guide_summary(const SceneGuide& guide) {
                {"energy_error", point ? Cell(point->energy_error) : Cell()},
                {"accurate", point ? Cell(accurate) : Cell()},
                {"on_front", point ? Cell(point->on_front) : Cell()},
-               {"remark", line.method->status.empty() ? Cell() : Cell(line.method->status)}});
+               {"remark", worded(line.method->status)}});
   }
   return table;
 }

@@ -52,19 +52,6 @@ Table means_of(const RunComparison& comparison) {
   return table;
 }
 
-std::string as_json(const RunComparison& comparison) {
-  return json_text({{"threshold", comparison.threshold},
-                    {"regression", has_regression(comparison)},
-                    {"rows", table_json(rows_of(comparison))},
-                    {"geometric_means", table_json(means_of(comparison))}});
-}
-
-std::string as_text(const RunComparison& comparison) {
-  const Table rows = rows_of(comparison);
-  const std::string means = to_text(means_of(comparison)), legend = legend_of_ratios(rows);
-  return to_text(rows) + (means.empty() ? "" : "\n" + means) + (legend.empty() ? "" : legend + "\n");
-}
-
 /// The verdict and its remark.
 Cell verdict_cell(const ComparedRow& row) {
   Cell cell = name_of(row.verdict);
@@ -79,16 +66,14 @@ Cell verdict_cell(const ComparedRow& row) {
 Document comparison_page(const RunComparison& comparison) {
   Table rows;
   for (const ComparedRow& row : comparison.rows)
-    rows.add(
-        {{"scene", row.scene},
-         {"backend", '`' + row.backend + '`'},
-         {"integrator", row.integrator},
-         {"BASE ms", row.base_ms},
-         {"NEW ms", row.ratio ? Cell(row.new_ms) : Cell()},
-         {"NEW / BASE", ratio_cell(row)},
-         {"95 % interval",
-          row.ratio ? Cell(three_digits(row.ratio->low) + " to " + three_digits(row.ratio->high)) : Cell()},
-         {"verdict", verdict_cell(row)}});
+    rows.add({{"scene", row.scene},
+              {"backend", '`' + row.backend + '`'},
+              {"integrator", row.integrator},
+              {"BASE ms", row.base_ms},
+              {"NEW ms", row.ratio ? Cell(row.new_ms) : Cell()},
+              {"NEW / BASE", ratio_cell(row)},
+              {"95 % interval", row.ratio ? Cell(interval_text(row.ratio->low, row.ratio->high)) : Cell()},
+              {"verdict", verdict_cell(row)}});
   Table means;
   for (const MeanRatio& mean : comparison.means)
     means.add({{"geometric mean of", mean.backend.empty() ? "all" : '`' + mean.backend + '`'},
@@ -101,15 +86,16 @@ Document comparison_page(const RunComparison& comparison) {
 }
 
 std::string to_text(const RunComparison& comparison, ComparisonFormat format) {
-  switch (format) {
-    case ComparisonFormat::json:
-      return as_json(comparison);
-    case ComparisonFormat::markdown:
-      return markdown(comparison_page(comparison));
-    case ComparisonFormat::table:
-      break;
-  }
-  return as_text(comparison);
+  if (format == ComparisonFormat::markdown) return markdown(comparison_page(comparison));
+  const Table rows = rows_of(comparison), means = means_of(comparison);
+  if (format == ComparisonFormat::json)
+    return json_text({{"threshold", comparison.threshold},
+                      {"regression", has_regression(comparison)},
+                      {"rows", table_json(rows)},
+                      {"geometric_means", table_json(means)}});
+  const std::string means_text = to_text(means), legend = legend_of_ratios(rows);
+  return to_text(rows) + (means_text.empty() ? "" : "\n" + means_text) +
+         (legend.empty() ? "" : legend + "\n");
 }
 
 }  // namespace mssim

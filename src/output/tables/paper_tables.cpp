@@ -38,6 +38,23 @@ bool PublishedTable::has_scene(std::uint64_t nodes, std::optional<std::uint64_t>
   });
 }
 
+std::optional<double> PublishedTable::speedup(std::string_view integrator, std::string_view configuration,
+                                              const PaperScene& scene) const {
+  const auto its_ms = ms(integrator, configuration, scene.nodes, scene.springs);
+  const auto base = ms(integrator, one_thread_configuration, scene.nodes, scene.springs);
+  return its_ms && base ? std::optional(*base / *its_ms) : std::nullopt;
+}
+
+std::vector<PaperScene> PublishedTable::scenes_of(std::span<const ResultRow> rows) const {
+  std::vector<PaperScene> scenes;
+  for (const ResultRow& row : rows)
+    if (has_scene(row.nodes, row.springs_published) &&
+        std::ranges::find(scenes, row.scene, &PaperScene::name) == scenes.end())
+      scenes.push_back({row.scene, row.nodes, row.springs_published.value()});
+  std::ranges::stable_sort(scenes, {}, &PaperScene::nodes);
+  return scenes;
+}
+
 std::vector<PublishedTable> published_tables() {
   return {published_table_kinds.begin(), published_table_kinds.end()};
 }
@@ -57,8 +74,6 @@ std::vector<PublishedBody> published_bodies(const CsvTable& table) {
 
 namespace {
 
-constexpr std::string_view baseline_configuration = "cpu-only";
-
 constexpr std::string_view how_to_read_paper_table =
     "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are the "
     "paper's numbers, from its authors' mobile device, compared with its *CPU only*; **measured** lines are "
@@ -69,11 +84,6 @@ constexpr std::string_view why_frozen =
     "`semi-euler`, `midpoint` and `rk4` evaluate the forces anew in every stage; `midpoint-frozen` and "
     "`rk4-frozen`";
 
-struct PaperScene {
-  std::string name;
-  std::uint64_t nodes = 0, springs = 0;
-};
-
 /// A time, and how many times as fast as one thread that is.
 struct Timing {
   std::optional<double> ms, speedup;
@@ -81,9 +91,8 @@ struct Timing {
 
 Timing published_timing(const PublishedTable& published, const PaperLegend::Integrator& integrator,
                         std::string_view configuration, const PaperScene& scene) {
-  const auto ms = published.ms(integrator.paper_name, configuration, scene.nodes, scene.springs);
-  const auto base = published.ms(integrator.paper_name, baseline_configuration, scene.nodes, scene.springs);
-  return {ms, ms && base ? std::optional(*base / *ms) : std::nullopt};
+  return {published.ms(integrator.paper_name, configuration, scene.nodes, scene.springs),
+          published.speedup(integrator.paper_name, configuration, scene)};
 }
 
 Timing measured_timing(const ResultRow* row) {
@@ -95,14 +104,9 @@ class PaperTable {
  public:
   PaperTable(std::span<const ResultRow> rows, const PaperLegend& legend, const PublishedTable& published,
              const Provenance& provenance)
-      : legend_(legend), published_(published), provenance_(provenance) {
-    for (const ResultRow& row : rows) {
-      if (!published.has_scene(row.nodes, row.springs_published)) continue;
-      rows_.push_back(&row);
-      if (std::ranges::find(scenes_, row.scene, &PaperScene::name) == scenes_.end())
-        scenes_.push_back({row.scene, row.nodes, row.springs_published.value()});
-    }
-    std::ranges::stable_sort(scenes_, {}, &PaperScene::nodes);
+      : scenes_(published.scenes_of(rows)), legend_(legend), published_(published), provenance_(provenance) {
+    for (const ResultRow& row : rows)
+      if (published.has_scene(row.nodes, row.springs_published)) rows_.push_back(&row);
   }
 
   bool empty() const { return rows_.empty(); }
@@ -149,8 +153,7 @@ class PaperTable {
                             " hold them as the paper seems to, and reproduce its ratio of costs."}};
     for (const auto& integrator : legend_.integrators) {
       if (!has(integrator.name)) continue;
-      const std::string evaluations =
-          pluralize(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation");
+      const std::string evaluations = pluralize(integrator.force_evaluations, "force evaluation");
       text.insert(text.end(), {Heading{2, fmt::format("{}: {} a step, beside the published {}",
                                                       integrator.name, evaluations, integrator.paper_name)},
                                times(integrator)});
@@ -213,7 +216,7 @@ class PaperTable {
       any |= timing.ms.has_value();
       Cell& cell = cells.emplace_back(timing.ms);
       cell.exact = true;
-      if (timing.speedup && configuration.name != baseline_configuration)
+      if (timing.speedup && configuration.name != one_thread_configuration)
         cell.suffix = in_brackets(*timing.speedup);
     }
     cells.front() = std::string(configuration.caption) + ", *" + (any ? "published" : "not published") + "*";
@@ -229,7 +232,7 @@ class PaperTable {
       Cell& cell = cells.emplace_back(measured_cell(row, timing.ms));
       if (!timing.ms) continue;
       cell.suffix = mark_of_excess(*row, provenance_);
-      if (timing.speedup && backend.configuration != baseline_configuration)
+      if (timing.speedup && backend.configuration != one_thread_configuration)
         cell.suffix.append(in_brackets(*timing.speedup)).append(mark_of_speedup(rows_, *row));
     }
     return cells;

@@ -1,5 +1,7 @@
 #include "output/tables/results.h"
 
+#include <fmt/format.h>
+
 #include <set>
 
 #include "text/text.h"
@@ -66,9 +68,7 @@ Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
     instruction_sets.insert(instruction_set(*row));
     devices.insert(opencl_device(*row));
   }
-  const auto number = [](int of, std::string_view noun) {
-    return pluralize(static_cast<std::uint64_t>(of), noun);
-  };
+  const auto number = [](int of, std::string_view noun) { return pluralize(of, noun); };
   std::string text = fmt::format("Measured on {} ({}) with {}", cpu_name(provenance.machine),
                                  number(provenance.machine.logical_cpus, "logical CPU"),
                                  number(provenance.threads, "thread"));
@@ -137,9 +137,8 @@ std::string legend_of_excess(RowPointers rows, const Provenance& provenance) {
     if (exceeds(*row, asked_processors(provenance, row->backend)))
       backends.insert(fmt::format("{} ({})", row->backend, row->threads));
   if (backends.empty()) return {};
-  std::string text = fmt::format("(!) on more processors than the {} asked for: ", provenance.threads);
-  for (const std::string& backend : backends) text += (backend == *backends.begin() ? "" : ", ") + backend;
-  return text;
+  return fmt::format("(!) on more processors than the {} asked for: {}", provenance.threads,
+                     fmt::join(backends, ", "));
 }
 
 std::string reason_without_speedups(std::span<const std::string_view> backends) {

@@ -1,5 +1,4 @@
 #include <climits>
-#include <cstdio>
 #include <utility>
 
 #include "output/tables/results.h"
@@ -79,11 +78,7 @@ RowCells cells_of(RowPointers rows, const ResultRow& row, const Provenance& prov
                                       .append(three_digits(*row.ms_per_step_high));
   if (row.paper_ms) cells[Shown::published].text = decimal(*row.paper_ms);
   if (row.roofline_fraction) cells[Shown::roofline].text = three_digits(100 * *row.roofline_fraction) + " %";
-  if (row.position_error) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1e", *row.position_error);
-    cells[Shown::error].text = text;
-  }
+  if (row.position_error) cells[Shown::error].text = fmt::format("{:.1e}", *row.position_error);
   return cells;
 }
 

@@ -267,28 +267,24 @@ TableMaker race_tables(std::vector<RaceLegend> legend) {
     std::vector<const ResultRow*> rows;
     for (const ResultRow& row : all)
       if (std::ranges::find(legend, row.backend, &RaceLegend::method) != legend.end()) rows.push_back(&row);
-    std::vector<ResultTable> tables;
-    if (!rows.empty()) tables.push_back({"races", data_of(rows, legend), page_of(rows, legend, provenance)});
-    return tables;
+    if (rows.empty()) return std::vector<ResultTable>();
+    return std::vector<ResultTable>{{"races", data_of(rows, legend), page_of(rows, legend, provenance)}};
   };
 }
 
 TableMaker scaling_tables(std::string base) {
   return [base = std::move(base)](std::span<const ResultRow> rows, const Provenance& provenance) {
-    std::vector<ResultTable> tables;
-    const std::vector<const ResultRow*> pointers = pointers_to(rows);
-    if (!rows.empty())
-      tables.push_back({"scaling", data_of(pointers, base), page_of(pointers, base, provenance)});
-    return tables;
+    if (rows.empty()) return std::vector<ResultTable>();
+    const std::vector<const ResultRow*> all = pointers_to(rows);
+    return std::vector<ResultTable>{{"scaling", data_of(all, base), page_of(all, base, provenance)}};
   };
 }
 
 TableMaker peer_tables() {
   return [](std::span<const ResultRow> rows, const Provenance& provenance) {
-    std::vector<ResultTable> tables;
-    const std::vector<const ResultRow*> pointers = pointers_to(rows);
-    if (!rows.empty()) tables.push_back({"peers", data_of(pointers), page_of(pointers, provenance)});
-    return tables;
+    if (rows.empty()) return std::vector<ResultTable>();
+    const std::vector<const ResultRow*> all = pointers_to(rows);
+    return std::vector<ResultTable>{{"peers", data_of(all), page_of(all, provenance)}};
   };
 }
 

@@ -38,6 +38,15 @@ inline constexpr auto published_table_kinds = std::to_array<PublishedTableInfo>(
     {"table3", "Bodies: Table 3 of Hong et al. (2016)", "three times"},
 });
 
+/// The configuration that speed-ups are over.
+inline constexpr std::string_view one_thread_configuration = "cpu-only";
+
+/// A scene of a published table that was measured.
+struct PaperScene {
+  std::string name;
+  std::uint64_t nodes = 0, springs = 0;  ///< springs as the paper counts them
+};
+
 /// One published table of times.
 class PublishedTable {
  public:
@@ -54,8 +63,13 @@ class PublishedTable {
   /// the paper counts them, so that another scene of as many nodes has no published time.
   std::optional<double> ms(std::string_view integrator, std::string_view configuration, std::uint64_t nodes,
                            std::optional<std::uint64_t> springs_published) const;
+  /// How many times as fast as one thread a scene's is; none where either time is missing.
+  std::optional<double> speedup(std::string_view integrator, std::string_view configuration,
+                                const PaperScene& scene) const;
   /// Does the table have any time for this scene?
   bool has_scene(std::uint64_t nodes, std::optional<std::uint64_t> springs_published) const;
+  /// The scenes of the rows that it has, each once, by size.
+  std::vector<PaperScene> scenes_of(std::span<const ResultRow> rows) const;
 
  private:
   struct Time {

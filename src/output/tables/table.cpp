@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "text/text.h"
 
@@ -35,12 +34,7 @@ struct TerminalSpelling : Spelling {
   std::string operator()(std::monostate) const { return "-"; }
   std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
   std::string operator()(std::int64_t number) const { return fmt::format("{}{}", number, unit); }
-  std::string operator()(double number) const {
-    std::ostringstream text;
-    text.precision(4);
-    text << number << unit;
-    return text.str();
-  }
+  std::string operator()(double number) const { return fmt::format("{:.4g}{}", number, unit); }
 };
 
 struct PageSpelling : Spelling {
@@ -136,15 +130,8 @@ std::string cell_text(const Cell& cell, const Column& column) {
 }
 
 std::string to_text(const Table& table, ListingFormat format) {
-  switch (format) {
-    case ListingFormat::csv:
-      return csv_of(table, json_number);
-    case ListingFormat::json:
-      return json_text(table_json(table));
-    case ListingFormat::table:
-      break;
-  }
-  return terminal_text(table);
+  if (format == ListingFormat::csv) return csv_of(table, json_number);
+  return format == ListingFormat::json ? json_text(table_json(table)) : terminal_text(table);
 }
 
 std::string record_text(const Table& table, std::optional<int> width) {

@@ -1,7 +1,5 @@
 #include "output/traces/energy_curve.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -9,18 +7,11 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
-/// to_chars, unlike streams and printf, knows no locale.
-void append_number(std::string& text, double value) {
+std::string ten_digits(double value) {
   if (!std::isfinite(value)) throw std::invalid_argument("energy curve: a number is not finite");
-  constexpr int significant_digits = 10;
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::general, significant_digits)
-                       .ptr;
-  text.append(buffer.data(), end);
+  return fmt::format("{:.10g}", value);
 }
 
 void append_comment(std::string& text, std::string_view comment) {
@@ -46,12 +37,9 @@ void EnergyCurve::append(const EnergySample& sample) {
   if (samples_ > 0 && !(sample.time_s > last_time_s_))
     throw std::invalid_argument("energy curve: times must increase");
   const Energy& energy = sample.energy;
-  std::string line;
-  append_number(line, sample.time_s);
-  for (const double value : {energy.kinetic, energy.elastic, energy.gravitational, energy.total()}) {
-    line += ',';
-    append_number(line, value);
-  }
+  std::string line = ten_digits(sample.time_s);
+  for (const double value : {energy.kinetic, energy.elastic, energy.gravitational, energy.total()})
+    line += ',' + ten_digits(value);
   file_.append(line + '\n');
   last_time_s_ = sample.time_s;
   ++samples_;

@@ -25,8 +25,6 @@ class EnergyCurve {
  public:
   /// Each line of `comment` stands before the header behind "# ". Throws WriteError, like AtomicFile.
   EnergyCurve(std::filesystem::path file, std::string_view comment);
-  EnergyCurve(const EnergyCurve&) = delete;
-  EnergyCurve& operator=(const EnergyCurve&) = delete;
   /// Without close(): gives up.
   ~EnergyCurve() { give_up(); }
 

@@ -137,8 +137,6 @@ class H5mdTrace {
   /// (else std::invalid_argument). Throws WriteError.
   H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header,
             const Surface& body = {});
-  H5mdTrace(const H5mdTrace&) = delete;
-  H5mdTrace& operator=(const H5mdTrace&) = delete;
   /// Without close(): gives up, keeping NAME.part when it holds frames.
   ~H5mdTrace();
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <functional>
 #include <numeric>
@@ -11,18 +13,14 @@ namespace mssim {
 namespace {
 
 /// The extents, separated by blanks.
-std::string dimensions_of(std::span<const hsize_t> shape) {
-  std::string text;
-  for (const hsize_t extent : shape) text.append(text.empty() ? "" : " ").append(std::to_string(extent));
-  return text;
-}
+std::string dimensions_of(std::span<const hsize_t> shape) { return fmt::format("{}", fmt::join(shape, " ")); }
 
 /// A dataset of the trace as XDMF names it; `number` is its type's name, of so many bytes.
 std::string data_item(const std::string& trace, const std::string& dataset, const std::string& shape,
                       std::string_view number, std::size_t bytes = sizeof(float)) {
-  std::string item = "<DataItem Dimensions=\"" + shape + "\" NumberType=\"";
-  item += number;
-  return fmt::format("{}\" Precision=\"{}\" Format=\"HDF\">{}:{}</DataItem>", item, bytes, trace, dataset);
+  return fmt::format(
+      R"(<DataItem Dimensions="{}" NumberType="{}" Precision="{}" Format="HDF">{}:{}</DataItem>)", shape,
+      number, bytes, trace, dataset);
 }
 
 /// Cells between the nodes, as `dataset` lists their corners.
