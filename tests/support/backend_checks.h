@@ -79,22 +79,7 @@ inline System sliding_sheet(std::uint32_t rows, std::uint32_t columns) {
   return system;
 }
 
-/// The same with a relaxed block, whose bottom is flat.
-inline System sliding_block() {
-  constexpr std::uint32_t nx = 5, ny = 3, nz = 7;
-  System system = solid_block(nx, ny, nz, 0.00101);
-  for (std::size_t i = 0; i < system.nodes(); ++i) {
-    if (i / nx % ny == 0) system.start.position[i].y = 0.00101;
-    system.start.velocity[i] = {0.5, -1, 0.25};
-  }
-  round_to_single(system.start);
-  for (Spring& spring : system.springs)
-    spring.rest_length = static_cast<float>(
-        length(system.start.position[spring.second] - system.start.position[spring.first]));
-  return system;
-}
-
-/// Expects that what begins like these bounces and slides in both alike; node 0 lands.
+/// Expects that what begins like sliding_sheet() bounces and slides in both alike; node 0 lands.
 inline void expect_same_bounce(Backend& backend, Backend& reference, int steps) {
   reference.step(steps);
   backend.step(steps);

@@ -90,6 +90,17 @@ TEST_P(EachWayAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
   expect_starts_again(*make(system, 1), system);  // with one thread every method adds in one order
 }
 
+TEST(RaceWays, SayWhichScenesTheyDoNotStep) {
+  const System body = solid_block(3, 4, 5);
+  for (const AccumulationMethod& method : accumulation_methods()) {
+    const auto make = [&] { return method.backend.make(body, integrators[0], backend_dt_s, {1, ""}); };
+    if (steps_bodies(method))
+      EXPECT_NO_THROW(make()) << method.backend.name;
+    else
+      EXPECT_THROW(make(), Unsupported) << method.backend.name;
+  }
+}
+
 TEST(RaceWays, BeginWithTheSerialBaseAndHaveNamesOfTheirOwn) {
   std::set<std::string_view> names;
   for (const AccumulationMethod& method : accumulation_methods())
@@ -182,8 +193,23 @@ TEST_P(EachRowKernelAndIntegrator, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFl
   EXPECT_NE(state.position[0], system.start.position[0]) << "the others move";
 }
 
-TEST(GatherVectors, RefusesBodies) {
-  EXPECT_THROW(make_gather_vectors(solid_block(3, 4, 5), integrators[0], backend_dt_s, {1, ""}), Unsupported);
+TEST_P(EachRowKernelAndIntegrator, LeavesWhatLiesOutsideOfTheClothZero) {
+  System system = cloth_system(9, 11);
+  system.floor.height = 0.5;  // above the zeros
+  PaddedRows cloth(system, std::get<GridPatch>(system.topology), integrator(), backend_dt_of(integrator()),
+                   kernel().lanes, 2);
+  cloth.set_state(system.start);
+  kernel().step(cloth, 21);
+  for (AlignedArray& array : cloth.pairs) {
+    if (array.size() == 0) continue;
+    for (std::size_t row = 0; row < 9; ++row)
+      for (std::size_t component = 0; component < PairRows::components; ++component) {
+        float* const first = array.data() + cloth.layout.offset(row, 0) + component * cloth.layout.pitch;
+        std::fill(first, first + 11, 0.0F);
+      }
+    EXPECT_EQ(std::count(array.data(), array.data() + array.size(), 0.0F),
+              static_cast<std::ptrdiff_t>(array.size()));
+  }
 }
 
 TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {

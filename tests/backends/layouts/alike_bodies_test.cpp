@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -82,6 +84,25 @@ TEST(AlikeBodies, AreForLanesWhereTheyAreMany) {
 
 constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
 
+/// The unit of a slice's node in an entry, in slots.
+struct Unit {
+  std::uint32_t first, second, kind;
+  float rest_length;
+};
+
+Unit unit_at(const PackedSprings& packed, std::size_t entry, std::size_t node) {
+  const std::uint32_t* at = &packed.units[entry * 2 * slice_nodes + node];
+  return {static_cast<std::uint32_t>(packed.entries[entry].slice * slice_nodes + node), at[0],
+          packed.entries[entry].kind, std::bit_cast<float>(at[slice_nodes])};
+}
+
+/// A unit in the scene's numbers, the lower node first.
+using Ends = std::tuple<std::uint32_t, std::uint32_t, float, std::uint32_t>;
+Ends in_scene(const PackedSprings& packed, const Unit& unit) {
+  const auto [low, high] = std::minmax(packed.scene_node[unit.first], packed.scene_node[unit.second]);
+  return {low, high, unit.rest_length, unit.kind};
+}
+
 /// A body in whose nodes springs of two materials meet.
 System mixed_block() {
   System system = solid_block(7, 5, 6);
@@ -101,23 +122,34 @@ class EachSystem : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Systems, EachSystem, testing::Range(0, 5));
 
+TEST_P(EachSystem, PacksEverySpringOnceInEntriesOfOneSliceAndKind) {
+  std::map<Ends, int> springs;
+  for (const Spring& spring : system.springs)
+    ++springs[{std::min(spring.first, spring.second), std::max(spring.first, spring.second),
+               spring.rest_length, spring.kind}];
+  std::size_t found = 0;
+  for (std::size_t slice = 0; slice < packed.slices(); ++slice)
+    for (std::size_t entry = packed.first_entry[slice]; entry < packed.first_entry[slice + 1]; ++entry) {
+      EXPECT_EQ(packed.entries[entry].slice, slice);
+      for (std::size_t node = 0; node < slice_nodes; ++node) {
+        const Unit unit = unit_at(packed, entry, node);
+        if (unit.rest_length == PackedSprings::empty_unit) {
+          EXPECT_EQ(unit.second, unit.first) << "a device may read what an empty unit names";
+          continue;
+        }
+        --springs[in_scene(packed, unit)];
+        ++found;
+      }
+    }
+  EXPECT_EQ(found, system.springs.size());
+  for (const auto& [spring, count] : springs) EXPECT_EQ(count, 0) << std::get<0>(spring);
+  EXPECT_EQ(packed.entries.size(), packed.first_entry.back());
+}
+
 TEST_P(EachSystem, ListsEveryForceAtItsSecondEndOnce) {
   constexpr std::size_t list_nodes = PackedSprings::list_nodes;
   std::vector<std::size_t> node_at(slice_nodes);  // by the slot of the force
   for (std::size_t node = 0; node < slice_nodes; ++node) node_at[PackedSprings::force_place(node)] = node;
-  // Of a slice's node in an entry: the slot of its second end, and the rest length.
-  const auto second_of = [&](std::size_t entry, std::size_t node) {
-    return packed.units[entry * 2 * slice_nodes + node];
-  };
-  const auto is_empty = [&](std::size_t entry, std::size_t node) {
-    return std::bit_cast<float>(packed.units[(entry * 2 + 1) * slice_nodes + node]) ==
-           PackedSprings::empty_unit;
-  };
-  for (std::size_t entry = 0; entry < packed.entries.size(); ++entry)
-    for (std::size_t node = 0; node < slice_nodes; ++node)
-      EXPECT_TRUE(!is_empty(entry, node) ||
-                  second_of(entry, node) == packed.entries[entry].slice * slice_nodes + node)
-          << "a device may read what an empty unit names";
   std::vector<int> listed(packed.unit_count(), 0);
   for (std::size_t list = 0; list < packed.slots() / list_nodes; ++list)
     for (std::size_t i = packed.first_subtracted[list] * list_nodes;
@@ -126,9 +158,9 @@ TEST_P(EachSystem, ListsEveryForceAtItsSecondEndOnce) {
       if (force == packed.no_force()) continue;
       ASSERT_LT(force, packed.unit_count());
       ++listed[force];
-      const std::size_t entry = force / slice_nodes, node = node_at[force % slice_nodes];
-      EXPECT_EQ(second_of(entry, node), list * list_nodes + i % list_nodes);
-      EXPECT_FALSE(is_empty(entry, node));
+      const Unit unit = unit_at(packed, force / slice_nodes, node_at[force % slice_nodes]);
+      EXPECT_EQ(unit.second, list * list_nodes + i % list_nodes);
+      EXPECT_NE(unit.rest_length, PackedSprings::empty_unit);
     }
   for (const int times : listed) EXPECT_LE(times, 1);
   EXPECT_EQ(static_cast<std::size_t>(std::count(listed.begin(), listed.end(), 1)), system.springs.size());

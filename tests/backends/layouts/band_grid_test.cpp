@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "backends/openmp/openmp.h"
 #include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
+#include "model/system.h"
 #include "scene/builders.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/backend_checks.h"
@@ -18,6 +20,22 @@
 
 namespace mssim {
 namespace {
+
+constexpr float gravity = 9.81F;
+
+std::vector<SpringPerMass> constants() {
+  std::vector<SpringPerMass> all;
+  for (const double stiffness : {200, 60, 8}) all.push_back(spring_per_mass({stiffness, 0.01}, 0.1, 0.002));
+  return all;
+}
+
+TEST(BandRows, ShareTheirValues) {
+  const BandLayout layout(GridPatch{2000, 3, 0.1}, 16);
+  const BandRows band_rows(layout, constants(), gravity);
+  const std::uint32_t* offsets = band_rows.offset_of_row();
+  const std::set<std::uint32_t> different(offsets, offsets + layout.height);
+  EXPECT_LE(different.size(), 4U) << "a few at the top, where a lane has no springs upwards, and at the end";
+}
 
 /// Of vectors of 16 lanes.
 std::size_t halves(std::uint32_t rows, std::uint32_t columns, const char* integrator, std::size_t threads) {

@@ -24,6 +24,48 @@ namespace {
 
 using testing::HasSubstr;
 
+class SlicedGraphOfLanes : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Widths, SlicedGraphOfLanes, testing::Values(1, 4, 8, 16, 64));
+
+/// The part of a block that has its nodes below `own`, the neighbours of these behind them.
+std::pair<System, GraphPart> lower_part(const System& block, std::uint32_t own) {
+  System part = block;
+  const GraphPart graph{places_in(reverse_cuthill_mckee(block.nodes(), block.springs)), own};
+  std::erase_if(part.springs,
+                [&](const Spring& spring) { return spring.first >= own && spring.second >= own; });
+  return {part, graph};
+}
+
+TEST_P(SlicedGraphOfLanes, OfAPartGivesItsNodesWhatTheyHaveInTheWhole) {
+  const System block = solid_block(9, 9, 9);
+  constexpr std::uint32_t own = 300;
+  const auto [system, part] = lower_part(block, own);
+  const SlicedGraph whole(block, GetParam()), graph(system, GetParam(), part);
+  EXPECT_EQ(graph.ghosts, block.nodes() - own);
+  EXPECT_GT(graph.first_edge_slice, 0U);
+  EXPECT_LT(graph.first_edge_slice, graph.slices());
+  // Of a node: its neighbours in the order of the entries, with their constants.
+  const auto entries_of = [](const SlicedGraph& of, std::uint32_t node) {
+    std::vector<std::uint32_t> node_at(of.slots() + of.ghosts);
+    for (std::uint32_t i = 0; i < of.nodes(); ++i) node_at[of.slot[i]] = i;
+    const std::size_t slice = of.slot[node] / of.lanes, lane = of.slot[node] % of.lanes;
+    std::vector<std::pair<std::uint32_t, float>> found;
+    for (std::size_t e = of.first_entry[slice]; e < of.first_entry[slice + 1]; ++e)
+      if (const std::size_t element = e * of.lanes + lane; of.stiffness_rest[element] >= 0)
+        found.emplace_back(node_at[of.neighbour[element]], of.stiffness_rest[element]);
+    return found;
+  };
+  for (std::uint32_t node = 0; node < own; ++node) {
+    const auto entries = entries_of(graph, node);
+    EXPECT_EQ(entries, entries_of(whole, node));
+    EXPECT_EQ(graph.constants[graph.slot[node]], whole.constants[whole.slot[node]]);
+    const bool edge = std::ranges::any_of(entries, [&](const auto& entry) { return entry.first >= own; });
+    EXPECT_EQ(graph.slot[node] / graph.lanes >= graph.first_edge_slice, edge);
+  }
+  for (std::uint32_t node = own; node < graph.nodes(); ++node)
+    EXPECT_EQ(graph.slot[node], graph.slots() + node - own);
+}
+
 TEST(SlicedGraph, HasFewEmptyEntriesInABody) {
   const System system = solid_block(9, 9, 9);
   const SlicedGraph graph(system, 16);

@@ -1,5 +1,6 @@
 #include "backends/opencl/opencl.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,9 +14,13 @@
 #include "model/system.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/opencl_variants.h"
+#include "tests/support/sentence_of.h"
 
 namespace mssim {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 /// A cloth at rest in the plane y = height, spacing 2 cm.
 System flat_cloth(std::uint32_t rows, std::uint32_t columns, double height) {
@@ -122,6 +127,14 @@ TEST(OpenclBackends, PutFreeNodesBackOntoTheFloorAndLeavePinnedOnesBelowIt) {
   }
 }
 
+TEST(OpenclBackends, StartAgainFromTheStateTheyAreGiven) {
+  const System system = rippled_cloth(9, 11);
+  for (const OpenclVariant& variant : variants()) {
+    SCOPED_TRACE(variant.name());
+    expect_starts_again(*variant.make(system, integrators.front(), 2e-4), system);
+  }
+}
+
 TEST(OpenclBackends, GiveTheSameBitsWithAnyNumberOfLanesOrThreads) {
   const System system = rippled_cloth(21, 35);
   for (const Integrator& integrator : integrators) {
@@ -137,6 +150,21 @@ TEST(OpenclBackends, GiveTheSameBitsWithAnyNumberOfLanesOrThreads) {
     for (const int threads : {2, 3})
       EXPECT_EQ(run({true, most_opencl_lanes, threads}), run({true, most_opencl_lanes, 1}))
           << integrator.name;
+  }
+}
+
+TEST(OpenclBackends, GiveTheSameBitsForAnyNumberOfComputeUnitsThatShareACloth) {
+  const System system = rippled_cloth(35, 61);
+  for (const Integrator& integrator : integrators) {
+    std::vector<std::vector<Vec3d>> found;
+    for (const std::uint32_t units : {1U, 2U, 7U, 61U}) {  // to one column a work-item
+      OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+      device.compute_units = units;
+      const auto backend = make_opencl(system, integrator, 2e-4, device, most_opencl_lanes);
+      backend->step(31);
+      found.push_back(backend->state().position);
+      EXPECT_EQ(found.back(), found.front()) << integrator.name << ", " << units;
+    }
   }
 }
 
@@ -169,6 +197,14 @@ TEST(OpenclBackends, SayWhetherTheirMemoryIsCopied) {
     EXPECT_EQ(device(DeviceMemory::shared), name) << backend;
     EXPECT_EQ(device(DeviceMemory::copy), name + " (copied memory)") << backend;
   }
+}
+
+TEST(OpenclBackends, SayHowMuchMemoryAClothNeedsThatTheDeviceDoesNotHave) {
+  const System system = rippled_cloth(9, 11);
+  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  device.max_allocation_bytes = 1000;
+  EXPECT_THAT(sentence_of<Unsupported>([&] { make_opencl(system, integrators.front(), 2e-4, device, 1); }),
+              AllOf(HasSubstr("needs an OpenCL buffer of"), HasSubstr(device.name)));
 }
 
 }  // namespace

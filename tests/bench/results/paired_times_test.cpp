@@ -26,6 +26,20 @@ PairedTimes pairs_of(std::size_t rounds, double factor, double noise, unsigned s
   return times;
 }
 
+PairedTimes first(const PairedTimes& all, std::size_t rounds) {
+  PairedTimes times = all;
+  times.base_ms.resize(rounds);
+  times.new_ms.resize(rounds);
+  return times;
+}
+
+/// What is known when the pairs are settled, or after all of them.
+PairedTimes until_settled(const PairedTimes& all) {
+  for (std::size_t rounds = 1; rounds < all.base_ms.size(); ++rounds)
+    if (is_settled(first(all, rounds), threshold)) return first(all, rounds);
+  return all;
+}
+
 TEST(PairedTimes, GiveTheVerdictThoughRoundsDifferFarMore) {
   EXPECT_EQ(compare_pairs(pairs_of(22, 1.1, 0.02), threshold).verdict, Verdict::slower);
   EXPECT_EQ(compare_pairs(pairs_of(22, 0.9, 0.02), threshold).verdict, Verdict::faster);
@@ -95,6 +109,42 @@ TEST(SequentialPairs, HaveThePAndTheIntervalOfTheirTestOverTheShareOfTheLook) {
     EXPECT_NEAR(ratio.low, std::exp(interval.low), 1e-12) << rounds;
     EXPECT_NEAR(ratio.high, std::exp(interval.high), 1e-12) << rounds;
   }
+}
+
+/// Rounds that a comparison takes on average, and the share that ends with a verdict.
+struct Study {
+  double rounds = 0, fraction = 0;
+};
+
+Study study_of(double factor, double noise, Verdict verdict) {
+  constexpr int studies = 300;
+  Study study;
+  for (unsigned seed = 1; seed <= studies; ++seed) {
+    const PairedTimes known = until_settled(pairs_of(400, factor, noise, seed));
+    study.rounds += static_cast<double>(known.base_ms.size()) / studies;
+    study.fraction += compare_pairs(known, threshold).verdict == verdict ? 1. / studies : 0;
+  }
+  return study;
+}
+
+TEST(SequentialPairs, FindTenPercentInNoiseOfAsMuch) {
+  const Study slower = study_of(1.1, 0.1, Verdict::slower);
+  EXPECT_GE(slower.fraction, 0.98);
+  EXPECT_LE(slower.rounds, 45);
+  EXPECT_LE(study_of(1, 0.1, Verdict::slower).fraction, 0.005);
+  EXPECT_LE(study_of(1, 0.1, Verdict::faster).fraction, 0.005);
+}
+
+TEST(SequentialPairs, RarelyStopOnTheWrongSideOfTheThreshold) {
+  // Slower indeed, but by less than what matters: that it is slower may be found, though not that it is by
+  // more than the threshold.
+  const auto settled_slower = [](const PairedTimes& times) {
+    return is_settled(times, threshold) && compare_pairs(times, threshold).verdict == Verdict::slower;
+  };
+  int wrong = 0;
+  for (unsigned seed = 1; seed <= 500; ++seed)
+    wrong += settled_slower(until_settled(pairs_of(200, 1.045, 0.08, seed)));
+  EXPECT_LE(wrong, 500 * usual_error / 2);
 }
 
 }  // namespace

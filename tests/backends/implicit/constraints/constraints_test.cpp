@@ -25,6 +25,16 @@
 namespace mssim {
 namespace {
 
+TEST(SpringOrder, HasTwelveColoursOfAClothInWhichNoTwoSpringsShareANode) {
+  for (const auto& [rows, columns] : std::vector<std::pair<std::uint32_t, std::uint32_t>>{
+           {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}}) {
+    const System system = cloth_system(rows, columns);
+    const SpringColouring order = spring_order(system);
+    EXPECT_EQ(order.colours(), 12U) << rows << " x " << columns;
+    expect_coloured(order, system.springs);
+  }
+}
+
 TEST(SpringOrder, GivesEachSpringTheColourOfItsPlace) {
   using Ends = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   const auto ends = [](const System& system, ClothColour colour) {
@@ -112,6 +122,28 @@ TEST(Xpbd, LetsNodesFallThroughViscousAirImplicitly) {
     EXPECT_NEAR(state.velocity[2].y, second, 1e-6);
     EXPECT_NEAR(state.position[2].y, 8 + 0.1 * (first + second), 1e-6);
     EXPECT_NEAR(state.velocity[2].x, 1 / 1.05 / 1.05, 1e-6);
+  }
+}
+
+TEST(Xpbd, ConvergesToTheOscillatorWithOrderOneInSmallSteps) {
+  // The length l - L of the spring obeys m x'' = -k x - c x', m = 1/3 kg.
+  constexpr double mass = 1.0 / 3, k = 30, end_s = 0.5;
+  for (const double c : {0.0, 0.5, 2.0}) {
+    System system = one_spring({k, c});
+    const double decay = c / (2 * mass), angular = std::sqrt(k / mass - decay * decay);
+    const double exact = 0.5 * std::exp(-decay * end_s) *
+                         (std::cos(angular * end_s) + decay / angular * std::sin(angular * end_s));
+    std::vector<double> errors;
+    for (const std::uint32_t substeps : {200U, 400U, 800U}) {
+      system.solver.substeps = substeps;
+      const auto backend = make_constraints_reference(system, end_s / 5);
+      backend->step(5);
+      const State state = backend->state();
+      errors.push_back(std::abs(state.position[1].x - state.position[0].x - 1 - exact));
+    }
+    EXPECT_LT(errors.back(), 0.002) << c;
+    for (std::size_t i = 1; i < errors.size(); ++i)
+      EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 1, 0.1) << c;
   }
 }
 
