@@ -159,5 +159,13 @@ TEST(BenchMemory, OfAGarmentHoldsTheStatesOfItsReference) {
             bench_memory_needed(job, {1000, 6000, false, false}) + 1000U * (79 * 48 + 40 * 8));
 }
 
+TEST(BenchMemory, OfSixteenMillionNodesWithAllBackendsFitsInto24GiB) {
+  const SceneSize size{16'000'000, 95'960'002, true};
+  const std::uint64_t needed = bench_memory_needed(
+      job_of({"serial", "threads-mutex", "openmp", "opencl", "hybrid"}, {"semi-euler"}), size);
+  EXPECT_LT(needed, std::uint64_t{24} << 30);
+  EXPECT_GT(needed, std::uint64_t{10} << 30);  // 12.1 GB at the peak were measured
+}
+
 }  // namespace
 }  // namespace mssim

@@ -43,6 +43,16 @@ TEST(LargestStableDt, OfSemiImplicitEulerShrinksWithDamping) {
   EXPECT_NEAR(limit("semi-euler", {omega * omega, c, 0}), dt, 1e-6 * dt);
 }
 
+TEST(LargestStableDt, OfTheMidpointRuleWithStiffnessProportionalDampingIsThatOfItsRealMethod) {
+  // |1 + z + z^2/2| = 1 for the eigenvalue z of the stiffest mode.
+  const double ratio = 0.26;  // of critical damping
+  const double dt = limit("midpoint", {omega * omega, 2 * ratio * omega, 0});
+  const double re = -ratio * omega * dt, im = std::sqrt(1 - ratio * ratio) * omega * dt;
+  const double growth = std::hypot(1 + re + (re * re - im * im) / 2, im + re * im);
+  EXPECT_NEAR(growth, 1, 2 * tolerated_growth);
+  EXPECT_GT(omega * dt, 1.5);
+}
+
 TEST(LargestStableDt, OfAHeldAccelerationIsTwiceTheDampingOverTheStiffness) {
   // Determinant 1 - c dt + k dt^2/2 <= 1; here c/k is the same for all modes.
   const double c = 0.5 * omega;

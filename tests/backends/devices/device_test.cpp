@@ -223,6 +223,16 @@ TEST_F(RegisteredDrivers, AreThoseOfAFolderByName) {
   EXPECT_TRUE(is_pocl(registered_drivers()[1]));
 }
 
+TEST_F(RegisteredDrivers, MayBeOneFileOrOneLibraryInstead) {
+  setenv("OPENCL_VENDOR_PATH", folder().c_str(), 1);
+  setenv("OCL_ICD_VENDORS", (folder() / "b.icd").c_str(), 1);
+  EXPECT_EQ(libraries(), Names{"libpocl.so.2"});
+  setenv("OCL_ICD_VENDORS", "/opt/card/libcard.so", 1);
+  EXPECT_EQ(libraries(), Names{"/opt/card/libcard.so"});
+  setenv("OCL_ICD_VENDORS", "", 1);
+  EXPECT_EQ(libraries().size(), 2U);
+}
+
 TEST_F(RegisteredDrivers, AreNoneWhereThereIsNoFolder) {
   setenv("OCL_ICD_VENDORS", (folder() / "none" / "x.icd").c_str(), 1);
   EXPECT_EQ(libraries(), Names{""});

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -105,6 +106,17 @@ TEST_F(ConversationTest, CarriesLinesBothWays) {
       });
 }
 
+TEST_F(ConversationTest, TellsOfSilence) {
+  const ConversationFailure failure = failure_of_step(
+      [](const Caller& program) {
+        program.line();
+        program.line();
+      },
+      0.2);
+  EXPECT_EQ(failure.cause, Cause::silence);
+  EXPECT_STREQ(failure.what(), "did not answer \"step 10\" within 0.2 s");
+}
+
 TEST_F(ConversationTest, TakesAnAnswerThatComesByteByByteForSilenceOnceItsTimeIsOver) {
   const ConversationFailure failure = failure_of_step(
       [](const Caller& program) {
@@ -139,6 +151,12 @@ TEST_F(ConversationTest, TellsOfAProgramThatNeverConnects) {
     EXPECT_EQ(failure.cause, Cause::silence);
     EXPECT_STREQ(failure.what(), "did not connect to MSSIM_SOCKET within 0.2 s");
   }
+}
+
+TEST_F(ConversationTest, TellsOfAClosedConnection) {
+  const ConversationFailure failure = failure_of_step([](const Caller& program) { program.line(); });
+  EXPECT_EQ(failure.cause, Cause::closed);
+  EXPECT_STREQ(failure.what(), "before it answered \"step 10\"");
 }
 
 TEST_F(ConversationTest, RefusesLinesWithoutEnd) {
@@ -194,6 +212,34 @@ TEST_F(ConversationTest, RefusesASecondConnection) {
   EXPECT_STREQ(failure.what(), "connected a second time before it answered \"step 10\"");
 }
 
+TEST_F(ConversationTest, EndsAWaitWhenTheUserEndsMssim) {
+  const auto before = std::chrono::steady_clock::now();
+  talk(
+      [](const Caller& program) {
+        program.line();
+        note_ending_signal(SIGTERM);
+        program.line();
+      },
+      [&] {
+        conversation_.ask("step 1\n", "step 1");
+        try {
+          conversation_.answer();
+          ADD_FAILURE() << "there was an answer";
+        } catch (const Interrupted& interrupted) {
+          EXPECT_EQ(interrupted.signal, SIGTERM);
+        }
+        conversation_.say_last("end\n");
+      });
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(10));
+  EXPECT_EQ(noted_ending_signal(), 0);
+}
+
+/// What taking this answer to `costs` fails with.
+std::string complaint_about_cost(const std::string& line) {
+  Communication costs;
+  return sentence_of<AnswerFailure>([&] { take_cost(costs, line); });
+}
+
 TEST(Answers, SayWhatAProgramIs) {
   Introduction introduction;
   for (const char* line : {"device a chip", "threads 3", "precision single", "note first", "note second",
@@ -233,10 +279,6 @@ TEST(Answers, SayWhatProcessesSpendOnEachOther) {
 }
 
 TEST(Answers, RefuseCostsThatCannotBe) {
-  const auto complaint_about_cost = [](const std::string& line) {
-    Communication costs;
-    return sentence_of<AnswerFailure>([&] { take_cost(costs, line); });
-  };
   for (const char* line : {"cost waiting 1.5", "cost waiting -0.1", "cost bytes nan", "cost bytes inf",
                            "cost bytes", "cost joules 3", "price bytes 3", "done 0.5", "cost bytes 3 4"})
     EXPECT_THAT(complaint_about_cost(line), HasSubstr("where cost waiting")) << line;

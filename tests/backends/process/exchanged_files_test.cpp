@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,12 @@ TEST(MethodText, NamesStagesAndTerms) {
             "stage x_a v_a\n"
             "assign x_next 1 0 x 1 1 v_a\n"
             "assign v_next 1 0 v 1 1 a\n");
+}
+
+TEST(MethodText, WritesCoefficientsThatReadBack) {
+  EXPECT_NE(
+      method_text(*find_integrator("rk4-frozen")).find(" 0.16666666666666666 1 v 0.66666666666666663 1 "),
+      std::string::npos);
 }
 
 class StateFileTest : public TemporaryFolderTest {
@@ -68,6 +76,17 @@ TEST_F(StateFileTest, SeesWhatWasNotWritten) {
   EXPECT_EQ(failure(), "wrote 0 of the 4 positions and velocities of the state file");
   put({1, 2, 3, 4, 5, 6, 7, 8});
   EXPECT_EQ(failure(), "wrote 2 of the 4 positions and velocities of the state file");
+}
+
+TEST_F(StateFileTest, PassesOnNumbersThatAreNotFinite) {
+  file_.clear();
+  std::vector<double> numbers(12, 1.0);
+  numbers[4] = std::numeric_limits<double>::quiet_NaN();
+  numbers[5] = -std::numeric_limits<double>::infinity();
+  put(numbers);
+  const State back = file_.read();
+  EXPECT_TRUE(std::isnan(back.position[1].y));
+  EXPECT_TRUE(std::isinf(back.position[1].z));
 }
 
 TEST_F(StateFileTest, SurvivesBeingCut) {

@@ -334,6 +334,28 @@ TEST(SpinBarrier, LetsOneThreadWorkAloneWhereThreadsSayThatTheyHaveWaited) {
   EXPECT_GT(alone.load(), 0);
 }
 
+TEST(SpinBarrier, KeepsThreadsTogetherWithoutATeamGain) {
+  Rounds rounds(3, 200);
+  SpinBarrier barrier(3);
+  {
+    std::vector<std::jthread> group;
+    for (std::size_t part = 0; part < 3; ++part)
+      group.emplace_back([&, part] { rounds.run(barrier, part, [] {}); });
+  }
+  rounds.expect_whole();
+  EXPECT_EQ(rounds.alone(), 0U);
+}
+
+TEST(SpinBarrier, IsNoneForOneThread) {
+  TeamGain gain;
+  gain.add_wait(std::chrono::seconds(1));
+  Rounds rounds(1, 100);
+  SpinBarrier barrier(1, gain);
+  rounds.run(barrier, 0, [] {});
+  rounds.expect_whole();
+  EXPECT_EQ(rounds.alone(), 0U);
+}
+
 TEST(ThreadProgress, LetsTwoThreadsFollowEachOther) {
   ThreadProgress first, second;
   // No atomics: progress makes writes visible, and the thread sanitizer checks that.
