@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <tuple>
+
 #include "tests/support/files_fixture.h"
 
 namespace mssim {
@@ -93,43 +96,26 @@ TEST_F(MadeUpGroups, MayHaveNoLimitOrBeMissing) {
   EXPECT_FALSE(limits.memory_left);
 }
 
-constexpr StreamFacts usual{.is_terminal = true, .columns = 120, .term = "xterm", .lang = "en_GB.UTF-8"};
-
-TEST(Terminal, ShowsColoursAndKnowsItsWidth) {
-  const Terminal terminal = terminal_with(usual);
-  EXPECT_EQ(terminal.width, 120);
-  EXPECT_TRUE(terminal.rewrites && terminal.colours && terminal.utf8);
-}
-
-TEST(Terminal, HasEightyColumnsWhereItDoesNotSay) {
-  StreamFacts facts = usual;
-  facts.columns = 0;
-  EXPECT_EQ(terminal_with(facts).width, 80);
-}
-
-TEST(Terminal, IsNoneInAPipeWhateverTheEnvironmentSays) {
-  StreamFacts facts = usual;
-  facts.is_terminal = false;
-  const Terminal terminal = terminal_with(facts);
-  EXPECT_FALSE(terminal.width || terminal.rewrites || terminal.colours);
-  EXPECT_TRUE(terminal.utf8);
-}
-
-TEST(Terminal, HasNoColoursWithAnyValueOfNoColor) {
-  StreamFacts facts = usual;
-  for (const char* value : {"1", "0", "no"}) {
-    facts.no_color = value;
-    EXPECT_FALSE(terminal_with(facts).colours) << value;
-    EXPECT_TRUE(terminal_with(facts).rewrites) << value;
-  }
-}
-
-TEST(Terminal, GetsNoEscapeSequencesWhereItIsDumbOrUnknown) {
-  StreamFacts facts = usual;
-  for (const char* term : {"dumb", ""}) {
-    facts.term = term;
-    EXPECT_FALSE(terminal_with(facts).rewrites || terminal_with(facts).colours) << term;
-    EXPECT_EQ(terminal_with(facts).width, 120);
+TEST(Terminal, IsWhatItsStreamAndTheEnvironmentSay) {
+  constexpr StreamFacts usual{.is_terminal = true, .columns = 120, .term = "xterm", .lang = "en_GB.UTF-8"};
+  StreamFacts of_unknown_width = usual, pipe = usual, plain = usual, dumb = usual, unknown = usual;
+  of_unknown_width.columns = 0;
+  pipe.is_terminal = false;
+  plain.no_color = "0";  // any value
+  dumb.term = "dumb";
+  unknown.term = "";
+  using Width = std::optional<int>;
+  for (const auto& [facts, width, rewrites, colours] : {std::tuple{usual, Width(120), true, true},
+                                                        {of_unknown_width, Width(80), true, true},
+                                                        {pipe, Width(), false, false},
+                                                        {plain, Width(120), true, false},
+                                                        {dumb, Width(120), false, false},
+                                                        {unknown, Width(120), false, false}}) {
+    const Terminal terminal = terminal_with(facts);
+    EXPECT_EQ(terminal.width, width);
+    EXPECT_EQ(terminal.rewrites, rewrites) << facts.term;
+    EXPECT_EQ(terminal.colours, colours) << facts.term << facts.no_color;
+    EXPECT_TRUE(terminal.utf8);
   }
 }
 

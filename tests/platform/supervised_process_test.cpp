@@ -308,8 +308,6 @@ TEST_F(SupervisedProcesses, CostNothingWhileTheyWait) {
   EXPECT_EQ(wakings(), before);
 }
 
-using namespace std::chrono_literals;
-
 /// With children that leave the group and become orphans.
 class SupervisedFamilies : public SupervisedProcesses {
  protected:

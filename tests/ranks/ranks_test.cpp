@@ -116,20 +116,19 @@ TEST(RanksByWeight, LeavesNoRankWithoutOneWhereThereAreEnough) {
   }
 }
 
-/// What is made of a text that comes in pieces of so many bytes.
+/// What is made of a text that comes in pieces of seven bytes.
 struct Heard {
   std::string reason, passed_on;
   bool started, failed;
 };
 
-Heard heard(const std::string& text, std::size_t piece = 7) {
+Heard heard(const std::string& text) {
+  constexpr std::size_t piece = 7;
   std::ostringstream passed_on;
   LauncherOutput output(passed_on);
   for (std::size_t i = 0; i < text.size(); i += piece) output.take(std::string_view(text).substr(i, piece));
   return {output.reason(), passed_on.str(), output.ranks_started(), output.rank_has_failed()};
 }
-
-const std::string dashes(74, '-');
 
 TEST(LauncherOutput, SaysThatTheRanksHaveStartedAndPassesOnTheRest) {
   const Heard output =
@@ -141,60 +140,42 @@ TEST(LauncherOutput, SaysThatTheRanksHaveStartedAndPassesOnTheRest) {
   EXPECT_TRUE(heard("mssim-mpi: rank 1 on a: it is broken\n").failed);
 }
 
-TEST(LauncherOutput, TakesNoFrameForAReason) {
-  const std::string asterisks(74, '*');
-  EXPECT_EQ(heard("sh: mpirunx: not found\n" + asterisks + "\n").reason, "sh: mpirunx: not found");
-  EXPECT_EQ(heard(asterisks + "\nno slots are left\n" + asterisks + "\n").reason, "no slots are left");
-}
-
-TEST(LauncherOutput, TakesWhatARankSaysFirst) {
-  EXPECT_EQ(heard("mssim-mpi: rank 1 on a: it is broken\n" + dashes +
-                  "\nMPI_ABORT was invoked on rank 1 in communicator MPI_COMM_WORLD\n" + dashes +
-                  "\nmssim-mpi: rank 0 on a: it is broken too\n")
-                .reason,
-            "rank 1 on a: it is broken");
-}
-
-TEST(LauncherOutput, TakesWhatTheLauncherSaysOfARank) {
-  EXPECT_EQ(
-      heard(dashes + "\nPrimary job  terminated normally, but 1 process returned\na non-zero exit code.\n" +
-            dashes + "\n" + dashes +
-            "\nmpirun noticed that process rank 1 with PID 0 on node b exited on signal 9 (Killed).\n" +
-            dashes + "\n")
-          .reason,
-      "mpirun noticed that process rank 1 with PID 0 on node b exited on signal 9 (Killed).");
-  EXPECT_EQ(heard("srun: error: b: task 1: Killed\nsrun: launch/slurm: done\n").reason,
-            "srun: error: b: task 1: Killed");
-}
-
-TEST(LauncherOutput, TakesTheFirstParagraphBetweenDashesBehindWhatSshSays) {
-  const std::string slots =
-      dashes +
-      "\nThere are not enough slots available in the system to satisfy the 3\nslots that were "
-      "requested by the application:\n\n  mssim-mpi\n\nEither request fewer slots.\n" +
-      dashes + "\n";
-  const std::string reason =
+TEST(LauncherOutput, GivesTheReasonOfAFailure) {
+  const std::string asterisks = std::string(74, '*') + '\n', dashes = std::string(74, '-') + '\n';
+  const std::string no_route = "ssh: connect to host b port 22: No route to host";
+  const std::string slots = dashes +
+                            "There are not enough slots available in the system to satisfy the 3\nslots that "
+                            "were requested by the application:\n\n  mssim-mpi\n\nEither request fewer.\n" +
+                            dashes;
+  const std::string no_slots =
       "There are not enough slots available in the system to satisfy the 3 slots that were requested by the "
       "application:";
-  EXPECT_EQ(heard(slots).reason, reason);
-  EXPECT_EQ(heard("ssh: connect to host b port 22: No route to host\n" + slots).reason,
-            "ssh: connect to host b port 22: No route to host; " + reason);
-}
-
-TEST(LauncherOutput, DoesNotTakeANoteOfOpenMpiForAReason) {
-  EXPECT_EQ(
-      heard(
-          "ssh: connect to host b port 22: No route to host\n"
-          "[a:983] plm:rsh: Warning: setpgid(997,997) failed in parent with errno=Permission denied(13)\n\n" +
-          dashes + "\nORTE was unable to reliably start one or more daemons.\n" + dashes + "\n")
-          .reason,
-      "ssh: connect to host b port 22: No route to host; ORTE was unable to reliably start one or more "
-      "daemons.");
-}
-
-TEST(LauncherOutput, ElseTakesTheLastLine) {
-  EXPECT_EQ(heard("one\ntwo\n\n").reason, "two");
-  EXPECT_EQ(heard("").reason, "it printed nothing");
+  for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"", "it printed nothing"},
+           {"one\ntwo\n\n", "two"},  // the last line, where nothing else is known
+           // Frames are no reason.
+           {"sh: mpirunx: not found\n" + asterisks, "sh: mpirunx: not found"},
+           {asterisks + "no slots are left\n" + asterisks, "no slots are left"},
+           // What a rank says comes first, then what the launcher says of one.
+           {"mssim-mpi: rank 1 on a: it is broken\n" + dashes +
+                "MPI_ABORT was invoked on rank 1 in communicator MPI_COMM_WORLD\n" + dashes +
+                "mssim-mpi: rank 0 on a: it is broken too\n",
+            "rank 1 on a: it is broken"},
+           {dashes + "Primary job  terminated normally, but 1 process returned\na non-zero exit code.\n" +
+                dashes + dashes +
+                "mpirun noticed that process rank 1 with PID 0 on node b exited on signal 9 (Killed).\n" +
+                dashes,
+            "mpirun noticed that process rank 1 with PID 0 on node b exited on signal 9 (Killed)."},
+           {"srun: error: b: task 1: Killed\nsrun: launch/slurm: done\n", "srun: error: b: task 1: Killed"},
+           // The first paragraph between dashes, behind what ssh says; notes of Open MPI are no reason.
+           {slots, no_slots},
+           {no_route + '\n' + slots, no_route + "; " + no_slots},
+           {no_route +
+                "\n[a:983] plm:rsh: Warning: setpgid(997,997) failed in parent with errno=Permission "
+                "denied(13)\n\n" +
+                dashes + "ORTE was unable to reliably start one or more daemons.\n" + dashes,
+            no_route + "; ORTE was unable to reliably start one or more daemons."}})
+    EXPECT_EQ(heard(text).reason, reason);
 }
 
 }  // namespace

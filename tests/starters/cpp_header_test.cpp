@@ -128,12 +128,5 @@ TEST(CppHeader, LandsAsTheFloorsLawSays) {
     }
 }
 
-TEST(CppHeader, NamesTheSlotsInTheTablesOrder) {
-  ASSERT_EQ(mssim_backend::slot_names.size(), slot_kinds);
-  EXPECT_STREQ(mssim_backend::slot_names[index(Slot::v_b)], "v_b");
-  EXPECT_STREQ(mssim_backend::slot_names[index(Slot::a)], "a");
-  EXPECT_EQ(mssim_backend::detail::slot_named("temporary_2"), slot_of(Slot::temporary_2));
-}
-
 }  // namespace
 }  // namespace mssim

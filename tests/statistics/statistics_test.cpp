@@ -62,17 +62,6 @@ TEST(MedianInterval, OfFewerThanSixSamplesIsTheirRangeWithWhatItIsWorth) {
   EXPECT_NEAR(five.coverage, 0.9375, 1e-12);
 }
 
-TEST(MedianRatio, CancelsWhatSlowsAWholeRoundDown) {
-  // Every round is a different multiple slower, the second program always three times the first.
-  const std::vector<double> base{1, 5, 2, 9, 3, 4, 7};
-  std::vector<double> other(base.size());
-  std::transform(base.begin(), base.end(), other.begin(), [](double time) { return 3 * time; });
-  const MedianInterval ratio = median_ratio(other, base);
-  EXPECT_DOUBLE_EQ(ratio.median, 3);
-  EXPECT_DOUBLE_EQ(ratio.low, 3);
-  EXPECT_DOUBLE_EQ(ratio.high, 3);
-}
-
 TEST(MedianRatio, IsNotTheRatioOfMedians) {
   const MedianInterval ratio = median_ratio(std::vector{1.0, 10.0, 100.0}, std::vector{10.0, 1.0, 50.0});
   EXPECT_EQ(ratio.median, 2);
@@ -122,33 +111,10 @@ TEST(Looks, SpendTheWholeErrorHoweverManyThereAre) {
   EXPECT_LT(spent, 1);
 }
 
-// The example of the NIST/SEMATECH e-Handbook of Statistical Methods, section 7.1.6.
-const std::vector<double> nist{30,  171, 184, 201, 212, 250, 265, 270, 272, 289, 305, 306,  322,  322,  336,
-                               346, 351, 370, 390, 404, 409, 411, 436, 437, 439, 441, 444,  448,  451,  453,
-                               470, 480, 482, 487, 494, 495, 499, 503, 514, 521, 522, 527,  548,  550,  559,
-                               560, 570, 572, 574, 578, 585, 592, 592, 607, 616, 618, 621,  629,  637,  638,
-                               640, 656, 668, 707, 709, 719, 737, 739, 752, 758, 766, 792,  792,  794,  802,
-                               818, 830, 832, 843, 858, 860, 869, 918, 925, 953, 991, 1000, 1005, 1068, 1441};
-
-TEST(Outliers, AreThoseOfAPublishedExample) {
-  const Quartiles found = quartiles(nist);
-  EXPECT_DOUBLE_EQ(found.first, 429.75);
-  EXPECT_DOUBLE_EQ(found.third, 742.25);
-  const std::vector<Outlier> labels = outliers(nist);
-  EXPECT_EQ(labels.back(), Outlier::mild);  // beyond 1211, the upper inner fence
-  EXPECT_EQ(std::ranges::count(labels, Outlier::no), 89);
-}
-
-TEST(Outliers, AreExtremeBeyondTheOuterFenceAndLabelledWhereTheyStand) {
-  std::vector<double> samples = nist;
-  samples.front() = 1679.5;  // the quartiles move a little: 30 was below both
-  samples[1] = 5000;
-  samples.push_back(-5000);
-  const std::vector<Outlier> labels = outliers(samples);
-  EXPECT_EQ(labels[0], Outlier::mild);
-  EXPECT_EQ(labels[1], Outlier::extreme);
-  EXPECT_EQ(labels.back(), Outlier::extreme);
-  EXPECT_EQ(std::ranges::count(labels, Outlier::no), 87);
+TEST(Quartiles, LieBetweenTwoSamplesAtAQuarterOfOneMoreThanThereAre) {
+  const Quartiles found = quartiles(std::vector{13.0, 1.0, 7.0, 3.0});  // at places 1.25 and 3.75
+  EXPECT_DOUBLE_EQ(found.first, 1.5);
+  EXPECT_DOUBLE_EQ(found.third, 11.5);
 }
 
 TEST(Outliers, BeginBeyondOneAndAHalfAndThreeRangesOfTheQuartiles) {
@@ -165,6 +131,10 @@ TEST(Outliers, BeginBeyondOneAndAHalfAndThreeRangesOfTheQuartiles) {
   }
   EXPECT_EQ(label(27.001).back(), Outlier::extreme);
   EXPECT_EQ(label(-15.001).front(), Outlier::extreme);
+  const auto unsorted = outliers(std::vector<double>{5, 27.001, 4, 1, 2, 3, 18.001, 6, 7, 8, 9});
+  EXPECT_EQ(unsorted[1], Outlier::extreme);
+  EXPECT_EQ(unsorted[6], Outlier::mild);
+  EXPECT_EQ(std::ranges::count(unsorted, Outlier::no), 9);
 }
 
 TEST(Outliers, DoNotExistAmongFewOrEqualSamples) {
@@ -204,12 +174,6 @@ TEST(RatioOfTwoSamples, OfExchangedSamplesIsTheInverse) {
   EXPECT_NEAR(back.low, 1 / there.high, 1e-12);
   EXPECT_NEAR(back.high, 1 / there.low, 1e-12);
   EXPECT_NEAR(back.p, there.p, 1e-12);
-}
-
-TEST(RatioOfTwoSamples, IsHardlyMovedByAnOutlier) {
-  std::vector<double> next = times(1.1, base);
-  next[3] = 1000;
-  EXPECT_NEAR(ratio_of(base, next).ratio, 1.1, 0.03);
 }
 
 TEST(RatioOfTwoSamples, IsFoundForAsManySamplesAsABenchMayTake) {

@@ -227,18 +227,5 @@ TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {
   }
 }
 
-TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
-  const System system = cloth_system(9, 11);
-  const std::vector<StepKernel<PaddedRows>> kernels = step_kernels<PaddedRows>(integrators[0]);
-  const auto device = [&](Roots roots) {
-    return make_gather_vectors(system, integrators[0], backend_dt_s, {.threads = 1, .roots = roots})
-        ->device();
-  };
-  EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
-  EXPECT_EQ(device(Roots::exact),
-            std::string("cpu ") +
-                std::ranges::find_if(kernels, &StepKernel<PaddedRows>::exact_roots)->instruction_set);
-}
-
 }  // namespace
 }  // namespace mssim

@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "backends/accumulation/accumulation_methods.h"
 #include "backends/accumulation/gather_vectors.h"
+#include "backends/backends.h"
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
@@ -60,20 +62,33 @@ TEST(InstructionSets, AreAllThatThisProcessorHasTheBestFirst) {
   }
 }
 
-TEST(InstructionSets, AreTakenAsNamedTheBestWhereNoneIs) {
+TEST(InstructionSets, AreTakenAsNamed) {
   for (const System& system : {cloth_system(9, 11), solid_block(3, 4, 5)}) {
     const auto sets = openmp_instruction_sets();
     for (const std::string_view set : sets)
       EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s, {1, ""}, set)->device(),
                 "cpu " + std::string(set));
-    EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s, {1, ""})->device(),
-              "cpu " + std::string(sets.front()));
     EXPECT_THROW(make_openmp(system, integrators[0], backend_dt_s, {1, ""}, "MMX"), std::invalid_argument);
-    const auto exact = std::ranges::find_if(sets, has_exact_roots);
-    ASSERT_NE(exact, sets.end());
-    EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s, {1, "", {}, Roots::exact})->device(),
-              "cpu " + std::string(*exact));
   }
+}
+
+TEST(InstructionSets, AreTheBestThatHaveTheRootsInEveryBackendWithVectors) {
+  const auto sets = openmp_instruction_sets();
+  const auto exact = std::ranges::find_if(sets, has_exact_roots);
+  ASSERT_NE(exact, sets.end());
+  const auto expect_best = [&](const BackendInfo& backend, const System& system,
+                               const Integrator& integrator) {
+    for (const auto& [roots, set] : {std::pair{Roots::fast, sets.front()}, {Roots::exact, *exact}})
+      EXPECT_EQ(
+          make_backend(backend, system, integrator, backend_dt_s, {.threads = 1, .roots = roots})->device(),
+          "cpu " + std::string(set))
+          << backend.name << ", " << integrator.name;
+  };
+  const System cloth = cloth_system(9, 11), body = solid_block(3, 4, 5);
+  for (const Integrator* integrator : all_integrators)
+    for (const System& system : {cloth, body}) expect_best(*find_backend("openmp"), system, *integrator);
+  for (const AccumulationMethod& method : accumulation_methods())
+    if (method.backend.name == "gather-vectors") expect_best(method.backend, cloth, integrators[0]);
 }
 
 class EachInstructionSetAndIntegrator

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -90,15 +89,6 @@ TEST(CpuGeneration, IsToldByMakerFamilyAndModel) {
   EXPECT_EQ(cpu_generation({"", 0, 0}), "");
 }
 
-void expect_finite_numbers(const nlohmann::json& value) {
-  if (value.is_number_float()) {
-    EXPECT_TRUE(std::isfinite(value.get<double>()));
-  }
-  if (value.is_structured()) {
-    for (const auto& child : value) expect_finite_numbers(child);
-  }
-}
-
 TEST(Provenance, TellsWhatRanWhereAndHow) {
   setenv("OMP_PLACES", "cores", 1);
   Provenance provenance = gather_provenance({"/opt/x/bin/mssim", "bench", "--threads", "2"}, 2);
@@ -121,7 +111,6 @@ TEST(Provenance, TellsWhatRanWhereAndHow) {
   EXPECT_EQ(json["tetgen"], "1.5");
   EXPECT_THAT(json["started_utc"].get<std::string>(),
               testing::MatchesRegex("20[0-9]{2}-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"));
-  expect_finite_numbers(json);
 }
 
 TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
@@ -148,16 +137,6 @@ TEST(Provenance, KnowsHowManyProcessorsABackendWasAskedToUse) {
   EXPECT_EQ(asked_processors(provenance, "openmp"), 3);
   EXPECT_EQ(asked_processors(provenance, "mine"), 3);
   EXPECT_EQ(asked_processors(provenance, "mpi"), 8);
-}
-
-TEST(Provenance, HoldsTheseFactsAndNoOthers) {
-  std::vector<std::string> facts;
-  const nlohmann::json json = nlohmann::json::parse(provenance_text(gather_provenance({"mssim"}, 1)));
-  for (const auto& [name, value] : json.items()) facts.push_back(name);
-  EXPECT_THAT(facts, ElementsAre("backend_programs", "build", "command_line", "cpu", "device_memory",
-                                 "earlier_starts_utc", "kernel", "load_average", "memory_bytes",
-                                 "memory_limit_bytes", "noise", "opencl_devices", "operating_system",
-                                 "program_fnv1a_64", "scenes_fnv1a_64", "started_utc", "tetgen", "threads"));
 }
 
 TEST(BuildInfo, NamesTheCommitInFullOrSaysThatItIsUnknown) {

@@ -412,18 +412,5 @@ TEST_P(EachXpbdKernel, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFloor) {
   expect_reference(block, "a block with pins");
 }
 
-TEST(XpbdOfOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
-  for (const System& system : {cloth_system(9, 11), solid_block(3, 3, 3)}) {
-    const auto device = [&](Roots roots) {
-      return make_openmp_constraints(system, backend_dt_s, {.threads = 1, .roots = roots})->device();
-    };
-    const auto kernels = cloth_kernels();
-    EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
-    EXPECT_EQ(device(Roots::exact),
-              std::string("cpu ") +
-                  std::ranges::find_if(kernels, &StepKernel<QuarteredRows>::exact_roots)->instruction_set);
-  }
-}
-
 }  // namespace
 }  // namespace mssim

@@ -1,7 +1,6 @@
 // implicit-euler and newton-euler with vectors and threads, for every instruction set of this processor.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -108,19 +107,6 @@ TEST_P(EachNewtonKernelAndIntegrator, HoldsPinsExactlyEvenBelowTheFloor) {
 TEST_P(EachNewtonKernelAndIntegrator, TreatsTheFloorLikeTheReference) {
   const System system = sliding_sheet(20, 17);
   expect_same_bounce(*make(system), *make_reference(system, integrator(), backend_dt_s), 15);
-}
-
-TEST(NewtonOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
-  using Kernel = StepKernel<VectorEquation<NodeRows>>;
-  const std::vector<Kernel> kernels = compiled_kernels<VectorEquation<NodeRows>>();
-  const System system = cloth_system(5, 6);
-  const auto device = [&](Roots roots) {
-    return make_openmp_newton(system, *find_integrator("implicit-euler"), backend_dt_s, {1, "", {}, roots})
-        ->device();
-  };
-  EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
-  EXPECT_EQ(device(Roots::exact),
-            std::string("cpu ") + std::ranges::find_if(kernels, &Kernel::exact_roots)->instruction_set);
 }
 
 }  // namespace
