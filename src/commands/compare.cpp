@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -11,6 +13,7 @@
 #include "commands/command.h"
 #include "commands/options.h"
 #include "output/tables/results.h"
+#include "platform/machine.h"
 #include "text/error.h"
 #include "text/text.h"
 
@@ -62,7 +65,7 @@ std::vector<std::string> regressions(const RunComparison& comparison) {
 }
 
 int report(const RunComparison& comparison, ComparisonFormat format) {
-  std::cout << to_text(comparison, format);
+  std::cout << to_text(comparison, format, terminal_of(STDOUT_FILENO).utf8);
   tell_first(regressions(comparison));
   const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
   if (undecided > 0)

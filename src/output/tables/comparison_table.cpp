@@ -14,15 +14,16 @@ Cell remark(const ComparedRow& row) {
                             : "many samples would be needed";
 }
 
-Cell ratio_cell(const ComparedRow& row) {
+Cell ratio_cell(const ComparedRow& row, bool utf8 = true) {
   if (!row.ratio) return {};
   Cell cell = row.ratio->ratio;
-  cell.suffix = mark_of_ratio(row.ratio->ratio, *row.new_ms, row.base_ms);
+  const std::string_view mark = mark_of_ratio(row.ratio->ratio, *row.new_ms, row.base_ms);
+  cell.suffix = mark.empty() || utf8 ? mark : ascii_ratio_mark;
   return cell;
 }
 
 /// For terminals and programs.
-Table rows_of(const RunComparison& comparison) {
+Table rows_of(const RunComparison& comparison, bool utf8) {
   Table table;
   for (const ComparedRow& row : comparison.rows) {
     const auto of_ratio = [&](double RatioEstimate::*value) {
@@ -33,7 +34,7 @@ Table rows_of(const RunComparison& comparison) {
                {"integrator", row.integrator},
                {"base_ms", row.base_ms},
                {"new_ms", row.new_ms},
-               {"ratio", ratio_cell(row)},
+               {"ratio", ratio_cell(row, utf8)},
                {"low", of_ratio(&RatioEstimate::low)},
                {"high", of_ratio(&RatioEstimate::high)},
                {"p", of_ratio(&RatioEstimate::p)},
@@ -85,17 +86,17 @@ Document comparison_page(const RunComparison& comparison) {
   return page;
 }
 
-std::string to_text(const RunComparison& comparison, ComparisonFormat format) {
+std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8) {
   if (format == ComparisonFormat::markdown) return markdown(comparison_page(comparison));
-  const Table rows = rows_of(comparison), means = means_of(comparison);
+  const Table rows = rows_of(comparison, utf8), means = means_of(comparison);
   if (format == ComparisonFormat::json)
     return json_text({{"threshold", comparison.threshold},
                       {"regression", has_regression(comparison)},
                       {"rows", table_json(rows)},
                       {"geometric_means", table_json(means)}});
-  const std::string means_text = to_text(means), legend = legend_of_ratios(rows);
-  return to_text(rows) + (means_text.empty() ? "" : "\n" + means_text) +
-         (legend.empty() ? "" : legend + "\n");
+  const std::string rows_text = to_text(rows), means_text = to_text(means);
+  const std::string legend = legend_of_ratios(rows_text);
+  return rows_text + (means_text.empty() ? "" : "\n" + means_text) + (legend.empty() ? "" : legend + "\n");
 }
 
 }  // namespace mssim

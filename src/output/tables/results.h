@@ -103,8 +103,9 @@ Document comparison_page(const RunComparison& comparison);
 enum class ComparisonFormat { table, markdown, json };
 
 /// A comparison as columns for a terminal, as its page in Markdown, or as one JSON object {threshold,
-/// regression, rows, geometric_means}, whose numbers are finite. Ends with a newline.
-std::string to_text(const RunComparison& comparison, ComparisonFormat format);
+/// regression, rows, geometric_means}, whose numbers are finite. Ends with a newline. `utf8`: whether columns
+/// may hold other characters than those of ASCII.
+std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8 = true);
 
 // Tables of results, and what those of measured rows have in common.
 

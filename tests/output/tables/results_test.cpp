@@ -263,6 +263,8 @@ TEST(ComparisonTable, MarksARatioThatItsTimesContradict) {
     EXPECT_THAT(to_text(comparison, format), Not(HasSubstr("†")));
   comparison.rows[0].new_ms = 0.98;
   EXPECT_THAT(to_text(comparison, ComparisonFormat::table), HasSubstr("\n† the two times shown contradict"));
+  EXPECT_THAT(to_text(comparison, ComparisonFormat::table, false),
+              AllOf(HasSubstr("\n(?) the two times shown contradict"), Not(HasSubstr("†"))));
   EXPECT_THAT(to_text(comparison, ComparisonFormat::markdown), HasSubstr("| 0.980 | 2.00† | 1.75 to 2.25 |"));
   EXPECT_THAT(to_text(comparison, ComparisonFormat::json), Not(HasSubstr("†")));
 }
