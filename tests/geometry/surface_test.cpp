@@ -176,7 +176,7 @@ Surface open_sphere(double height, double sign = 1) {
 }
 
 TEST(Openings, AClosedSurfaceHasNone) {
-  EXPECT_THAT(openings_of(mannequin({}, {16})), IsEmpty());
+  EXPECT_THAT(openings_of(mannequin({}, 16)), IsEmpty());
   Surface body = unit_cube();
   EXPECT_THAT(close_openings(body, 1), IsEmpty());
   EXPECT_EQ(body.triangles, unit_cube().triangles);
@@ -324,7 +324,7 @@ TEST(JoinedCorners, ThatDifferInTheirLastDigitsBecomeOne) {
   // A body, and one that is thinner than what is merged, whose two sides stay apart.
   for (const auto& [whole, jitter] : {std::pair{surface_of(SphereShape{1, 12}), 0.0},
                                       {surface_of(SphereShape{1, 12}), 3e-6},
-                                      {mannequin({}, {24}), 1e-6},
+                                      {mannequin({}, 24), 1e-6},
                                       {slab(5e-6), 2e-8}}) {
     Surface loose = apart(whole, jitter);
     EXPECT_EQ(join_corners(loose), 3 * whole.triangles.size() - whole.points.size());

@@ -148,7 +148,7 @@ TEST(BodyProfile, WhatIsNotThereIsNamed) {
 }
 
 TEST(BodyProfile, TheOrderOfPointsAndTrianglesDoesNotMatter) {
-  const Surface body = mannequin({}, {48});
+  const Surface body = mannequin({}, 48);
   const BodyProfile expected(body), profile(shuffled(body));
   EXPECT_EQ(profile.lowest(), expected.lowest());
   EXPECT_EQ(profile.highest(), expected.highest());
@@ -204,7 +204,7 @@ TEST(Landmarks, OfAPersonAreThoseOfTheTrunkWhereverTheArmsHang) {
 
 TEST(Landmarks, WhatTheBodyDoesNotShowIsByProportion) {
   // A trunk that widens all the way up has neither hip nor waist.
-  Surface cone = mannequin({}, {48});
+  Surface cone = mannequin({}, 48);
   for (Vec3d& point : cone.points) {
     const double wider = 1 + 4 * std::max(0.0, point.y - 0.78);
     point = {wider * point.x, point.y, wider * point.z};

@@ -63,7 +63,7 @@ TEST(Mannequin, HasItsMeasuresAtEveryResolutionAndSize) {
   for (const double hip : {0.88, 0.98, 1.15})
     for (const std::uint32_t cells_around : {16U, 20U, 96U}) {
       SCOPED_TRACE(testing::Message() << "hip " << hip << ", " << cells_around << " around");
-      expect_measures(BodyProfile(mannequin(with_hip(hip), {cells_around})), with_hip(hip));
+      expect_measures(BodyProfile(mannequin(with_hip(hip), cells_around)), with_hip(hip));
     }
 }
 
@@ -93,7 +93,7 @@ TEST(Mannequin, OtherMeasuresAreKeptToo) {
 }
 
 TEST(Mannequin, TheReferenceHipIsTheEllipseOfItsGirth) {
-  const BodyProfile profile(mannequin({}, {256}));
+  const BodyProfile profile(mannequin({}, 256));
   const double half_width = 0.98 / (4 * std::comp_ellint_2(std::sqrt(1 - 0.72 * 0.72)));
   EXPECT_NEAR(profile.half_width(0.86), half_width, 1e-4);
   EXPECT_NEAR(profile.front(0.86) - profile.back(0.86), 2 * 0.72 * half_width, 1e-4);
@@ -101,7 +101,7 @@ TEST(Mannequin, TheReferenceHipIsTheEllipseOfItsGirth) {
 
 TEST(Mannequin, EachPartIsClosedAndOrientedOutwards) {
   for (const std::uint32_t cells_around : {16U, 36U, 96U, 256U}) {
-    const std::vector<Surface> parts = parts_of(mannequin({}, {cells_around}));
+    const std::vector<Surface> parts = parts_of(mannequin({}, cells_around));
     ASSERT_EQ(parts.size(), 3U);
     for (const Surface& part : parts) EXPECT_NO_THROW(validate_surface(part, "part"));
   }
@@ -110,7 +110,7 @@ TEST(Mannequin, EachPartIsClosedAndOrientedOutwards) {
 TEST(Mannequin, TheLegsNeverTouch) {
   for (const double hip : {0.88, 0.98, 1.05, 1.15}) {
     const BodyMeasures measures = with_hip(hip);
-    const Surface body = mannequin(measures, {32});
+    const Surface body = mannequin(measures, 32);
     const std::vector<Surface> parts = parts_of(body);
     for (const Vec3d& point : parts[1].points) EXPECT_GT(point.x, 0.004) << hip << " " << point.y;
     for (const Vec3d& point : parts[2].points) EXPECT_LT(point.x, -0.004) << hip << " " << point.y;
@@ -126,7 +126,7 @@ TEST(Mannequin, TheLegsTopsStayInsideTheTorso) {
       BodyMeasures measures = with_hip(hip);
       measures.thigh_gap = gap;
       measures.thigh.girth *= 0.95;
-      const Surface body = mannequin(measures, {48});
+      const Surface body = mannequin(measures, 48);
       const BodyProfile whole(body);
       const BodyProfile torso(parts_of(body)[0]);
       // From halfway between crotch and hip on, the legs add nothing to the torso's convex section.
@@ -145,8 +145,8 @@ TEST(Mannequin, TheOutlineRunsFromTheThighIntoTheHipWithoutADent) {
 }
 
 TEST(Mannequin, ResolutionChangesNoGirthByOnePerCent) {
-  const BodyProfile coarse(mannequin({}, {24}));
-  const BodyProfile fine(mannequin({}, {128}));
+  const BodyProfile coarse(mannequin({}, 24));
+  const BodyProfile fine(mannequin({}, 128));
   for (double y = 0.1; y < 0.76; y += 0.013)
     EXPECT_NEAR(coarse.leg_girth(y, 1), fine.leg_girth(y, 1), 0.01 * fine.leg_girth(y, 1)) << y;
   for (double y = 0.82; y < 1.3; y += 0.013)
@@ -202,7 +202,7 @@ TEST(Mannequin, TheStanceAskedForIsEnough) {
 TEST(Mannequin, PointsAroundAreChecked) {
   for (const std::uint32_t cells_around : {0U, 12U, 50U, 516U})
     EXPECT_THAT(
-        input_error_of([&] { mannequin({}, {cells_around}); }),
+        input_error_of([&] { mannequin({}, cells_around); }),
         HasSubstr("around a mannequin are " + std::to_string(cells_around) + "; give a multiple of four"));
 }
 

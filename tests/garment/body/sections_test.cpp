@@ -221,7 +221,7 @@ TEST_P(PersonsArms, DoNotCount) {
 }
 
 TEST(TrunkAndLegs, OfABodyWithoutOtherPartsAreTheBodyItself) {
-  for (const Surface& body : {mannequin({}, {48}), without_arms(), unit_cube({3, 0, 0}),
+  for (const Surface& body : {mannequin({}, 48), without_arms(), unit_cube({3, 0, 0}),
                               both(block({-1, 0, 0}, {1, 1, 1}), block({-1, 0.9, 0}, {1, 2, 1}))}) {
     const TrunkAndLegs found = trunk_and_legs(body);
     EXPECT_EQ(found.surface.points, body.points);

@@ -27,7 +27,7 @@ Surface laid_out(Surface body, const BodyStance& stance) {
 
 /// 1.48 m high.
 const Surface& form() {
-  static const Surface body = mannequin({}, {48});
+  static const Surface body = mannequin({}, 48);
   return body;
 }
 
