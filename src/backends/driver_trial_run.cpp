@@ -20,8 +20,9 @@ void add_node(System& system, const Vec3d& position) {
 /// A patch at rest, as a cloth or as the only panel of a garment whose seam has one joint.
 System patch_system(SteppedKind kind) {
   System system;
-  for (std::uint32_t node = 0; node < patch.nodes(); ++node)
-    add_node(system, {patch.spacing * (node % patch.columns), 1 + patch.spacing * (node / patch.columns), 0});
+  for (std::uint32_t row = 0; row < patch.rows; ++row)
+    for (std::uint32_t column = 0; column < patch.columns; ++column)
+      add_node(system, {patch.spacing * column, 1 + patch.spacing * row, 0});
   system.materials = {{200, 0.01}, {60, 0.003}, {8, 0.0004}};
   system.springs = springs_of(patch);
   system.topology = patch;
