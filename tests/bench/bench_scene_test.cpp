@@ -400,7 +400,7 @@ TEST_F(BenchScene, TimesAMethodThatGrowsForAsLongAsItCanBeCompared) {
   for (SpringMaterial& material : system_.materials) material.damping *= 0.75;
   job_.dt_s = 5e-5;
   job_.integrators = {find_integrator("explicit-euler"), find_integrator("semi-euler")};
-  job_.sample_seconds = 0.01;
+  job_.sample_seconds = 0.1;  // of many more steps than are compared, on a busy machine too
   for (const ResultRow& row : run()) {
     EXPECT_EQ(row.status, "ok") << row.integrator << ' ' << row.backend;
     EXPECT_TRUE(row.verified);
@@ -408,8 +408,8 @@ TEST_F(BenchScene, TimesAMethodThatGrowsForAsLongAsItCanBeCompared) {
     const auto most = *std::ranges::max_element(row.sample_steps);
     if (grows) {
       EXPECT_LT(most, verification_steps);
-    } else {  // takes the time that a sample has
-      EXPECT_GT(static_cast<double>(most) * *row.ms_per_step, 0.5e3 * job_.sample_seconds) << row.backend;
+    } else {
+      EXPECT_GT(most, verification_steps) << row.backend;
     }
     EXPECT_EQ(row.note.find("doubles a rounding") != std::string::npos, grows) << row.note;
   }
