@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "backends/backends.h"
@@ -120,7 +121,8 @@ enum class Cheat : std::uint8_t {
   drifts,     ///< is right for a hundred steps of a request, and then pulls too weakly
   grows,      ///< is right until it has been asked for some states, and then gives huge ones
   remembers,  ///< steps from the scene's start, whatever state it is given, which it need not do twice
-  postpones   ///< takes its steps when it is asked for the state
+  postpones,  ///< takes its steps when it is asked for the state
+  nothing     ///< is right, but slow to give a state
 };
 
 class Cheating final : public Backend {
@@ -138,7 +140,7 @@ class Cheating final : public Backend {
     const int known = std::min(count, 100), more = count - known;
     if (cheat == Cheat::postpones) {
       owed_ += count;
-    } else if (cheat == Cheat::grows || cheat == Cheat::remembers) {
+    } else if (cheat == Cheat::grows || cheat == Cheat::remembers || cheat == Cheat::nothing) {
       right_->step(count);
     } else {
       right_->step(known);
@@ -150,8 +152,9 @@ class Cheating final : public Backend {
   }
   State state() const override {
     right_->step(std::exchange(owed_, 0));
+    if (cheat == Cheat::nothing) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     State state = present_ ? *present_ : right_->state();
-    if (cheat == Cheat::grows && ++states_ > 4)
+    if (cheat == Cheat::grows && ++states_ > 2)
       for (Vec3d& x : state.position) x = 1e300 * x;
     return state;
   }
@@ -393,6 +396,18 @@ TEST_F(BenchScene, FindsAProgramThatIsRightOnlyWhereItIsVerified) {
     expect_found(what, "position error");
   job_.deadline = std::chrono::steady_clock::now();
   expect_found(Cheat::stops, "position error");
+}
+
+TEST_F(BenchScene, LetsAProgramBeSlowToGiveItsState) {
+  Cheating::cheat = Cheat::nothing;
+  job_.backends = {find_backend("serial"), &cheat};
+  job_.integrators = {find_integrator("semi-euler")};
+  job_.rounds = 3;
+  job_.sample_seconds = 1e-3;
+  const std::vector<ResultRow> verified = run();
+  EXPECT_EQ(verified[1].status, "ok");
+  job_.verified = verified;
+  EXPECT_EQ(run()[1].status, "ok") << "in a process that relies on an earlier one's verification, too";
 }
 
 TEST_F(BenchScene, TimesAMethodThatGrowsForAsLongAsItCanBeCompared) {

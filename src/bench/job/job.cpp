@@ -243,8 +243,6 @@ void calibrate(Combination& combination, const SceneJob& job) {
     if (!combination.backend) return;
     if (combination.windows)
       combination.steps = *std::prev(std::ranges::upper_bound(window_looks, combination.steps));
-    else if (!job.verified)
-      combination.step_reading_seconds = reading_seconds_after_a_step(combination);
     combination.backend->rest();
   });
 }
@@ -284,13 +282,17 @@ void require_prompt_steps(Combination& combination) {
   if (combination.steps == 1 || combination.windows || combination.sample_seconds.size() < fewest_samples)
     return;
   const double sample = median(combination.sample_seconds), reading = median(combination.reading_seconds);
-  if (reading - combination.step_reading_seconds <= sample) return;
-  fail(combination,
-       fmt::format(
-           "failed: its steps are not done when it says so: it takes {:.6g} ms for {}, and then {:.6g} "
-           "ms to give the state, where that takes {:.6g} ms after one step",
-           1e3 * sample, pluralize(combination.steps, "step"), 1e3 * reading,
-           1e3 * combination.step_reading_seconds));
+  if (reading <= sample) return;
+  // Many threads step a large cloth faster than its state is read.
+  attempt(combination, [&] {
+    const double after_a_step = reading_seconds_after_a_step(combination);
+    if (reading - after_a_step <= sample) return;
+    fail(combination,
+         fmt::format(
+             "failed: its steps are not done when it says so: it takes {:.6g} ms for {}, and then {:.6g} "
+             "ms to give the state, where that takes {:.6g} ms after one step",
+             1e3 * sample, pluralize(combination.steps, "step"), 1e3 * reading, 1e3 * after_a_step));
+  });
 }
 
 void summarise(ResultRow& row, const ResultRow* serial) {

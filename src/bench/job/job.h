@@ -103,7 +103,6 @@ struct Combination {
   double step_seconds = 0;                   ///< what calibrate has found; 0 before
   std::vector<double> sample_seconds,
       reading_seconds;               ///< of this run: of samples, and of reading their ends
-  double step_reading_seconds = 0;   ///< what reading the state takes after one step
   std::optional<SampleEnd> checked;  ///< the end of the sample that is to be checked
   /// What the windows say after so many steps, of a cloth that is seen in windows; empty where it was
   /// verified by an earlier process.
