@@ -59,7 +59,7 @@ ranks                 text platform integrators model scene/spec scene backends/
 bench/machine         text platform
 bench/results         text statistics bench/machine
 bench/roofline        platform integrators model
-bench/verification    text statistics laws integrators model backends/interface backends
+bench/verification    text statistics platform laws integrators model backends/interface backends
 bench/windows         text platform integrators model backends/interface backends/layouts backends bench/verification
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification bench/windows
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job

@@ -11,6 +11,7 @@
 #include "backends/backends.h"
 #include "integrators/stability.h"
 #include "laws/host_laws.h"
+#include "platform/process.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
 
@@ -210,6 +211,8 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
   std::vector<double> step_seconds;
   // To the end even after contact: a blow-up may only show then.
   for (int steps = 0; steps < verification_steps;) {
+    // Not taken: those that run beside this one are to see it, too.
+    if (const int signal = noted_ending_signal()) throw Interrupted{signal};
     const int next = std::min(steps + stride, steps < comparable ? comparable : verification_steps);
     const auto start = std::chrono::steady_clock::now();
     backend->step(next - steps);

@@ -106,7 +106,8 @@ std::string touches_at_once(int steps);
 
 /// Runs the reference. Its state is taken, at a multiple of ten steps or at the last of comparable_steps,
 /// before any node touches the floor: after a bounce, results differ by a step's worth of landing time, and a
-/// tolerance would mean nothing.
+/// tolerance would mean nothing. Throws Interrupted where an ending signal is noted (platform/process.h), for
+/// a large system takes minutes.
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s);
 
 /// A backend's result against the reference.

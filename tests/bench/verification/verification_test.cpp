@@ -16,6 +16,7 @@
 #include "backends/spring_list/list_backends.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
+#include "platform/process.h"
 #include "scene/scene_file.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/systems.h"
@@ -287,6 +288,12 @@ TEST(BlowUp, IsFoundAtTheFirstBadStepAndNode) {
   const std::string text = describe(*blow_up, too_long);
   EXPECT_NE(text.find("step " + std::to_string(first_bad)), std::string::npos) << text;
   EXPECT_NE(text.find("node " + std::to_string(blow_up->node)), std::string::npos) << text;
+}
+
+TEST(Reference, EndsWhenTheUserEndsTheProgram) {
+  note_ending_signal(SIGINT);
+  EXPECT_THROW(run_reference(cloth_system(4, 4), *find_integrator("rk4"), 1e-3), Interrupted);
+  EXPECT_EQ(take_ending_signal(), SIGINT) << "the references beside it are to see it, too";
 }
 
 TEST(BlowUp, OfTheReferenceFailsEveryRow) {
