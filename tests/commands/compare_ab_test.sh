@@ -79,6 +79,10 @@ warns 'sleeper bench --help has not ended within 11 s'
   # What nobody can tell apart goes on, here until it fails in the 14th run.
   program new-two2 'times "1.00$((runs % 5))"
     if [ "$runs" -lt 14 ]; then times "$(((runs ^ 1) % 4 + 1)).5" ok true serial; else times 1 "failed: late" false serial; exit 1; fi'
+  # What cannot run takes nothing along, and what BASE loses on the way only itself.
+  program new-partly 'times "1.00$((runs % 7))"; times "" "unsupported: no such method" false serial; exit 3'
+  program new-losing 'times "1.00$((runs % 7))"; if [ "$runs" -lt 4 ]; then times 1 ok true serial; else times 1 "failed: late" false serial; exit 1; fi'
+  program new-both 'times "1.00$((runs % 5))"; times "1.00$((runs % 3))" ok true serial'
   program sleepy 'echo $$ >"$0.pid"; sleep 60'
 }
 
@@ -140,7 +144,8 @@ warns 'nothing to compare'
 ab 1 new-steady new-unsure
 says 'lost  *failed: not verified'
 ab 2 new-unsure new-steady
-warns 'not in another (failed: not verified)'
+warns 'none in a later round (failed: not verified)'
+warns 'nothing to compare'
 ab 2 new-steady new-refusing
 warns '^what is wrong with it$'
 warns 'new-refusing bench exited with 2'
@@ -153,6 +158,17 @@ says 'serial .* lost  *failed: late'
 [ "$(grep -c -- '--backend serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 3 ] ||
   fail "serial is not gone on with alone"
 
+ab 0 new-partly new-both --backend openmp,serial
+says 'openmp .* same'
+warns 'new-partly has no time of .*serial.*: unsupported: no such method'
+ab 1 new-both new-partly --backend openmp,serial
+says 'openmp .* same'
+says 'serial .* lost  *unsupported: no such method'
+ab 0 new-losing new-both --backend openmp,serial
+says 'openmp .* same'
+if grep -q '^cloth2500 *serial' "$work/out"; then fail "a row stands that BASE has lost"; fi
+warns 'new-losing had a time of .*serial.* none in a later round (failed: late)'
+
 # Programs that fail.
 ab 1 steady wrong
 says 'lost  *failed: not verified'
@@ -161,7 +177,8 @@ warns 'nothing to compare'
 ab 1 steady fickle
 says 'lost  *failed: step 3'
 ab 2 fickle steady
-warns 'not in another (failed: step 3)'
+warns 'none in a later round (failed: step 3)'
+warns 'nothing to compare'
 ab 2 steady crash
 warns '^what went wrong$'
 warns 'crash bench was ended by signal 11'

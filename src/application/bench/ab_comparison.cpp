@@ -113,11 +113,16 @@ class AbProgram {
   }
 
   std::vector<CombinationTime> rows_of(const ChildResult& result, const fs::path& out) const {
-    // A row that is not verified ends a bench with 1; the row says so itself.
-    const bool measured = !result.out_of_time && result.signal == 0 &&
-                          (result.exit_code == exit_ok || result.exit_code == exit_not_verified);
-    if (!measured || !fs::exists(out / "timings.csv")) fail(result);
-    return read_combination_times(out / "timings.csv");
+    // A row that is not verified ends a bench with 1, one that cannot run with 3; the row says so itself.
+    const bool has_rows = !result.out_of_time && result.signal == 0 &&
+                          (result.exit_code == exit_ok || result.exit_code == exit_not_verified ||
+                           result.exit_code == exit_unavailable) &&
+                          fs::exists(out / "timings.csv");
+    if (!has_rows) fail(result);
+    std::vector<CombinationTime> rows = read_combination_times(out / "timings.csv");
+    const auto is_timed = [](const CombinationTime& row) { return row.least_ms.has_value(); };
+    if (result.exit_code == exit_unavailable && std::ranges::none_of(rows, is_timed)) fail(result);
+    return rows;
   }
 
   fs::path verified_folder() const { return folder_.path() / "verified"; }
@@ -156,6 +161,12 @@ const CombinationTime* find(const std::vector<CombinationTime>& times, const Pai
   return found == times.end() ? nullptr : &*found;
 }
 
+void require_any(const std::vector<Series>& series, const AbOptions& options) {
+  if (series.empty())
+    throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
+                     " have no measured combination in common; choose other backends or integrators");
+}
+
 /// The combinations that both programs have; what only one has, or BASE has no time of, is told and left out.
 std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
                                     const std::vector<CombinationTime>& next, const AbOptions& options) {
@@ -170,9 +181,7 @@ std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
     else
       series.push_back({pairs});
   }
-  if (series.empty())
-    throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
-                     " have no measured combination in common; choose other backends or integrators");
+  require_any(series, options);
   return series;
 }
 
@@ -183,22 +192,26 @@ void lose(Series& series, const CombinationTime& base, const std::string& why) {
   series.settled = true;
 }
 
-/// Adds a round to a combination.
-void add_round(Series& series, const std::vector<CombinationTime>& base,
-               const std::vector<CombinationTime>& next, double threshold) {
+/// Adds a round to a combination. Where BASE has no time of it any more, tells so and returns false: there is
+/// nothing to compare it with.
+bool add_round(Series& series, const std::vector<CombinationTime>& base,
+               const std::vector<CombinationTime>& next, const AbOptions& options) {
   PairedTimes& pairs = series.pairs;
   const CombinationTime *a = find(base, pairs), *b = find(next, pairs);
-  if (!a || !b)
-    throw UsageError(
-        combination_name(pairs) +
-        " was measured in one round and is missing in another; run each program separately to see why");
-  if (!a->least_ms)
-    throw UsageError(combination_name(pairs) + " was measured in one round and not in another (" + a->status +
-                     "); run each program separately to see why");
-  if (!b->least_ms) return lose(series, *a, b->status);
+  if (!a || !a->least_ms) {
+    std::cerr << fmt::format(
+        "mssim: {} had a time of {} and has none in a later round ({}); run it alone to see why\n",
+        options.base, combination_name(pairs), a ? a->status : "the row is missing");
+    return false;
+  }
+  if (!b || !b->least_ms) {
+    lose(series, *a, b ? b->status : "missing in a later round");
+    return true;
+  }
   pairs.base_ms.push_back(*a->least_ms);
   pairs.new_ms.push_back(*b->least_ms);
-  series.settled = is_settled(pairs, threshold);
+  series.settled = is_settled(pairs, options.threshold);
+  return true;
 }
 
 /// What the combinations that are not settled have as this member, each name once.
@@ -288,8 +301,9 @@ RunComparison compare_programs(const AbOptions& options) {
             programs[which].bench(all ? options.backends : backends_wanted(options, series),
                                   all ? options.integrators : still_wanted(&PairedTimes::integrator, series));
       if (all) series = combinations_of(times[0], times[1], options);
-      for (Series& one : series)
-        if (!one.settled) add_round(one, times[0], times[1], options.threshold);
+      std::erase_if(
+          series, [&](Series& one) { return !one.settled && !add_round(one, times[0], times[1], options); });
+      require_any(series, options);
       ++rounds;
       longest_s = std::max(longest_s, round_watch.seconds());
       progress.update(fmt::format("round {}", rounds), watch.seconds() / options.time_budget_s);
