@@ -55,14 +55,17 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
   return all;
 }
 
+std::size_t spring_vectors(const std::vector<AlikeBodies>& bodies, std::size_t lanes) {
+  std::size_t vectors = 0;
+  for (const AlikeBodies& of : bodies) vectors += (of.bodies.size() + lanes - 1) / lanes * of.springs.size();
+  return vectors;
+}
+
 std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes,
                                                          double per_body) {
   std::optional<std::vector<AlikeBodies>> bodies = find_alike_bodies(system);
-  if (!bodies) return bodies;
-  std::size_t springs_of_lanes = 0;
-  for (const AlikeBodies& of : *bodies)
-    springs_of_lanes += round_up(of.bodies.size(), lanes) * of.springs.size();
-  if (static_cast<double>(springs_of_lanes) > per_body * static_cast<double>(system.springs.size()))
+  if (bodies && static_cast<double>(lanes * spring_vectors(*bodies, lanes)) >
+                    per_body * static_cast<double>(system.springs.size()))
     bodies.reset();
   return bodies;
 }

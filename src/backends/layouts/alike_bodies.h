@@ -35,6 +35,9 @@ struct AlikeBodies {
 /// where springs of unlike materials meet, or nodes of unlike mass are joined.
 std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system);
 
+/// Vectors of so many lanes that the springs of these bodies are, each of as many bodies as there are lanes.
+std::size_t spring_vectors(const std::vector<AlikeBodies>& bodies, std::size_t lanes);
+
 /// Finds alike bodies where they are worth a vector of so many lanes for each of their springs (AlikeSlices):
 /// where at least one of `per_body` lanes has a body of its own, counted over the springs.
 std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes,

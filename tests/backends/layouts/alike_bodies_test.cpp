@@ -82,6 +82,16 @@ TEST(AlikeBodies, AreForLanesWhereTheyAreMany) {
   EXPECT_FALSE(alike_bodies_for(unlike, 16, 3));
 }
 
+TEST(AlikeBodies, NeedAVectorForASpringOfAsManyBodiesAsThereAreLanes) {
+  const auto bodies = find_alike_bodies(alike_bodies(solid_block(2, 2, 2), 9));
+  ASSERT_TRUE(bodies);
+  const std::size_t springs = bodies->front().springs.size();
+  EXPECT_EQ(spring_vectors(*bodies, 4), 3 * springs);
+  EXPECT_EQ(spring_vectors(*bodies, 8), 2 * springs);
+  EXPECT_EQ(spring_vectors(*bodies, 9), springs);
+  EXPECT_EQ(spring_vectors(*bodies, 16), springs);
+}
+
 constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
 
 /// The unit of a slice's node in an entry, in slots.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -67,6 +68,27 @@ TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstruction
       }
     }
     EXPECT_EQ(found, 1U);
+  }
+}
+
+// With AVX-512 that is AVX2 for six to eight bodies; where the best vectors are those of AVX2, nothing is
+// narrower.
+TEST(BodyLanes, HaveTheNarrowestVectorsOfWhichNoMoreAreNeeded) {
+  const Integrator& method = *find_integrator("semi-euler");
+  const std::vector<StepKernel<BodyLanes>> kernels = step_kernels<BodyLanes>(method);
+  const StepKernel<BodyLanes>& best = kernels.front();
+  for (const std::size_t count : {6U, 7U, 8U, 9U, 13U, 16U, 17U}) {
+    const System system = alike_bodies(solid_block(4, 4, 5, 0.002), count);
+    const StepKernel<BodyLanes>* expected = &best;
+    for (const StepKernel<BodyLanes>& kernel : kernels)
+      if (kernel.lanes < expected->lanes && kernel.fuses == best.fuses &&
+          (count + kernel.lanes - 1) / kernel.lanes == (count + best.lanes - 1) / best.lanes)
+        expected = &kernel;
+    const auto backend = make_openmp(system, method, 1e-4, {1, ""});
+    EXPECT_EQ(backend->device(), std::string("cpu ") + expected->instruction_set) << count;
+    EXPECT_TRUE(agrees(*backend, system, method, 1e-4)) << count;
+    const auto named = make_openmp(system, method, 1e-4, {1, ""}, best.instruction_set);
+    EXPECT_EQ(named->device(), std::string("cpu ") + best.instruction_set) << count;
   }
 }
 
