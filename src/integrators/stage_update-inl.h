@@ -7,14 +7,17 @@
 
 /// One line: the sum of its terms, the last first, so that the large first term is added last. Of two terms
 /// it is rounded once where mul_add is.
-template <std::size_t row, std::size_t stage, std::size_t assignment, class Vector, class Real>
+template <std::size_t row, std::size_t stage, std::size_t assignment, bool in_steps, class Vector, class Real>
 MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coefficients) {
   constexpr Assignment terms = integrators[row].stages[stage].assignments[assignment];
   constexpr std::size_t count = term_count(terms);
   const auto& factor = coefficients[stage][assignment];
   static_assert(count == 1 || (terms.terms[0].coefficient == 1 && terms.terms[0].dt_power == 0),
                 "the large term is a plain one");
-  if constexpr (count == 2)
+  // The same number as a product with 1, and one multiplication less.
+  if constexpr (count == 2 && in_steps && terms.terms[1].coefficient == 1)
+    return value[index(terms.terms[0].slot)] + value[index(terms.terms[1].slot)];
+  else if constexpr (count == 2)
     return mul_add(factor[1], value[index(terms.terms[1].slot)], value[index(terms.terms[0].slot)]);
   Vector sum = factor[count - 1] * value[index(terms.terms[count - 1].slot)];
   if constexpr (count > 4) sum = mul_add(factor[3], value[index(terms.terms[3].slot)], sum);
@@ -27,9 +30,9 @@ MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coe
 /// All assignments of a stage at one node (or one vector of nodes).
 /// load(slot) -> Vector reads memory, store(slot, Vector) writes it, contact(x, v) acts on the new state at
 /// the end of the last stage. `x` and `v` are the gathered pair's values, `a` the acceleration found with
-/// them.
-template <std::size_t row, std::size_t stage, class Vector, class Real, class Load, class Store,
-          class Contact>
+/// them. `in_steps`: dt is the unit of time, and the coefficients are those of dt = 1.
+template <std::size_t row, std::size_t stage, bool in_steps = false, class Vector, class Real, class Load,
+          class Store, class Contact>
 MSSIM_INLINE void update_stage(const Coefficients<Real>& coefficients, const Vector& x, const Vector& v,
                                const Vector& a, Load load, Store store, Contact contact) {
   constexpr Stage table = integrators[row].stages[stage];
@@ -53,7 +56,7 @@ MSSIM_INLINE void update_stage(const Coefficients<Real>& coefficients, const Vec
   value[index(velocity_slot(table.gather))] = v;
   value[index(Slot::a)] = a;
   [&]<std::size_t... l>(std::index_sequence<l...>) MSSIM_INLINE_LAMBDA {
-    ((value[index(table.assignments[l].out)] = sum_terms<row, stage, l>(value, coefficients)), ...);
+    ((value[index(table.assignments[l].out)] = sum_terms<row, stage, l, in_steps>(value, coefficients)), ...);
   }
   (std::make_index_sequence<assignments>{});
   if constexpr (stage + 1 == integrators[row].stage_count)

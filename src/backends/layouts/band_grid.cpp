@@ -121,10 +121,11 @@ std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, s
 
 BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
                    std::size_t lanes, std::size_t most_threads, const BandCut& given)
-    : ExplicitSteps(system, method, dt_s),
+    : ExplicitSteps(system, method, 1),
       layout(grid, lanes),
       columns(layout.columns),
       own(given.piece.value_or(ColumnRange{0, columns})),
+      dt_s_(dt_s),
       spacing_(grid.spacing),
       first_column_(grid.first_column) {
   steps_per_pass = given.steps_per_pass.value_or(
@@ -136,7 +137,9 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
     columns = own.end() + ghosts;
   }
   cut(most_threads);
-  const std::vector<SpringPerMass> springs = springs_per_mass(system, grid);
+  surroundings.gravity = static_cast<float>(system.gravity * dt_s * dt_s);
+  surroundings.viscous_damping = static_cast<float>(system.viscous_damping * dt_s);
+  const std::vector<SpringPerMass> springs = springs_per_mass(system, grid, dt_s);
   for (BandPartition& partition : partitions) {
     const std::size_t local_columns = partition.ghosts + partition.count + partition.ghosts;
     for (const Pair pair : stored_pairs(method, Storage::in_place))
@@ -236,7 +239,7 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
         if (row < layout.rows && of_cloth >= 0 && of_cloth < static_cast<std::ptrdiff_t>(layout.columns)) {
           const std::size_t node = row * layout.columns + static_cast<std::size_t>(of_cloth);
           x = state.position[node];
-          v = state.velocity[node];
+          v = dt_s_ * state.velocity[node];
         }
         write_vector(out + lane, layout.lanes, x);
         write_vector(out + 3 * layout.lanes + lane, layout.lanes, v);
@@ -286,7 +289,8 @@ State BandGrid::state(const GridWindow& window) const {
         const float* in = column + layout.offset(window.row + row, half);
         const std::size_t node = row * window.columns + of_cloth - window.column;
         state.position[node] = read_vector(in, layout.lanes);
-        state.velocity[node] = read_vector(in + 3 * layout.lanes, layout.lanes);
+        const Vec3d v = read_vector(in + 3 * layout.lanes, layout.lanes);
+        state.velocity[node] = {v.x / dt_s_, v.y / dt_s_, v.z / dt_s_};
       }
     }
   return state;

@@ -72,7 +72,7 @@ using ColumnsToEnd = std::array<std::size_t, 2>;
 class BandRows {
  public:
   /// The constants of a column that so many are `behind`, unless it is far from the cloth's end. `springs`:
-  /// by GridSpringKind. `gravity` in m/s^2.
+  /// by GridSpringKind. `gravity` in m/s^2, or in the unit of time of the springs.
   BandRows(const BandLayout& layout, const std::vector<SpringPerMass>& springs, float gravity,
            ColumnsToEnd to_end = {far_from_end, far_from_end});
 
@@ -225,7 +225,8 @@ struct BandPartition {
   }
 };
 
-/// What the vector code needs to take steps of a cloth.
+/// What the vector code needs to take steps of a cloth. The unit of time is a step: velocities are in m a
+/// step, and what a node moves in a step is added without a multiplication.
 ///
 /// The cloth may be a piece of a larger one, whose other columns other processes step: it owns some of its
 /// columns, and those beside them are ghosts, which messages bring. What the others wait for is walked first:
@@ -256,6 +257,7 @@ struct BandGrid : ExplicitSteps {
   State state(const GridWindow& window) const;
 
  private:
+  double dt_s_ = 0;
   double spacing_ = 0;  ///< m, places the dummies, with the next
   std::size_t first_column_ = 0;
   void cut(std::size_t most_threads);

@@ -154,10 +154,15 @@ struct SeparateSteps : ExplicitSteps {
 /// A spring divided by the mass of a node, so that its force is an acceleration.
 using SpringPerMass = LinearSpring<float>;
 
-/// rest_length in m, mass in kg.
-inline SpringPerMass spring_per_mass(const SpringMaterial& material, double rest_length, double mass) {
-  return spring_from<float>([mass](double number) { return number / mass; },
-                            linear_spring(material, rest_length));
+/// rest_length in m, mass in kg. `unit_s`: the unit of time, s.
+inline SpringPerMass spring_per_mass(const SpringMaterial& material, double rest_length, double mass,
+                                     double unit_s = 1) {
+  static_assert(spring_constant_count == 2, "scale another constant by its power of time, too");
+  auto spring = linear_spring(material, rest_length);
+  spring.constants.stiffness *= unit_s * unit_s;
+  spring.stiffness_rest *= unit_s * unit_s;
+  spring.constants.damping *= unit_s;
+  return spring_from<float>([mass](double number) { return number / mass; }, spring);
 }
 
 /// Writes the constants of one spring or node, `step` floats apart. Returns where a next one would stand.
@@ -169,13 +174,15 @@ inline float* write_constants(float* to, std::size_t step, const SpringConstants
   return to;
 }
 
-/// Those of a cloth's springs, by GridSpringKind. Throws Unsupported where its nodes differ in mass.
-inline std::vector<SpringPerMass> springs_per_mass(const System& system, const GridPatch& grid) {
+/// Those of a cloth's springs, by GridSpringKind. `unit_s`: as in spring_per_mass. Throws Unsupported where
+/// its nodes differ in mass.
+inline std::vector<SpringPerMass> springs_per_mass(const System& system, const GridPatch& grid,
+                                                   double unit_s = 1) {
   const double mass = require_uniform_mass(system);
   std::vector<SpringPerMass> springs;
   for (const GridSpringKind kind : {structural, shear, bending})
     springs.push_back(
-        spring_per_mass(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass));
+        spring_per_mass(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass, unit_s));
   return springs;
 }
 

@@ -15,6 +15,7 @@
 #include <hwy/cache_control.h>
 
 #include <bit>
+#include <limits>
 
 #include "backends/layouts/band_grid.h"
 #include "backends/layouts/node_lanes-inl.h"
@@ -220,26 +221,52 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
   return force;
 }
 
-/// One stage at the nodes of a row, once the force on them is complete. Forces are accelerations already.
+/// Where a stage finds or leaves the position (slot 0) or velocity (1) of a row's nodes in a pair.
+HWY_INLINE float* stored_at(const ColumnView& column, Pair pair, std::size_t slot, std::ptrdiff_t row) {
+  return column.pairs[index(pair)] + row * row_floats() +
+         static_cast<std::ptrdiff_t>(slot % 2) * row_floats() / 2;
+}
+
+/// One stage at the nodes of a row, once the force on them is complete, but for the floor: `lowest` becomes
+/// their new height where that is less. Forces are accelerations already.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& column, const NodeLanes& node,
-                           const Lanes3& force, std::ptrdiff_t row) {
-  const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
-  const auto address = [&](Pair pair, std::size_t slot) MSSIM_INLINE_LAMBDA {
-    return column.pairs[index(pair)] + row * 6 * lanes + static_cast<std::ptrdiff_t>(slot % 2) * 3 * lanes;
-  };
+                           const Lanes3& force, std::ptrdiff_t row, Lanes& lowest) {
   const Lanes gravity = hn::Load(FloatTag(), constants.of_row(row) + BandRows::gravity_vector * lane_count());
-  update_lanes<method, stage>(
-      node, force, EveryLane{}, gravity, constants.coefficients, constants.surroundings,
+  update_stage<method, stage, true>(
+      constants.coefficients, node.x, node.v,
+      node_acceleration(force, node.v, Lanes(constants.surroundings.viscous_damping), gravity),
       [&](auto slot) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t i = index(decltype(slot)::value);
-        return load3(
-            address(storage_of(integrators[method], static_cast<Pair>(i / 2), Storage::in_place), i));
+        return load3(stored_at(
+            column, storage_of(integrators[method], static_cast<Pair>(i / 2), Storage::in_place), i, row));
       },
       [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t i = index(decltype(slot)::value);
-        store3(address(walk_writes_to(integrators[method], stage, static_cast<Pair>(i / 2)), i), value);
-      });
+        store3(
+            stored_at(column, walk_writes_to(integrators[method], stage, static_cast<Pair>(i / 2)), i, row),
+            value);
+      },
+      [&](const Lanes3& x, const Lanes3&) MSSIM_INLINE_LAMBDA { lowest = Lanes(hn::Min(x.y.v, lowest.v)); });
+}
+
+/// What the floor does to a column after a step, if a node has come below it: one look a column, because
+/// comparisons take the units that multiply and minima those that add. Measured on Zen 4: 0.98 of the time.
+template <std::size_t method, std::size_t stage>
+HWY_INLINE void touch_floor_in_column(const RowConstants& constants, const ColumnView& column,
+                                      const Lanes& lowest) {
+  if constexpr (stage + 1 == integrators[method].stage_count) {
+    if (HWY_LIKELY(hn::AllFalse(FloatTag(),
+                                hn::Lt(lowest.v, hn::Set(FloatTag(), constants.surroundings.floor_height)))))
+      return;
+    constexpr Pair next = walk_writes_to(integrators[method], stage, Pair::next);
+    for (std::ptrdiff_t row = 0; row < constants.height; ++row) {
+      NodeLanes node{load3(stored_at(column, next, 0, row)), load3(stored_at(column, next, 1, row))};
+      touch_floor(EveryLane{}, constants.surroundings, node.x, node.v);
+      store3(stored_at(column, next, 0, row), node.x);
+      store3(stored_at(column, next, 1, row), node.v);
+    }
+  }
 }
 
 /// Forces of springs that reach across the end of a band, of its last two rows.
@@ -315,10 +342,12 @@ HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& vie
   constexpr bool gathers_state = integrators[method].stages[stage].gather == Pair::state;
   const RowConstants constants(bands, view);
   const ColumnView column = view;
+  Lanes lowest(std::numeric_limits<float>::max());
   walk_rows<every_spring, gathers_state, true>(
       constants, column,
       [&](std::ptrdiff_t row, const NodeLanes& node, const Lanes3& force)
-          MSSIM_INLINE_LAMBDA { update_row<method, stage>(constants, column, node, force, row); });
+          MSSIM_INLINE_LAMBDA { update_row<method, stage>(constants, column, node, force, row, lowest); });
+  touch_floor_in_column<method, stage>(constants, column, lowest);
 }
 
 /// A column before those that are updated, on which its springs of `set` act, whatever the stage.
@@ -351,10 +380,12 @@ HWY_NOINLINE void walk_last_column(const BandGrid& bands, const ColumnView& view
     pull_last_column<within_column | to_next_column>(bands, view);
   const RowConstants constants(bands, view);
   const ColumnView column = view;
+  Lanes lowest(std::numeric_limits<float>::max());
   for (std::ptrdiff_t row = 0; row < constants.height; ++row)
     update_row<method, stage>(constants, column, nodes_of(column.here, row),
                               load3(column.forces_here + row * static_cast<std::ptrdiff_t>(3 * lane_count())),
-                              row);
+                              row, lowest);
+  touch_floor_in_column<method, stage>(constants, column, lowest);
 }
 
 }  // namespace mssim::HWY_NAMESPACE
