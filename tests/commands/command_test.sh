@@ -15,7 +15,7 @@ expect 2 'nothing to measure' bench
 OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;' run --threads 2 --scene cloth2500
 expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
 expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
-expect 2 'known are serial, threads-mutex, openmp, opencl, hybrid, mpi and mpi-copies' bench --scene cloth2500 --backend cuda
+expect 2 "known are $(names_of backends | paste -sd, | sed 's/,/, /g; s/\(.*\), /\1 and /')" bench --scene cloth2500 --backend cuda
 expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json
 expect 2 'did you mean gather?): known are serial, mutex-per-group' bench --suite races --backend gahter
 expect 2 'unknown backend "atomic"' bench --scene cloth2500 --backend atomic

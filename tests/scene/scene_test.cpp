@@ -12,6 +12,7 @@
 
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
 #include "text/text.h"
@@ -120,6 +121,11 @@ const std::string nested_objects = [] {
   for (int i = 0; i < 100'000; ++i) text += "{\"a\":";
   return text;
 }();
+const std::string give_a_kind = [] {
+  std::vector<std::string_view> names;
+  for (const SceneKind* kind : scene_kinds()) names.push_back(kind->name);
+  return "the text " + listed(names, "or");
+}();
 const std::string long_words(201, 'w');
 const std::string long_key = '"' + std::string(1'000'000, 'w') + R"(": 1, "rows": 50)";
 
@@ -152,9 +158,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{dt, "\"dt_s\": \"atuo\"", "/dt_s", "is the text \"atuo\"", "or \"auto\""},
         BadScene{dt, "\"dt_s\": {}", "/dt_s", "is an object", "a number"},
         BadScene{R"({"row": 0, "every_columns": 10})", "7", "/cloth/pins", "is 7", "give an object, { ... }"},
-        BadScene{"\"cloth\",", "5,", "/kind", "is 5", "give the text cloth, bodies or garment"},
-        BadScene{"\"cloth\",", "\"clot\",", "/kind", "is the text \"clot\"",
-                 "give the text cloth, bodies or garment"},
+        BadScene{"\"cloth\",", "5,", "/kind", "is 5", give_a_kind.c_str()},
+        BadScene{"\"cloth\",", "\"clot\",", "/kind", "is the text \"clot\"", give_a_kind.c_str()},
         BadScene{"Cotton", "Cot\\nton", "/description", "is the text \"Cot\\nton", "one line of text"},
         BadScene{"Cotton", long_words.c_str(), "/description", "is the text \"www",
                  "at most 200 characters"}));
@@ -171,8 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{rows, "\"rows\": 50, \"a/b~c\\n\": 1", "/cloth/a~1b~0c\\n ", "value is 1", "known here are"},
         BadScene{rows, long_key.c_str(), "/cloth/www", "value is 1", "known here are"},
         BadScene{"\"rows\": 50,", "", "/cloth/rows", "is missing", "add it as an integer from 2 to 1000000"},
-        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing",
-                 "add it as the text cloth, bodies or garment"},
+        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing", give_a_kind.c_str()},
         BadScene{rows, "\"rows\": 50, \"rows\": 60", "/cloth/rows", "is given twice",
                  "keep one of the two"}));
 

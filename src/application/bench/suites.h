@@ -51,7 +51,8 @@ std::vector<std::string> suite_names();
 /// for the suites that are in it.
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
 
-/// What the suite of that name compares. "tables", and no suite (an empty name), compare the five backends.
+/// What the suite of that name compares. "tables", and no suite (an empty name), compare the backends that
+/// `bench` takes by default.
 const Comparison& comparison_of_suite(std::string_view name);
 
 }  // namespace mssim
