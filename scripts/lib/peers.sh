@@ -3,21 +3,29 @@
 # shellcheck source=scripts/lib/python_packages.sh
 . "$root/scripts/lib/python_packages.sh"
 
-# compile_cpp_peer PROGRAM: compiles scripts/lib/peers/cpp-list.cpp.
-compile_cpp_peer() {
-  local source=$root/scripts/lib/peers/cpp-list.cpp flags=(-std=c++17 -O3 -march=native) libraries lines
+compiled_peers=(cpp-list cpp-gather cpp-gather-clang)
+
+# compile_peer NAME PROGRAM: compiles one of them. Gathers may reorder what they add, as the peers in Python may.
+compile_peer() {
+  local compiler=c++ version source=$root/scripts/lib/peers/${1%-clang}.cpp flags=(-std=c++17 -O3 -march=native) libraries lines
+  [[ $1 != *-clang ]] || compiler=clang++
+  [[ $1 != cpp-gather* ]] || flags+=(-ffast-math -fopenmp)
+  [[ $1 != cpp-gather* || $(uname -m) != x86_64 ]] || flags+=(-mprefer-vector-width=512)
+  version=$("$compiler" -dumpfullversion 2>/dev/null || "$compiler" -dumpversion)
   read -ra libraries <<<"$(pkg-config --cflags --libs hdf5)"
   lines=$(grep -cvE '^ *(//|$)' "$source")
-  c++ "${flags[@]}" -I "$root/src/starters/cpp" -DPEER_NOTE="\"g++ $(c++ -dumpfullversion), ${flags[*]:1}; spring list; $lines lines\"" \
-    "$source" "${libraries[@]}" -o "$1"
+  "$compiler" "${flags[@]}" -I "$root/src/starters/cpp" \
+    -DPEER_NOTE="\"${compiler/#c++/g++} $version, ${flags[*]:1}; $lines lines\"" "$source" "${libraries[@]}" -o "$2"
 }
 
-# ensure_peers: build/peers with the packages of scripts/peers.txt and the compiled peer, or says why not and exits.
+# ensure_peers: build/peers with the packages of scripts/peers.txt and the compiled peers, or says why not and exits.
 ensure_peers() {
   ensure_python peers 'the peers, in Python'
-  local log=$root/build/peers-cpp.log
-  compile_cpp_peer "$root/build/peers/cpp-list" </dev/null >"$log" 2>&1 || {
-    say "scripts/lib/peers/cpp-list.cpp could not be compiled; the compiler's messages are in $log"
-    exit "$exit_missing"
-  }
+  local log=$root/build/peers-cpp.log name
+  for name in "${compiled_peers[@]}"; do
+    compile_peer "$name" "$root/build/peers/$name" </dev/null >"$log" 2>&1 || {
+      say "the peer $name could not be compiled; the compiler's messages are in $log"
+      exit "$exit_missing"
+    }
+  done
 }

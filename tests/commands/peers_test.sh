@@ -1,5 +1,5 @@
 #!/bin/bash
-# The suite of peers, with the one of them that needs no Python: plain C++, compiled here. Arguments: mssim, the source folder, and
+# The suite of peers, with those of them that need no Python: C++, compiled here. Arguments: mssim, the source folder, and
 # perhaps an emulator.
 set -euo pipefail
 mssim=$1
@@ -14,19 +14,23 @@ expect 2 '^mssim: --suite peers compares backends that are described.*scripts/pe
 # mssim reads all descriptions, and all of them are in the suite.
 ends 0 bench --suite peers --backend-folder "$peers" --dry-run
 described=$(find "$peers" -name '*.json' | wc -l)
-[ "$described" -eq 7 ] || fail "there are $described descriptions"
+[ "$described" -eq 9 ] || fail "there are $described descriptions"
 [ "$(grep -c "^bodies38233 .* $((described + 2)) " "$work/out")" -eq 1 ] || fail "not all are in the suite: $(cat "$work/out")"
 
 [ $# -lt 3 ] || exit 77 # the peer would be of the machine that emulates
 pkg-config --exists hdf5 && command -v c++ >/dev/null || exit 77
 root=$source
 . "$source/scripts/lib/peers.sh"
-compile_cpp_peer "$work/cpp-list"
-printf '{"command": ["./cpp-list"]}' >"$work/cpp-list.json"
+for peer in cpp-list cpp-gather; do
+  compile_peer $peer "$work/$peer"
+  printf '{"command": ["./%s"]}' $peer >"$work/$peer.json"
+done
 
-ends 0 bench --suite peers --backend openmp,cpp-list --backend-folder "$work" --rounds 1 --threads 2 --out "$work/peers"
+ends 0 bench --suite peers --backend-folder "$work" --rounds 1 --threads 2 --out "$work/peers"
 [ "$(grep -c ',openmp,' "$work/peers/peers.csv")" -eq 4 ] || fail "peers.csv: $(cat "$work/peers/peers.csv")"
-[ "$(grep -c ',cpp-list,1,.*,true,ok,.*spring list; [0-9]* lines' "$work/peers/peers.csv")" -eq 4 ] ||
-  fail "the peer is not verified: $(cat "$work/peers/peers.csv")"
-column_of "$work/peers/peers.csv" times_openmp | awk '$1 <= 0 { exit 1 }' || fail "no ratios: $(cat "$work/peers/peers.csv")"
+[ "$(grep -c ',cpp-list,1,.*,true,ok,.*; [0-9]* lines' "$work/peers/peers.csv")" -eq 4 ] ||
+  fail "the list is not verified: $(cat "$work/peers/peers.csv")"
+[ "$(grep -c ',cpp-gather,2,.*,true,ok,.*-ffast-math.*; [0-9]* lines' "$work/peers/peers.csv")" -eq 3 ] ||
+  fail "the gather is not verified on the cloths: $(cat "$work/peers/peers.csv")"
+column_of "$work/peers/peers.csv" times_openmp | awk '$1 != "" && $1 <= 0 { exit 1 }' || fail "no ratios: $(cat "$work/peers/peers.csv")"
 grep -q '^| .cpp-list. | 1 |' "$work/peers/peers.md" || fail "peers.md: $(cat "$work/peers/peers.md")"
