@@ -105,12 +105,24 @@ RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, cons
 }
 
 void RunRecorder::record(const Frame& frame) {
-  const EnergySample sample{frame.time_s, frame.energy};
+  wait_for_frame();
+  energies_.push_back({frame.time_s, frame.energy});
+  if (!wanted()) return;
+  const OnAllProcessCpus unbound;  // not the CPU of this thread alone
+  writing_ = std::async(as_the_system_can, [this, frame, state = frame.state] {
+    write({frame.step, frame.time_s, state, frame.energy, frame.losses});
+  });
+}
+
+void RunRecorder::write(const Frame& frame) {
   // First the curve, so that it has the energies of every frame of the trace, whichever of the two fails.
-  if (curve_) curve_->append(sample);
+  if (curve_) curve_->append({frame.time_s, frame.energy});
   if (trace_) trace_->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
   if (pictures_) pictures_->draw(frame.state.position);
-  energies_.push_back(sample);
+}
+
+void RunRecorder::wait_for_frame() {
+  if (writing_.valid()) writing_.get();
 }
 
 void RunRecorder::finish_after(const std::function<void()>& simulation) {
@@ -131,6 +143,7 @@ void RunRecorder::finish_after(const std::function<void()>& simulation) {
 }
 
 void RunRecorder::finish() {
+  wait_for_frame();
   if (curve_) curve_->close();
   if (trace_) trace_->close();
   if (temporary_) return;

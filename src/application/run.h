@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -78,7 +79,8 @@ struct FileHeaders {
 /// are the same.
 void require_distinct(const RunFiles& files, const SceneSpec& scene);
 
-/// Writes the frames of a run into its files and keeps their energies.
+/// Writes the frames of a run into its files, each while the simulation goes on to the next one, because
+/// compressing a large frame takes as long as many steps; and keeps their energies.
 class RunRecorder {
  public:
   /// Begins the files of a scene that there are to be. Throws WriteError, also where another writer has one.
@@ -86,7 +88,7 @@ class RunRecorder {
 
   /// Whether anything is written.
   bool wanted() const { return trace_ || curve_ || pictures_; }
-  /// Throws WriteError.
+  /// Throws WriteError where the frame before cannot be written.
   void record(const Frame& frame);
   const std::vector<EnergySample>& energies() const { return energies_; }
 
@@ -97,6 +99,9 @@ class RunRecorder {
   void finish_after(const std::function<void()>& simulation);
 
  private:
+  void write(const Frame& frame);
+  /// Waits until the last frame is written. Throws WriteError where it cannot be.
+  void wait_for_frame();
   void finish();
   /// What the files hold that did not get their names, for the end of a message.
   std::string kept();
@@ -106,6 +111,7 @@ class RunRecorder {
   std::optional<EnergyCurve> curve_;
   std::optional<PictureFolder> pictures_;
   std::vector<EnergySample> energies_;
+  std::future<void> writing_;  ///< of a frame into the files; nobody else touches them meanwhile
 };
 
 /// Simulated seconds of a run that says nothing of them.
