@@ -100,6 +100,7 @@ ab 0 steady slow --threshold 20
 says 'openmp .* same'
 ab 0 steady quick --format json
 says '"verdict": "faster"'
+[ "$(grep -A 10 '"base_samples_ms"' "$work/out" | grep -c ' 1\.0')" -eq 10 ] || fail "not the ten samples of BASE: $(cat "$work/out")"
 
 # The budget: no round is begun that would not fit, and what is not known is not said.
 start=$(date +%s%N)

@@ -83,6 +83,7 @@ def refuse(constant):
 result = json.load(open(sys.argv[1]), parse_constant=refuse)
 assert result["regression"] is True and result["threshold"] == 0.05, result
 assert [row["verdict"] for row in result["rows"]] == ["same", "slower"], result
+assert all(len(row["base_samples_ms"]) == len(row["new_samples_ms"]) > 4 for row in result["rows"]), result
 assert math.isclose(result["geometric_means"][0]["geometric_mean_ratio"], math.sqrt(1.12), rel_tol=1e-9), result
 PYTHON
 

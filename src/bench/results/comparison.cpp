@@ -38,12 +38,13 @@ const ResultRow* find(std::span<const ResultRow> rows, const ResultRow& row) {
 
 /// A combination with its time in BASE.
 template <class Combination>
-ComparedRow row_of(const Combination& combination, std::span<const double> base_ms) {
+ComparedRow row_of(const Combination& combination, const std::vector<double>& base_ms) {
   ComparedRow row;
   row.scene = combination.scene;
   row.backend = combination.backend;
   row.integrator = combination.integrator;
   row.base_ms = median(base_ms);
+  row.base_samples_ms = base_ms;
   return row;
 }
 
@@ -57,6 +58,7 @@ ComparedRow compare_rows(const ResultRow& base, const ResultRow& next, double th
   ComparedRow row = row_of(base, base.samples_ms);
   if (!counts(next)) return lost(std::move(row), status_of(next));
   row.new_ms = median(next.samples_ms);
+  row.new_samples_ms = next.samples_ms;
   row.ratio = ratio_of(base.samples_ms, next.samples_ms);
   row.verdict = verdict_of(*row.ratio, threshold);
   if (row.verdict == Verdict::undecided)
@@ -174,6 +176,7 @@ ComparedRow compare_pairs(const PairedTimes& times, double threshold) {
   ComparedRow row = row_of(times, times.base_ms);
   if (!times.lost.empty()) return lost(std::move(row), times.lost);
   row.new_ms = median(times.new_ms);
+  row.new_samples_ms = times.new_ms;
   row.ratio = ratio_at_look(times);
   if (times.base_ms.size() >= first_look_pairs) row.verdict = verdict_of(*row.ratio, threshold);
   if (row.verdict == Verdict::undecided)

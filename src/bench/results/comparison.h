@@ -42,6 +42,8 @@ struct ComparedRow {
   /// Samples a side by which an undecided one is likely to be decided; none beyond `most_samples_asked`.
   std::optional<std::size_t> samples_needed;
   std::string reason;  ///< why it is lost
+  /// Milliseconds a step; in pairs where they were taken in pairs. Of a lost one there are none of NEW.
+  std::vector<double> base_samples_ms, new_samples_ms;
 };
 
 /// More samples than these are "many": nobody takes them.

@@ -89,11 +89,17 @@ Document comparison_page(const RunComparison& comparison) {
 std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8) {
   if (format == ComparisonFormat::markdown) return markdown(comparison_page(comparison));
   const Table rows = rows_of(comparison, utf8), means = means_of(comparison);
-  if (format == ComparisonFormat::json)
+  if (format == ComparisonFormat::json) {
+    nlohmann::ordered_json json_rows = table_json(rows);
+    for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+      json_rows[i]["base_samples_ms"] = comparison.rows[i].base_samples_ms;
+      json_rows[i]["new_samples_ms"] = comparison.rows[i].new_samples_ms;
+    }
     return json_text({{"threshold", comparison.threshold},
                       {"regression", has_regression(comparison)},
-                      {"rows", table_json(rows)},
+                      {"rows", json_rows},
                       {"geometric_means", table_json(means)}});
+  }
   const std::string rows_text = to_text(rows), means_text = to_text(means);
   const std::string legend = legend_of_ratios(rows_text);
   return rows_text + (means_text.empty() ? "" : "\n" + means_text) + (legend.empty() ? "" : legend + "\n");

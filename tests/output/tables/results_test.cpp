@@ -221,7 +221,7 @@ TEST(RowTable, KeepsNumbersInLineBesideMarks) {
 
 ComparedRow row_of(const std::string& backend, std::optional<double> new_ms,
                    std::optional<RatioEstimate> ratio, Verdict verdict) {
-  return {"cloth2500", backend, "semi-euler", 1, new_ms, ratio, verdict, {}, ""};
+  return {"cloth2500", backend, "semi-euler", 1, new_ms, ratio, verdict, {}, "", {0.75, 1, 1.25}, {}};
 }
 
 RunComparison made_up_comparison() {
@@ -230,6 +230,7 @@ RunComparison made_up_comparison() {
                      row_of("serial", 1, RatioEstimate{1, 0.99, 1.01, true, 1}, Verdict::same),
                      row_of("opencl", std::nullopt, std::nullopt, Verdict::lost),
                      row_of("hybrid", 1.01, RatioEstimate{1.01, 0.5, 2, true, 0.5}, Verdict::undecided)};
+  comparison.rows[0].new_samples_ms = {2.5, 2, 1.5};
   comparison.rows[2].reason = "failed: a | b";
   comparison.rows[3].samples_needed = 40;
   comparison.means = {{"", 3, 1.25}, {"openmp", 1, 2}};
@@ -252,6 +253,8 @@ TEST(ComparisonTable, HoldsEveryRowInEveryFormat) {
   EXPECT_EQ(json["threshold"], comparison.threshold);
   ASSERT_EQ(json["rows"].size(), 4U);
   EXPECT_EQ(json["rows"][0]["ratio"], 2.0);
+  EXPECT_EQ(json["rows"][0]["base_samples_ms"], (std::vector{0.75, 1.0, 1.25}));
+  EXPECT_EQ(json["rows"][0]["new_samples_ms"], (std::vector{2.5, 2.0, 1.5}));
   EXPECT_EQ(json["rows"][2]["verdict"], "lost");
   EXPECT_EQ(json["rows"][2]["ratio"], nullptr);
   EXPECT_EQ(json["geometric_means"][0]["backend"], "all");
