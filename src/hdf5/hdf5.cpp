@@ -179,8 +179,8 @@ void prepare_hdf5() {
     // own locks would take for another program's.
     ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
     H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   });
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // of this thread
 }
 
 void throw_hdf5_error(const std::string& action) {

@@ -22,8 +22,9 @@ struct Hdf5Error : std::runtime_error {
   int error_number;    ///< the errno that HDF5 noted, 0 when it noted none
 };
 
-/// Call before any other HDF5 function: keeps HDF5 from locking files, which their writers do, from printing
-/// its error stack, and from flushing files at exit, where it crashes when a file could not be written.
+/// Call before any other HDF5 function, in each thread: keeps HDF5 from locking files, which their writers
+/// do, from printing its error stack, and from flushing files at exit, where it crashes when a file could not
+/// be written.
 void prepare_hdf5();
 
 /// Throws the Hdf5Error of the HDF5 call that has just failed.

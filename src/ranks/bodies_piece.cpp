@@ -155,8 +155,8 @@ BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHe
 }
 
 /// The bodies of a scene that one rank steps, whole ones and parts of divided ones, by openmp's own vector
-/// code: the same bits as there. Bodies do not touch each other: only the ranks of a divided one have
-/// something to say to each other while they step.
+/// code: with the same instruction set the same bits as there. Bodies do not touch each other: only the ranks
+/// of a divided one have something to say to each other while they step.
 class BodiesPiece final : public Piece {
  public:
   BodiesPiece(const Session& session, const RankJob& job)

@@ -82,6 +82,8 @@ warns 'sleeper bench --help has not ended within 11 s'
   # What cannot run takes nothing along, and what BASE loses on the way only itself.
   program new-partly 'times "1.00$((runs % 7))"; times "" "unsupported: no such method" false serial; exit 3'
   program new-losing 'times "1.00$((runs % 7))"; if [ "$runs" -lt 4 ]; then times 1 ok true serial; else times 1 "failed: late" false serial; exit 1; fi'
+  program new-gone 'times "1.00$((runs % 5))"
+    if [ "$runs" -lt 14 ]; then times "$(((runs ^ 1) % 4 + 1)).5" ok true serial; else rm "$out/timings.csv"; times "" "unavailable: no device" false serial; exit 3; fi'
   program new-both 'times "1.00$((runs % 5))"; times "1.00$((runs % 3))" ok true serial'
   program sleepy 'echo $$ >"$0.pid"; sleep 60'
 }
@@ -146,7 +148,7 @@ ab 1 new-steady new-unsure
 says 'lost  *failed: not verified'
 ab 2 new-unsure new-steady
 warns 'none in a later round (failed: not verified)'
-warns 'nothing to compare'
+warns 'nothing is left to compare'
 ab 2 new-steady new-refusing
 warns '^what is wrong with it$'
 warns 'new-refusing bench exited with 2'
@@ -170,6 +172,10 @@ says 'openmp .* same'
 if grep -q '^cloth2500 *serial' "$work/out"; then fail "a row stands that BASE has lost"; fi
 warns 'new-losing had a time of .*serial.* none in a later round (failed: late)'
 
+ab 1 new-two new-gone --backend openmp,serial
+says 'openmp .* same'
+says 'serial .* lost  *unavailable: no device'
+
 # Programs that fail.
 ab 1 steady wrong
 says 'lost  *failed: not verified'
@@ -179,7 +185,7 @@ ab 1 steady fickle
 says 'lost  *failed: step 3'
 ab 2 fickle steady
 warns 'none in a later round (failed: step 3)'
-warns 'nothing to compare'
+warns 'nothing is left to compare'
 ab 2 steady crash
 warns '^what went wrong$'
 warns 'crash bench was ended by signal 11'

@@ -72,7 +72,9 @@ class AbProgram {
   /// Takes what came of it: the rows of a bench of one round.
   std::vector<CombinationTime> take_verification(const ChildResult& result) {
     verified_ = true;
-    return rows_of(result, verified_folder());
+    std::vector<CombinationTime> rows = rows_of(result, verified_folder());
+    require_any_time(rows, result);
+    return rows;
   }
   /// After a verification that took so long, samples may take ten times that, where that is more.
   void allow(double verification_s) {
@@ -81,13 +83,17 @@ class AbProgram {
   }
 
   /// Samples of these backends and integrators, which verifies them again where no verification was taken.
+  /// `first`: nothing is known of them yet.
   std::vector<CombinationTime> bench(const std::vector<std::string>& backends,
-                                     const std::vector<std::string>& integrators) const {
+                                     const std::vector<std::string>& integrators, bool first) const {
     const TemporaryFolder folder;
     const fs::path out = folder.path() / "results";
     ChildProcess child = bench_process(backends, integrators, samples_a_process, out);
     if (verified_) add(child, "--verified", verified_folder().string());
-    return rows_of(run(child), out);
+    const ChildResult result = run(child);
+    std::vector<CombinationTime> rows = rows_of(result, out);
+    if (first) require_any_time(rows, result);
+    return rows;
   }
 
  private:
@@ -119,10 +125,13 @@ class AbProgram {
                            result.exit_code == exit_unavailable) &&
                           fs::exists(out / "timings.csv");
     if (!has_rows) fail(result);
-    std::vector<CombinationTime> rows = read_combination_times(out / "timings.csv");
+    return read_combination_times(out / "timings.csv");
+  }
+
+  /// Throws Unavailable where nothing that was asked for can run.
+  void require_any_time(const std::vector<CombinationTime>& rows, const ChildResult& result) const {
     const auto is_timed = [](const CombinationTime& row) { return row.least_ms.has_value(); };
     if (result.exit_code == exit_unavailable && std::ranges::none_of(rows, is_timed)) fail(result);
-    return rows;
   }
 
   fs::path verified_folder() const { return folder_.path() / "verified"; }
@@ -161,12 +170,6 @@ const CombinationTime* find(const std::vector<CombinationTime>& times, const Pai
   return found == times.end() ? nullptr : &*found;
 }
 
-void require_any(const std::vector<Series>& series, const AbOptions& options) {
-  if (series.empty())
-    throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
-                     " have no measured combination in common; choose other backends or integrators");
-}
-
 /// The combinations that both programs have; what only one has, or BASE has no time of, is told and left out.
 std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
                                     const std::vector<CombinationTime>& next, const AbOptions& options) {
@@ -181,7 +184,9 @@ std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
     else
       series.push_back({pairs});
   }
-  require_any(series, options);
+  if (series.empty())
+    throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
+                     " have no measured combination in common; choose other backends or integrators");
   return series;
 }
 
@@ -297,13 +302,15 @@ RunComparison compare_programs(const AbOptions& options) {
       std::array<std::vector<CombinationTime>, 2> times;
       const std::size_t first = random() & 1U;
       for (const std::size_t which : {first, 1 - first})
-        times[which] =
-            programs[which].bench(all ? options.backends : backends_wanted(options, series),
-                                  all ? options.integrators : still_wanted(&PairedTimes::integrator, series));
+        times[which] = programs[which].bench(
+            all ? options.backends : backends_wanted(options, series),
+            all ? options.integrators : still_wanted(&PairedTimes::integrator, series), all);
       if (all) series = combinations_of(times[0], times[1], options);
       std::erase_if(
           series, [&](Series& one) { return !one.settled && !add_round(one, times[0], times[1], options); });
-      require_any(series, options);
+      if (series.empty())
+        throw UsageError("nothing is left to compare: {} has lost every combination, as is said above",
+                         options.base);
       ++rounds;
       longest_s = std::max(longest_s, round_watch.seconds());
       progress.update(fmt::format("round {}", rounds), watch.seconds() / options.time_budget_s);

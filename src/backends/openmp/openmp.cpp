@@ -21,7 +21,7 @@ namespace {
 /// The narrowest of the kernels that takes no more vectors for the springs of these bodies than `best`,
 /// rounds as often, and has `roots`: seven bodies leave nine of 16 lanes empty. Measured on two Zen 4 cores,
 /// bodies20587, AVX2 in place of AVX-512: 0.75 of the time with one thread and 0.57 to 0.70 with two,
-/// although AVX2 has no estimate of reciprocal roots.
+/// although AVX2's code takes roots and divisions.
 StepKernel<BodyLanes> narrowest_kernel(const std::vector<StepKernel<BodyLanes>>& kernels,
                                        const StepKernel<BodyLanes>& best,
                                        const std::vector<AlikeBodies>& bodies, Roots roots) {

@@ -296,6 +296,7 @@ void H5mdTrace::guard(const std::function<void()>& write) {
     if (kept == 0 && !times_s_.empty()) return message + "; the frames written before could not be saved";
     return message + kept_in_part(name(), "frames", kept);
   };
+  prepare_hdf5();  // a frame may be written in another thread than the head
   try {
     write();
   } catch (const Hdf5Error& error) {

@@ -3,6 +3,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <thread>
+
 #include "garment/output/h5md_garment.h"
 #include "hdf5/hdf5.h"
 #include "tests/support/systems.h"
@@ -171,6 +173,16 @@ TEST_F(TraceReading, SaysWhatItIsThatIsNoTrace) {
   if (::geteuid() == 0) return;  // who may read everything
   std::filesystem::permissions(file(), std::filesystem::perms::none);
   EXPECT_THAT(refusal(file(), true), HasSubstr("Permission denied"));
+}
+
+TEST(Hdf5, PrintsNothingItselfInAnyThread) {
+  prepare_hdf5();
+  testing::internal::CaptureStderr();
+  std::thread([] {
+    prepare_hdf5();
+    EXPECT_LT(H5Fopen("/no/such/file.h5", H5F_ACC_RDONLY, H5P_DEFAULT), 0);
+  }).join();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(TraceReading, RefusesWhatOtherProgramsWrote) {
