@@ -446,8 +446,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   // Fewer rounds than the deadline let expect: one more, whose times do not count.
   if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
   for (Combination& combination : all) {
-    // Who is told to end asks a program for nothing more, which would end the check of the samples.
-    if (combination.backend && !stopped) require_prompt_steps(combination);
+    if (combination.backend) require_prompt_steps(combination);
     end(combination);
     combination.backend.reset();
   }

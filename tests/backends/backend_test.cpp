@@ -267,8 +267,11 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
   }
 }
 
-TEST(BackendTable, NamesEachOnce) {
-  for (const BackendInfo& backend : backends()) EXPECT_EQ(find_backend(backend.name), &backend);
+TEST(BackendTable, NamesEachOnceWithItsPaperConfiguration) {
+  for (const BackendInfo& backend : backends()) {
+    EXPECT_EQ(find_backend(backend.name), &backend);
+    EXPECT_FALSE(backend.paper_configuration.empty());
+  }
   EXPECT_EQ(find_backend("cuda"), nullptr);
 }
 

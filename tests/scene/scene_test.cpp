@@ -121,11 +121,12 @@ const std::string nested_objects = [] {
   for (int i = 0; i < 100'000; ++i) text += "{\"a\":";
   return text;
 }();
-const std::string give_a_kind = [] {
+const std::string a_kind = [] {
   std::vector<std::string_view> names;
   for (const SceneKind* kind : scene_kinds()) names.push_back(kind->name);
   return "the text " + listed(names, "or");
 }();
+const std::string give_a_kind = "give " + a_kind, add_a_kind = "add it as " + a_kind;
 const std::string long_words(201, 'w');
 const std::string long_key = '"' + std::string(1'000'000, 'w') + R"(": 1, "rows": 50)";
 
@@ -176,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{rows, "\"rows\": 50, \"a/b~c\\n\": 1", "/cloth/a~1b~0c\\n ", "value is 1", "known here are"},
         BadScene{rows, long_key.c_str(), "/cloth/www", "value is 1", "known here are"},
         BadScene{"\"rows\": 50,", "", "/cloth/rows", "is missing", "add it as an integer from 2 to 1000000"},
-        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing", give_a_kind.c_str()},
+        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing", add_a_kind.c_str()},
         BadScene{rows, "\"rows\": 50, \"rows\": 60", "/cloth/rows", "is given twice",
                  "keep one of the two"}));
 

@@ -90,10 +90,15 @@ inline void expect_same_bounce(Backend& backend, Backend& reference, int steps) 
   EXPECT_LE(largest_distance(found.position, expected.position), 1e-6);
 }
 
-/// Expects that a backend has taken a state of single precision: to the bit, but that velocities may be
-/// rounded once to the unit that it holds them in. What it gives back itself it takes to the bit.
+/// Expects that a backend has taken a state of single precision to the bit. Of openmp's cloths, whose unit of
+/// time is a step, velocities are rounded once more; what these give back themselves they take to the bit.
 inline void expect_has_taken(Backend& backend, const State& given) {
   const State taken = backend.state();
+  const bool in_steps = backend.device().starts_with("cpu ") && backend.steps_per_pass() > 0;
+  if (!in_steps) {
+    EXPECT_TRUE(same_state(taken, given));
+    return;
+  }
   ASSERT_EQ(taken.velocity.size(), given.velocity.size());
   EXPECT_EQ(largest_distance(taken.position, given.position), 0);
   for (std::size_t node = 0; node < given.velocity.size(); ++node)

@@ -31,4 +31,4 @@ wrong_scene() {
 
 # Without mpi and mpi-copies, whose steps are openmp's.
 mapfile -t backends < <("$mssim" list backends --format csv | awk -F, 'NR > 1 && $1 !~ /^mpi/ { print $1 }')
-[ "${#backends[@]}" -ge 2 ] || { echo "FAILED: ${#backends[@]} backends"; exit 1; }
+[ "${#backends[@]}" -ge 5 ] || { echo "FAILED: ${#backends[@]} backends"; exit 1; }

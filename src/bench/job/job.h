@@ -102,7 +102,10 @@ struct Combination {
   std::vector<Communication> communication;  ///< in each sample of this run, where the backend tells it
   double step_seconds = 0;                   ///< what calibrate has found; 0 before
   std::vector<double> sample_seconds,
-      reading_seconds;               ///< of this run: of samples, and of reading their ends
+      reading_seconds;  ///< of this run: of samples, and of reading their ends
+  /// What reading the state takes after one step, from the first sample on that was read for longer than it
+  /// took; none before.
+  std::optional<double> step_reading_seconds;
   std::optional<SampleEnd> checked;  ///< the end of the sample that is to be checked
   /// What the windows say after so many steps, of a cloth that is seen in windows; empty where it was
   /// verified by an earlier process.
