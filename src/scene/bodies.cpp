@@ -451,7 +451,7 @@ SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& fo
   return least_counts(own_shape(shape, folder));
 }
 
-const SceneKind bodies_kind{
+extern const SceneKind bodies_kind{
     .name = "bodies",
     .description =
         "Solid bodies cut into tetrahedra, whose edges are the springs. They fall side by side; "

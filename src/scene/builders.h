@@ -8,9 +8,6 @@
 
 namespace mssim {
 
-/// Rows of the TABLE of scene kinds (scene_kinds.h).
-extern const SceneKind cloth_kind, bodies_kind;
-
 /// The nodes of a window as a cloth of their own, with the numbers that they have in the whole: what lies
 /// outside is not built. Its springs are left out: springs_of (model/system.h) gives them. Throws
 /// std::bad_alloc.

@@ -200,7 +200,7 @@ System build_cloth(const SceneSpec& spec) {
   return system;
 }
 
-const SceneKind cloth_kind{
+extern const SceneKind cloth_kind{
     .name = "cloth",
     .description =
         "A regular cloth, level at first: row r, column c starts at (c spacing, ceiling height, r spacing). "

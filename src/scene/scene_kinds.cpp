@@ -5,12 +5,15 @@
 #include <array>
 #include <variant>
 
-#include "garment/scene/garment_scene.h"
 #include "platform/machine.h"
 #include "scene/builders.h"
 #include "scene/fields/fields.h"
 
 namespace mssim {
+
+// Each stands beside the spec and the builder that it names.
+extern const SceneKind cloth_kind, bodies_kind, garment_kind;
+
 namespace {
 
 constexpr std::array table{&cloth_kind, &bodies_kind, &garment_kind};

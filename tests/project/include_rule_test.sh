@@ -31,7 +31,7 @@ scene/fields          text geometry model
 garment/spec          text geometry garment mesh garment/body garment/pattern scene/fields
 scene/spec            geometry model mesh garment/body garment/spec
 garment/scene         text geometry garment/contact model mesh garment/body garment/pattern scene/fields scene/spec
-scene                 text platform geometry model mesh scene/fields scene/spec garment/scene
+scene                 text platform geometry model mesh scene/fields scene/spec
 
 backends/interface    kernels text integrators model
 backends/vectors      laws integrators backends/interface

@@ -399,7 +399,7 @@ SceneParts read(const SceneSpec& spec) {
 
 }  // namespace
 
-const SceneKind garment_kind{
+extern const SceneKind garment_kind{
     .name = "garment",
     .description = "Panels that are drawn together around a body along their seams, and draped.",
     .visit_fields = visit_fields,

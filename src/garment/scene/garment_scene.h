@@ -11,9 +11,6 @@
 
 namespace mssim {
 
-/// A row of the TABLE of scene kinds (scene/scene_kinds.h).
-extern const SceneKind garment_kind;
-
 /// What a scene whose content is a garment holds.
 inline const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
 
