@@ -17,6 +17,18 @@ timed() {
   return "$code"
 }
 
+# measured_on CLONE: for a page of results: the processor, the commit of the clone, ", changed" where its files were, beside
+# results, and the time.
+measured_on() {
+  awk -F ': *' -v processors="$(nproc)" '
+    { sub(/[ \t]+$/, "", $1) }
+    !($1 in value) { value[$1] = $2 }
+    END { if (value["model name"] != "") printf "%s, family %s model %s ", value["model name"], value["cpu family"], value["model"]
+          printf "(%d logical CPUs), ", processors }' /proc/cpuinfo
+  printf 'commit %s%s, %s' "$(git -C "$1" rev-parse --short=12 HEAD)" \
+    "$([[ -z $(git -C "$1" status --porcelain -uno -- . ':!results') ]] || echo ', changed')" "$(date -u +%Y-%m-%dT%H:%M:%SZ)"
+}
+
 # answer_help ARGUMENT...: if one of them is -h or --help, prints the comment at the top of the script, and exits.
 answer_help() {
   local argument
