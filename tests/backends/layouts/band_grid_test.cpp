@@ -37,9 +37,13 @@ TEST(BandRows, ShareTheirValues) {
   EXPECT_LE(different.size(), 4U) << "a few at the top, where a lane has no springs upwards, and at the end";
 }
 
+constexpr ColumnCosts zen4{1, 0.98, 256U << 10}, xeon{0.7, 0.97, 48U << 10};
+
 /// Of vectors of 16 lanes.
-std::size_t halves(std::uint32_t rows, std::uint32_t columns, const char* integrator, std::size_t threads) {
-  return halves_for(BandLayout(GridPatch{rows, columns, 0.01}, 16), *find_integrator(integrator), 1, threads);
+std::size_t halves(std::uint32_t rows, std::uint32_t columns, const char* integrator, std::size_t threads,
+                   const ColumnCosts& costs = ColumnCosts::here()) {
+  return halves_for(BandLayout(GridPatch{rows, columns, 0.01}, 16), *find_integrator(integrator), 1, threads,
+                    costs);
 }
 
 TEST(BandCut, FoldsAClothWhoseBandsAreLow) {
@@ -57,6 +61,15 @@ TEST(BandCut, DoesNotFoldWhatWouldBeWalkedOverTwice) {
 
 TEST(BandCut, DoesNotFoldColumnsThatTheCacheDoesNotHold) {
   EXPECT_EQ(halves(10000, 700, "semi-euler", 1), 1U);
+  EXPECT_EQ(halves(500, 700, "semi-euler", 1, xeon), 1U);
+  EXPECT_EQ(halves(500, 700, "midpoint", 1, zen4), 1U) << "of several stages, the first-level cache";
+}
+
+TEST(BandCut, FoldsMoreWhereColumnsTakeLonger) {
+  for (const std::size_t threads : {1U, 2U}) {
+    EXPECT_EQ(halves(500, 700, "semi-euler", threads, zen4), 2U);
+    EXPECT_EQ(halves(200, 200, "semi-euler", threads, zen4), 2U);
+  }
 }
 
 TEST(BandCut, LeavesNoPartitionNarrowerThanWhatOthersReadOfIt) {
