@@ -16,6 +16,7 @@
 #include "commands/options.h"
 #include "integrators/all_integrators.h"
 #include "output/tables/table.h"
+#include "report/report.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -132,6 +133,17 @@ Table list_devices(const ListOptions& /*options*/) {
   return table;
 }
 
+Table list_claims(const ListOptions& /*options*/) {
+  Table table;
+  for (const Claim& claim : published_claims())
+    table.add({{"claim", claim.name},
+               {"paper", claim.paper},
+               {"place", claim.place},
+               {"needs", claim.needs.empty() ? Cell() : Cell(claim.needs)},
+               {"says", claim.says}});
+  return table;
+}
+
 /// The TABLE of what can be listed.
 struct Listed {
   std::string_view name;
@@ -142,13 +154,20 @@ constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"backends", list_backends},
                                                  {"methods", list_methods},
                                                  {"integrators", list_integrators},
-                                                 {"devices", list_devices}});
+                                                 {"devices", list_devices},
+                                                 {"claims", list_claims}});
 
-constexpr std::string_view schema_subject = "schema";
+/// And of what is printed as it is: schemas of JSON files.
+struct Printed {
+  std::string_view name;
+  std::string (*text)();
+};
+constexpr auto printed = std::to_array<Printed>({{"schema", scene_schema}, {"claims-schema", claims_schema}});
 
 int run_list(const ListOptions& options) {
   require_device(options.execution, table_backends());
-  if (options.subject == schema_subject) std::cout << scene_schema();
+  for (const Printed& subject : printed)
+    if (subject.name == options.subject) std::cout << subject.text();
   for (const Listed& subject : subjects) {
     if (subject.name != options.subject) continue;
     std::cout << to_text(subject.list(options), options.format);
@@ -162,9 +181,11 @@ std::function<int()> declare_list(Arguments& arguments) {
   const auto options = std::make_shared<ListOptions>();
   std::vector<std::string_view> known;
   for (const Listed& subject : subjects) known.push_back(subject.name);
-  known.push_back(schema_subject);
+  for (const Printed& subject : printed) known.push_back(subject.name);
   arguments
-      .add("WHAT", options->subject, "What to list: " + listed(known, "or") + " of scene files, as JSON",
+      .add("WHAT", options->subject,
+           "What to list: " + listed(known, "or") +
+               "; the schemas are JSON, of scene files and of claims.json",
            one_of("word", {known.begin(), known.end()}))
       .required();
   declare_listing_format(arguments, options->format);

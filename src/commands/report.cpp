@@ -192,6 +192,7 @@ int report(const ReportOptions& options) {
   input.legend = paper_legend();
   try {
     input.published = published_tables();
+    input.claims = published_claims();
     input.tables = comparison_of_suite("tables").tables();
     input.references = reference_curves();
   } catch (const std::exception& error) {

@@ -42,9 +42,9 @@ struct HtmlBlock {
 /// own on a screen, and are set smaller on paper.
 constexpr std::string_view page_style = R"(
 :root { color-scheme: light dark; --text: #1b1f24; --back: #ffffff; --dim: #57606a; --line: #d0d7de; --fill: #f3f5f7;
-  --yes: #116329; --partly: #7d4e00; --no: #a40e26; }
+  --no: #a40e26; }
 @media (prefers-color-scheme: dark) { :root { --text: #e6edf3; --back: #0d1117; --dim: #9da7b3; --line: #3d444d;
-  --fill: #161b22; --yes: #56d364; --partly: #e3b341; --no: #ff8a80; } }
+  --fill: #161b22; --no: #ff8a80; } }
 * { box-sizing: border-box; }
 body { margin: 0 auto; padding: 1rem; max-width: 75rem; color: var(--text); background: var(--back);
   font: 16px/1.5 system-ui, sans-serif; overflow-wrap: break-word; }
@@ -68,11 +68,7 @@ thead .number { white-space: normal; }
 td.number strong, td strong { font-weight: 600; }
 .findings { list-style: none; padding: 0; }
 .findings li { padding: .3rem .8rem; margin: .4rem 0; border-left: .3rem solid var(--line); background: var(--fill); }
-.findings .yes { border-left-color: var(--yes); }
-.findings .partly { border-left-style: double; border-left-color: var(--partly); }
 .findings .no { border-left-style: dashed; border-left-color: var(--no); }
-.findings .yes > strong:first-child { color: var(--yes); }
-.findings .partly > strong:first-child { color: var(--partly); }
 .findings .no > strong:first-child { color: var(--no); }
 .problems { border-left: .3rem solid var(--no); padding-left: 1.5rem; }
 .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 28rem), 1fr)); gap: 1rem; }
@@ -85,7 +81,7 @@ footer { margin-top: 2rem; color: var(--dim); font-size: .875rem; }
 @page { size: A4; margin: 14mm 12mm; }
 @media print {
   :root { color-scheme: light; --text: #000000; --back: #ffffff; --dim: #444444; --line: #999999; --fill: #f3f3f3;
-    --yes: #0b4d20; --partly: #5f3b00; --no: #8a0b1f; }
+    --no: #8a0b1f; }
   body { font-size: 10pt; padding: 0; max-width: none; }
   nav { display: none; }
   details { display: none; }
@@ -117,13 +113,17 @@ Table points_of(const FoundGuide& guide) {
 }
 
 std::string json_of(const ReportFolder& folder, const ReportInput& input) {
-  Table verdict{{{"outcome"}, {"sentence"}}, {}};
-  for (const Finding& finding : findings_of(folder, input))
-    verdict.rows.push_back({name_of(finding.outcome), finding.sentence});
+  Table claims{{{"name"}, {"outcome"}, {"published"}, {"measured"}}, {}};
+  for (const JudgedClaim& judged : judge(folder, input))
+    claims.rows.push_back({judged.claim->name, name_of(judged.outcome), judged.published, judged.measured});
+  Table rows{{{"is_warning"}, {"sentence"}}, {}};
+  for (const Finding& finding : row_findings(folder.rows, folder.provenance.value_or(Provenance())))
+    rows.rows.push_back({finding.is_warning, finding.sentence});
   std::vector<std::string> problems;
   for (const std::string& problem : folder.problems) problems.push_back(json_string(problem));
   return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" + join(problems, ", ") +
-         "],\n\"verdict\": " + to_text(verdict, ListingFormat::json) +
+         "],\n\"claims\": " + to_text(claims, ListingFormat::json) +
+         ", \"findings\": " + to_text(rows, ListingFormat::json) +
          ", \"timings\": " + to_text(timings_table(folder.rows), ListingFormat::json) +
          (folder.guide ? ", \"guide\": " + to_text(points_of(*folder.guide), ListingFormat::json) : "") +
          ", \"provenance\": " + (folder.provenance ? provenance_text(*folder.provenance) : "null") + "}";

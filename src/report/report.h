@@ -83,11 +83,43 @@ std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_v
 enum class ContentKind : std::uint8_t { cloth, bodies, garment, other };
 ContentKind kind_of(const ResultRow& row);
 
+/// How rows decide a claim: the ratio of two backends' times on the scenes of a published table.
+struct ClaimTest {
+  std::string scenes;                    ///< name of the published table
+  std::string fast, slow;                ///< backends
+  std::vector<std::string> integrators;  ///< empty: the paper's
+  std::string slow_integrator;           ///< of `slow`; empty: that of `fast`
+  /// Not empty: the ratio is that of two speed-ups, with each integrator and with this one.
+  std::string gains_more_than;
+  bool on_gpu = false;      ///< rows of OpenCL on this processor decide nothing
+  bool of_average = false;  ///< the geometric mean of the ratios, else each
+  double at_least = 1;      ///< how many times as fast
+};
+
+/// What a paper says that a measurement could support or contradict.
+struct Claim {
+  std::string name, paper, place;
+  std::string says;               ///< in a line of our own
+  std::string needs;              ///< what deciding it takes beside rows; may be empty where there is a test
+  std::optional<ClaimTest> test;  ///< none where no rows decide it
+};
+
+/// Those of results/published/claims.json in the data folder. Throws SceneError for what is no such file, and
+/// std::runtime_error when the folder is missing.
+std::vector<Claim> published_claims();
+
+/// The claims of a text, which is a file's. Throws SceneError.
+std::vector<Claim> claims_in(const std::filesystem::path& file, const std::string& text);
+
+/// The JSON Schema of that file.
+std::string claims_schema();
+
 /// All that a report is made of.
 struct ReportInput {
   std::vector<ReportFolder> folders;
   PaperLegend legend;
   std::vector<PublishedTable> published;
+  std::vector<Claim> claims;           ///< of the papers
   TableMaker tables;                   ///< of published beside measured numbers
   std::vector<FoundCurve> references;  ///< energy curves, named as their scenes
   std::vector<FoundPicture> pictures;  ///< of scenes of the folders, drawn for the report
@@ -98,7 +130,8 @@ struct ReportInput {
 };
 
 /// One page that needs nothing beside it: no network, no script, no other file. Data for programs stand in it
-/// as JSON, in the element "mssim-data": {made_by, folders: [{name, problems, verdict: [{outcome, sentence}],
+/// as JSON, in the element "mssim-data": {made_by, folders: [{name, problems, claims: [{name, outcome,
+/// published, measured}], findings: [{is_warning, sentence}],
 /// timings: [a row of timings.csv], provenance: as in provenance.json, or null}]}; folders of guides have
 /// guide: [a row of guide.csv, with the columns that charts show].
 std::string report_page(const ReportInput& input);

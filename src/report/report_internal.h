@@ -61,48 +61,36 @@ class PaperScenes {
   std::vector<PaperScene> scenes_;
 };
 
-/// What measured rows say about something that a paper says, or about themselves.
-enum class Outcome : std::uint8_t {
-  reproduced,
-  partly,  ///< by some backends, or as far as intervals tell, and contradicted by nothing else
-  not_reproduced,
-  undecided,  ///< the intervals are too wide to say
-  fact,       ///< nothing published stands beside it
-  warning
+/// What rows say of a claim.
+enum class ClaimOutcome : std::uint8_t {
+  held,
+  not_held,      ///< a ratio lies below what the claim needs, with its whole interval
+  undecided,     ///< intervals contain what the claim needs
+  not_testable,  ///< what it needs is missing here
 };
 
-/// As it stands in front of a sentence.
-std::string_view name_of(Outcome outcome);
+std::string_view name_of(ClaimOutcome outcome);
 
-/// A sentence of the verdict, computed. With the marks of a Document.
+struct JudgedClaim {
+  const Claim* claim = nullptr;
+  ClaimOutcome outcome = ClaimOutcome::not_testable;
+  std::string published{};  ///< the published ratios; empty where the paper gives none
+  std::string measured{};   ///< the measured ratios, or what is missing
+};
+
+/// What the rows of a folder say of the claims about its scenes, those first that they decide. Claims that no
+/// rows decide are with any scene of their paper.
+std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& input);
+
+/// A sentence about rows, computed. With the marks of a Document.
 struct Finding {
-  Outcome outcome = Outcome::fact;
+  bool is_warning = false;
   std::string sentence;
 };
-
-/// Which of each two configurations of a published table is faster, and from which size on.
-std::vector<Finding> order_findings(const PaperScenes& scenes);
-
-/// Where a speed-up falls as the scenes grow.
-std::vector<Finding> trend_findings(const PaperScenes& scenes);
-
-/// What a step of each integrator costs, in steps of the cheapest.
-std::vector<Finding> cost_findings(const PaperScenes& scenes);
-
-/// What garments say about Figure 6 of Vassilev and the time of a dressing. None without garments.
-std::vector<Finding> garment_findings(std::span<const ResultRow> rows);
 
 /// On which devices rows were measured, which are not verified or have no time, and which speed-ups cannot be
 /// told from 1. None without rows.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
-
-/// All findings of a folder, in the order in which they are shown.
-std::vector<Finding> findings_of(const ReportFolder& folder, const ReportInput& input);
-
-/// How far a measured ratio of costs may lie from the published one, as a factor, to reproduce it.
-inline constexpr double cost_tolerance = 1.25;
-/// A published speed-up that becomes smaller by more than this fraction falls: the papers give no intervals.
-inline constexpr double published_fall = 0.05;
 
 /// Charts. `id` begins their ids, so that those of several folders differ. A chart without anything to show
 /// is none.

@@ -45,6 +45,14 @@ std::optional<double> PublishedTable::speedup(std::string_view integrator, std::
   return its_ms && base ? std::optional(*base / *its_ms) : std::nullopt;
 }
 
+std::vector<PaperScene> PublishedTable::scenes() const {
+  std::vector<PaperScene> scenes;
+  for (const Time& time : times_)
+    if (std::ranges::find(scenes, time.nodes, &PaperScene::nodes) == scenes.end())
+      scenes.push_back({{}, time.nodes, time.springs});
+  return scenes;
+}
+
 std::vector<PaperScene> PublishedTable::scenes_of(std::span<const ResultRow> rows) const {
   std::vector<PaperScene> scenes;
   for (const ResultRow& row : rows)
@@ -150,7 +158,7 @@ class PaperTable {
                   Paragraph{std::string(how_to_read_paper_table).append(published_.info().springs_counted) +
                             " the unique ones, by inference from its numbers."},
                   Paragraph{std::string(why_frozen) + (has_frozen() ? "" : " (`--integrator all`)") +
-                            " hold them as the paper seems to, and reproduce its ratio of costs."}};
+                            " hold them, as the paper seems to."}};
     for (const auto& integrator : legend_.integrators) {
       if (!has(integrator.name)) continue;
       const std::string evaluations = pluralize(integrator.force_evaluations, "force evaluation");

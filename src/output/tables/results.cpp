@@ -84,6 +84,12 @@ std::string_view opencl_device(const ResultRow& row) {
   return host ? std::string_view() : std::string_view(row.device);
 }
 
+bool is_this_processor(const ResultRow& row, const Provenance& provenance) {
+  // CPU drivers put the model of the processor into the name of their device.
+  const std::string& processor = provenance.machine.cpu_model;
+  return !processor.empty() && row.device.find(processor) != std::string::npos;
+}
+
 std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance) {
   std::string label = fmt::format("`{}`", backend);
   const auto row = std::ranges::find_if(rows, [&](const ResultRow* candidate) {
@@ -91,10 +97,7 @@ std::string backend_label(RowPointers rows, std::string_view backend, const Prov
   });
   if (row == rows.end()) return label;
   label.append(" on ").append(opencl_device(**row));
-  // CPU drivers put the model of the processor into the name of their device.
-  const std::string& processor = provenance.machine.cpu_model;
-  if (!processor.empty() && (*row)->device.find(processor) != std::string::npos)
-    label += ", the same processor";
+  if (is_this_processor(**row, provenance)) label += ", the same processor";
   return label;
 }
 

@@ -157,6 +157,9 @@ std::string backend_label(RowPointers rows, std::string_view backend, const Prov
 /// A device that is not what the backends of the host run on; empty for those.
 std::string_view opencl_device(const ResultRow& row);
 
+/// Is the row's device of OpenCL the processor of the machine?
+bool is_this_processor(const ResultRow& row, const Provenance& provenance);
+
 /// Median milliseconds a step of a row that counts, else none.
 std::optional<double> counted_ms(const ResultRow& row);
 

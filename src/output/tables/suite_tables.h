@@ -68,6 +68,8 @@ class PublishedTable {
                                 const PaperScene& scene) const;
   /// Does the table have any time for this scene?
   bool has_scene(std::uint64_t nodes, std::optional<std::uint64_t> springs_published) const;
+  /// Its scenes, without names, in its order.
+  std::vector<PaperScene> scenes() const;
   /// The scenes of the rows that it has, each once, by size.
   std::vector<PaperScene> scenes_of(std::span<const ResultRow> rows) const;
 

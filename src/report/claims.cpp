@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "platform/files.h"
+#include "report/report_internal.h"
+#include "scene/fields/fields.h"
+#include "statistics/statistics.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t most_claims = 100;
+constexpr std::array<std::string_view, 2> paper_words{"Hong et al. (2016)", "Vassilev"};
+constexpr std::array<std::string_view, 2> device_words{"any", "GPU"}, of_words{"each", "average"};
+
+void visit_test(FieldVisitor& fields, ClaimTest& test) {
+  fields.text({"scenes", "The published table whose scenes decide: table1, table3."}, Presence::required,
+              test.scenes);
+  fields.text({"fast", "The backend that is said to be faster."}, Presence::required, test.fast);
+  fields.text({"slow", "The backend that it is compared with."}, Presence::required, test.slow);
+  fields.texts({"integrators", "Those that decide (default: the paper's three)."}, Presence::optional, 1, 3,
+               test.integrators);
+  fields.text({"slow_integrator", "That of `slow` (default: that of `fast`)."}, Presence::optional,
+              test.slow_integrator);
+  fields.text({"gains_more_than", "Compared are speed-ups: with each of `integrators` and with this one."},
+              Presence::optional, test.gains_more_than);
+  visit_choice(fields, {"device", "Where OpenCL must have run (default: any)."}, Presence::optional,
+               device_words, test.on_gpu);
+  visit_choice(fields, {"of", "Which ratios are tested: each (default), or their geometric mean."},
+               Presence::optional, of_words, test.of_average);
+  fields.number({"at_least", "The ratio that the claim needs."}, test.at_least, above(0, 1000));
+}
+
+void visit_claim(FieldVisitor& fields, Claim& claim) {
+  fields.text({"name", "What it is called here."}, Presence::required, claim.name);
+  std::uint32_t paper = 0;
+  fields.choice({"paper", "Whose it is."}, Presence::required, paper_words, paper);
+  claim.paper = paper_words.at(paper);
+  fields.text({"place", "Section, table, figure, equation."}, Presence::required, claim.place);
+  fields.text({"says", "What the paper says, in a line of our own."}, Presence::required, claim.says);
+  fields.text({"needs", "What deciding it takes beside rows of the backends."}, Presence::optional,
+              claim.needs);
+  fields.object({"test", "How rows decide it; left out where no rows can."}, Presence::optional,
+                [&](FieldVisitor& test) { visit_test(test, claim.test.emplace()); });
+}
+
+void visit_claims(FieldVisitor& fields, std::vector<Claim>& claims) {
+  fields.list({"claims", "What the papers say, and how it is tested."}, Presence::required, most_claims,
+              "A claim.", [&](FieldVisitor& claim) { visit_claim(claim, claims.emplace_back()); });
+}
+
+/// Is the row's device one that the claim asks for? A device of OpenCL that is this processor is no GPU.
+bool may_decide(const ResultRow* row, const ClaimTest& test, const Provenance& provenance) {
+  return row && (!test.on_gpu || opencl_device(*row).empty() || !is_this_processor(*row, provenance));
+}
+
+std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
+                                      const std::optional<RatioInterval>& b) {
+  if (!a || !b) return std::nullopt;
+  return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low};
+}
+
+/// The ratios of a test, of each scene and integrator of which there are both times. `ratio`: of a scene and
+/// of the integrators of `fast` and `slow`.
+template <class Scenes, class Ratio>
+auto ratios_of(const ClaimTest& test, const PaperLegend& legend, const Scenes& scenes, Ratio ratio) {
+  std::vector<typename decltype(ratio(scenes.front(), std::string(), std::string()))::value_type> all;
+  for (const PaperLegend::Integrator& integrator : legend.integrators) {
+    const bool is_asked = test.integrators.empty() ? integrator.name == integrator.paper_name
+                                                   : std::ranges::find(test.integrators, integrator.name) !=
+                                                         test.integrators.end();
+    if (!is_asked) continue;
+    for (const PaperScene& scene : scenes)
+      if (const auto one = ratio(scene, integrator.name,
+                                 test.slow_integrator.empty() ? integrator.name : test.slow_integrator))
+        all.push_back(*one);
+  }
+  return all;
+}
+
+std::string times(double ratio) { return three_digits(ratio) + "×"; }
+
+/// "1.30× to 2.12×", or the one number where both are the same.
+std::string range_of(double least, double most) {
+  return times(least) == times(most) ? times(least) : times(least) + " to " + times(most);
+}
+
+/// The published ratios that stand behind a claim.
+std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, const PublishedTable& table) {
+  const auto configuration = [&](const std::string& backend) {
+    const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
+    return found == legend.backends.end() ? std::string() : found->configuration;
+  };
+  const std::string fast = configuration(test.fast), slow = configuration(test.slow);
+  const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
+                           const std::string& of_slow) -> std::optional<double> {
+    const auto fast_ms = table.ms(of_fast, fast, scene.nodes, scene.springs);
+    const auto slow_ms = table.ms(of_slow, slow, scene.nodes, scene.springs);
+    return fast_ms && slow_ms ? std::optional(*slow_ms / *fast_ms) : std::nullopt;
+  };
+  const auto all = ratios_of(test, legend, table.scenes(),
+                             [&](const PaperScene& scene, const std::string& of_fast,
+                                 const std::string& of_slow) -> std::optional<double> {
+                               const auto ratio = speedup(scene, of_fast, of_slow);
+                               if (test.gains_more_than.empty() || !ratio) return ratio;
+                               const auto base = speedup(scene, test.gains_more_than, test.gains_more_than);
+                               return base ? std::optional(*ratio / *base) : std::nullopt;
+                             });
+  if (all.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(all);
+  return fmt::format("{} ({})", range_of(least, most), pluralize(all.size(), "ratio"));
+}
+
+/// The measured ratios of a claim.
+std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const PaperScenes& scenes,
+                                           const Provenance& provenance) {
+  const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
+                           const std::string& of_slow) -> std::optional<RatioInterval> {
+    const ResultRow* fast = scenes.row(scene, test.fast, of_fast);
+    const ResultRow* slow = scenes.row(scene, test.slow, of_slow);
+    if (!may_decide(fast, test, provenance) || !may_decide(slow, test, provenance)) return std::nullopt;
+    return times_as_fast(fast, slow);
+  };
+  return ratios_of(test, scenes.legend(), scenes.scenes(),
+                   [&](const PaperScene& scene, const std::string& of_fast, const std::string& of_slow) {
+                     const auto ratio = speedup(scene, of_fast, of_slow);
+                     if (test.gains_more_than.empty()) return ratio;
+                     return quotient(ratio, speedup(scene, test.gains_more_than, test.gains_more_than));
+                   });
+}
+
+RatioInterval geometric_mean_of(const std::vector<RatioInterval>& ratios) {
+  const auto mean = [&](double RatioInterval::*end) {
+    std::vector<double> values;
+    for (const RatioInterval& ratio : ratios) values.push_back(ratio.*end);
+    return geometric_mean(values);
+  };
+  return {mean(&RatioInterval::ratio), mean(&RatioInterval::low), mean(&RatioInterval::high)};
+}
+
+void judge_ratios(JudgedClaim& judged, const ClaimTest& test, const std::vector<RatioInterval>& all) {
+  const std::vector<RatioInterval> tested = test.of_average ? std::vector{geometric_mean_of(all)} : all;
+  const auto above =
+      std::ranges::count_if(tested, [&](const RatioInterval& one) { return one.low > test.at_least; });
+  const auto below =
+      std::ranges::count_if(tested, [&](const RatioInterval& one) { return one.high < test.at_least; });
+  judged.outcome = below > 0                     ? ClaimOutcome::not_held
+                   : above == std::ssize(tested) ? ClaimOutcome::held
+                                                 : ClaimOutcome::undecided;
+  const auto [least, most] = std::ranges::minmax(all, {}, &RatioInterval::ratio);
+  judged.measured = range_of(least.ratio, most.ratio);
+  if (test.of_average)
+    judged.measured += fmt::format("; geometric mean {} ({})", times(tested.front().ratio),
+                                   range_of(tested.front().low, tested.front().high));
+  else
+    judged.measured +=
+        fmt::format("; of {}, {} above {}, {} below, {} undecided", pluralize(all.size(), "ratio"), above,
+                    times(test.at_least), below, std::ssize(all) - above - below);
+}
+
+JudgedClaim judge_rows(const Claim& claim, const PaperScenes& scenes, const PublishedTable& table,
+                       const Provenance& provenance) {
+  const ClaimTest& test = *claim.test;
+  JudgedClaim judged{.claim = &claim, .published = published_ratios(test, scenes.legend(), table)};
+  if (const auto ratios = measured_ratios(test, scenes, provenance); !ratios.empty())
+    judge_ratios(judged, test, ratios);
+  else if (!claim.needs.empty())
+    judged.measured = "needs " + claim.needs;
+  else
+    judged.measured = fmt::format("needs verified rows of `{}`{}", test.fast,
+                                  test.slow == test.fast ? "" : fmt::format(" and `{}`", test.slow));
+  return judged;
+}
+
+}  // namespace
+
+std::vector<Claim> claims_in(const std::filesystem::path& file, const std::string& text) {
+  std::vector<Claim> claims;
+  read_fields(file, text, [&](FieldVisitor& fields) { visit_claims(fields, claims); });
+  return claims;
+}
+
+std::vector<Claim> published_claims() {
+  const std::filesystem::path file = data_folder() / "published/claims.json";
+  return claims_in(file, read_file(file));
+}
+
+std::string claims_schema() {
+  std::vector<Claim> none;
+  return json_schema("Claims of the papers",
+                     "What the two papers say that a measurement could support or contradict (mssim report).",
+                     [&](FieldVisitor& fields) { visit_claims(fields, none); });
+}
+
+std::string_view name_of(ClaimOutcome outcome) {
+  constexpr std::array<std::string_view, 4> names{"held", "not held", "undecided", "not testable here"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& input) {
+  const Provenance provenance = folder.provenance.value_or(Provenance());
+  std::vector<JudgedClaim> all;
+  for (const PublishedTable& table : input.published) {
+    const PaperScenes scenes(folder.rows, input.legend, table);
+    if (scenes.scenes().empty()) continue;
+    for (const Claim& claim : input.claims)
+      if (claim.test && claim.test->scenes == table.info().name)
+        all.push_back(judge_rows(claim, scenes, table, provenance));
+  }
+  const bool has_garments =
+      std::ranges::any_of(folder.rows, [](const ResultRow& row) { return row.dressing.has_value(); });
+  const bool of_hong = !all.empty();
+  for (const Claim& claim : input.claims)
+    if (!claim.test && (claim.paper == paper_words.front() ? of_hong : has_garments))
+      all.push_back({.claim = &claim, .measured = "needs " + claim.needs});
+  std::ranges::stable_sort(
+      all, {}, [](const JudgedClaim& judged) { return judged.outcome == ClaimOutcome::not_testable; });
+  return all;
+}
+
+}  // namespace mssim
