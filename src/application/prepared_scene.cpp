@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "garment/contact/solid.h"
+#include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
 
@@ -65,6 +66,15 @@ ModeBound mode_bound(const System& system) {
 
 void warn_of_note(const PreparedScene& scene) {
   if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
+}
+
+void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured) {
+  for (ResultRow& row : rows) {
+    const auto scene = std::ranges::find(measured.scenes, row.scene, &SceneHash::name);
+    // What a folder calls by the name of a file would be read from wherever that leads.
+    row.scene_as_shipped = scene != measured.scenes.end() && !is_path_of_scene(row.scene) &&
+                           is_scene(row.scene) && scene->fnv1a_64 == fnv1a_64(find_scene(row.scene).source);
+  }
 }
 
 FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body) {

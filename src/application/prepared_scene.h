@@ -2,7 +2,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "bench/machine/provenance.h"
+#include "bench/results/result.h"
 #include "garment/body/body_profile.h"
 #include "garment/fitting/fitting.h"
 #include "integrators/stability.h"
@@ -33,6 +36,9 @@ ModeBound mode_bound(const System& system);
 
 /// Says the note, if there is one, on stderr.
 void warn_of_note(const PreparedScene& scene);
+
+/// Sets scene_as_shipped of rows that were measured with scenes of these hashes.
+void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured);
 
 /// A body to measure fits against: the mesh of its trunk and legs, which is what garments meet; for how far
 /// cloth stands off, all of it.

@@ -13,6 +13,7 @@
 #include "application/bench/suites.h"
 #include "application/console.h"
 #include "application/outputs.h"
+#include "application/prepared_scene.h"
 #include "application/run.h"
 #include "bench/machine/provenance.h"
 #include "commands/command.h"
@@ -30,12 +31,6 @@ namespace {
 constexpr double simulated_s = 0.5, patience_s = 0.5;
 constexpr const char* integrator = "semi-euler";
 
-/// A scene to simulate.
-struct Sitter {
-  const ResultRow* row = nullptr;
-  const ReportFolder* folder = nullptr;
-};
-
 /// Seconds that simulating the row's scene takes by its backend.
 double seconds_of(const ResultRow& row) {
   return row.dressing ? row.dressing->wall_s : *row.ms_per_step / 1000 * simulated_s / row.dt_s;
@@ -43,25 +38,17 @@ double seconds_of(const ResultRow& row) {
 
 /// The largest of each kind that is `wanted` and can be simulated soon.
 template <class Wanted>
-std::map<ContentKind, Sitter> sitters_of(std::span<const ReportFolder> folders, Wanted wanted) {
-  std::map<ContentKind, Sitter> sitters;
+std::map<ContentKind, const ResultRow*> sitters_of(std::span<const ReportFolder> folders, Wanted wanted) {
+  std::map<ContentKind, const ResultRow*> sitters;
   for (const ReportFolder& folder : folders)
     for (const ResultRow& row : folder.rows) {
       if (row.backend != "openmp" || row.integrator != integrator || !counts(row) || !(row.dt_s > 0) ||
           !wanted(row) || seconds_of(row) > patience_s)
         continue;
-      Sitter& known = sitters[kind_of(row)];
-      if (!known.row || row.nodes > known.row->nodes) known = {&row, &folder};
+      const ResultRow*& known = sitters[kind_of(row)];
+      if (!known || row.nodes > known->nodes) known = &row;
     }
   return sitters;
-}
-
-/// Whether the folder was measured with this text of the scene.
-bool is_measured(const SceneSpec& spec, const ReportFolder& folder) {
-  if (!folder.provenance) return false;
-  const auto& scenes = folder.provenance->scenes;
-  const auto scene = std::ranges::find(scenes, spec.name, &SceneHash::name);
-  return scene != scenes.end() && scene->fnv1a_64 == fnv1a_64(spec.source);
 }
 
 RunOptions run_of(const ResultRow& row) {
@@ -108,16 +95,15 @@ const FoundCurve* reference_of(const std::string& scene, std::span<const FoundCu
 
 /// Calls `simulate` with the rows of those sitters whose scenes are known.
 template <class Simulate>
-void for_each_sitter(const std::map<ContentKind, Sitter>& sitters, std::vector<std::string>& problems,
-                     Simulate simulate) {
+void for_each_sitter(const std::map<ContentKind, const ResultRow*>& sitters,
+                     std::vector<std::string>& problems, Simulate simulate) {
   for (const auto& [kind, sitter] : sitters) {
-    const std::string& name = sitter.row->scene;
+    const std::string& name = sitter->scene;
     try {
-      // What a folder calls by the name of a file would be read from wherever that leads.
-      if (is_path_of_scene(name) || !is_measured(find_scene(name), *sitter.folder))
+      if (!sitter->scene_as_shipped)
         problems.push_back("the scene " + name + " is not known as it was measured, and is not simulated");
       else
-        simulate(*sitter.row);
+        simulate(*sitter);
     } catch (const std::exception& error) {
       problems.push_back(fmt::format("the scene {} cannot be simulated: {}", name, error.what()));
     }
@@ -198,7 +184,10 @@ int report(const ReportOptions& options) {
   } catch (const std::exception& error) {
     input.problems.push_back(std::string(error.what()) + "; nothing published is shown");
   }
-  for (const fs::path& folder : folders) input.folders.push_back(read_report_folder(folder));
+  for (const fs::path& folder : folders) {
+    ReportFolder& read = input.folders.emplace_back(read_report_folder(folder));
+    mark_own_scenes(read.rows, read.provenance.value_or(Provenance()));
+  }
   if (!options.no_runs) simulate_scenes(input);
   write_file_atomically(out, report_page(input));
   for (const ReportFolder& folder : input.folders)

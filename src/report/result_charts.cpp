@@ -65,7 +65,7 @@ SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
   lines.published = published_series(lines.configuration, backend);
   for (const ResultRow* row : lines.rows) {
     add_time(lines.measured, *row);
-    if (method == legend.integrators.end()) continue;
+    if (method == legend.integrators.end() || !row->scene_as_shipped) continue;
     for (const PublishedTable& table : published)
       if (const auto ms =
               table.ms(method->paper_name, lines.configuration, row->nodes, row->springs_published))

@@ -136,6 +136,16 @@ sed -i 's/"cloth\([0-9a-z]*\)": "[0-9a-f]*"/"cloth\1": "0123456789abcdef"/' "$wo
 ends 0 report "$work/next" --out "$work/page.html"
 grep -q 'is not known as it was measured, and is not simulated' "$work/err" || fail "stderr: $(cat "$work/err")"
 has 'is not known as it was measured, and is not simulated'
+has 'No row is of a scene of the papers'
+
+# A user's own scene is none of the papers', though it has the nodes, the springs and the name of one.
+mkdir "$work/own"
+sed 's/"stiffness_n_per_m": 200/"stiffness_n_per_m": 100/' "$2/scenes/cloth2500.json" >"$work/own/cloth2500.json"
+(cd "$work" && "$mssim" bench --scene own/cloth2500.json --backend serial,openmp --integrator semi-euler --rounds 2 --out own/out >"$work/out")
+! grep -q 'ms/step.*published' "$work/out" || fail "a scene of the user's has a published time: $(cat "$work/out")"
+[ ! -e "$work/own/out/table1.md" ] || fail "a scene of the user's is in Table 1"
+report "$work/own/out"
+has 'No row is of a scene of the papers'
 
 # Damaged folders.
 cp -r "$results/table3/zen5" "$work/damaged"

@@ -164,7 +164,9 @@ std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
 }
 
 void add_published_times(std::vector<ResultRow>& rows, const BenchPlan& plan) {
+  mark_own_scenes(rows, plan.provenance);
   for (ResultRow& row : rows) {
+    if (!row.scene_as_shipped) continue;
     const BackendInfo& backend = **std::ranges::find(plan.settings.backends, row.backend, &BackendInfo::name);
     for (const PublishedTable& table : plan.published)
       if (const auto ms = table.ms(find_integrator(row.integrator)->paper_name, backend.paper_configuration,

@@ -55,6 +55,9 @@ struct Samples {
 /// never published) are empty.
 struct ResultRow : Agreement, MeasuredCosts, Samples {
   std::string scene;
+  /// The scene is, to the byte, the one that mssim ships under its name: only that can be a paper's. No
+  /// column.
+  bool scene_as_shipped = true;
   std::uint64_t nodes = 0, springs_unique = 0;
   std::optional<std::uint64_t> springs_published;
   std::string backend, device;

@@ -56,7 +56,7 @@ std::vector<PaperScene> PublishedTable::scenes() const {
 std::vector<PaperScene> PublishedTable::scenes_of(std::span<const ResultRow> rows) const {
   std::vector<PaperScene> scenes;
   for (const ResultRow& row : rows)
-    if (has_scene(row.nodes, row.springs_published) &&
+    if (row.scene_as_shipped && has_scene(row.nodes, row.springs_published) &&
         std::ranges::find(scenes, row.scene, &PaperScene::name) == scenes.end())
       scenes.push_back({row.scene, row.nodes, row.springs_published.value()});
   std::ranges::stable_sort(scenes, {}, &PaperScene::nodes);
@@ -114,7 +114,8 @@ class PaperTable {
              const Provenance& provenance)
       : scenes_(published.scenes_of(rows)), legend_(legend), published_(published), provenance_(provenance) {
     for (const ResultRow& row : rows)
-      if (published.has_scene(row.nodes, row.springs_published)) rows_.push_back(&row);
+      if (row.scene_as_shipped && published.has_scene(row.nodes, row.springs_published))
+        rows_.push_back(&row);
   }
 
   bool empty() const { return rows_.empty(); }

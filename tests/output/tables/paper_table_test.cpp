@@ -60,6 +60,15 @@ TEST(PaperTable, AsCsvHasPublishedAndMeasuredUnderOneAnother) {
               HasSubstr("hybrid,published_ms,,\nsemi-euler,gpu+multi-thread-cpu,hybrid,measured_ms,0.05,"));
 }
 
+TEST(PaperTable, LeavesOutAnotherSceneOfTheSameSize) {
+  std::vector<ResultRow> rows = table_rows();
+  for (ResultRow& row : rows) row.scene_as_shipped = row.scene != "cloth2500";
+  EXPECT_THAT(csv_of(rows), StartsWith("integrator,configuration,backend,quantity,cloth350k\n"));
+  for (ResultRow& row : rows) row.scene_as_shipped = false;
+  EXPECT_TRUE(
+      paper_tables(legend, {PublishedTable(published_table_kinds[0])})(rows, made_up_provenance()).empty());
+}
+
 TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
   const std::string text = page_of(table_rows());
   EXPECT_THAT(text,
