@@ -16,6 +16,7 @@
 #include "garment/bench/garment_bench.h"
 #include "garment/stepping/dressing_backend.h"
 #include "platform/machine.h"
+#include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -102,7 +103,7 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
   Reference reference = run_reference(*job.system, integrator, job.dt_s);
   step_seconds = reference.step_seconds;
   return [&job, reference = std::move(reference)](Combination& combination) {
-    return verify(*combination.backend, *job.system, reference, job.dt_s);
+    return verify(*combination.backend, *job.system, reference, job.dt_s, combination.steps_taken);
   };
 }
 
@@ -121,7 +122,7 @@ struct AfterReference {
   double step_seconds = 0;            ///< that a step of the reference took
   Verifier verifier = {};
   std::optional<SecondStretch> second = {};  ///< where it is part of the verification
-  std::optional<Combination> serial = {};    ///< verified, if it is among the job's backends
+  std::optional<Combination> serial = {};    ///< verified in the end, if it is among the job's backends
 };
 
 /// Programs in ranks read the scene's file, whatever System they are made for.
@@ -149,15 +150,21 @@ void verify_second(Combination& combination, const SceneJob& job, const BackendI
   }
 }
 
-/// The backend as job.verified or else the comparison with the reference finds it.
-Combination make_verified(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
-                          const State& start, const AfterReference& reference) {
+/// Makes the backend, to be judged in at most so many steps.
+Combination make_unjudged(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
+                          const State& start, int most_steps) {
   Combination combination = make_combination(job, info, integrator, start);
-  combination.most_steps = reference.most_steps;
-  if (combination.most_steps < verification_steps)
+  combination.most_steps = most_steps;
+  if (most_steps < verification_steps)
     append_sentence(combination.row.note,
                     fmt::format("compared and timed in {}, in which the integrator doubles a rounding",
-                                pluralize(combination.most_steps, "step")));
+                                pluralize(most_steps, "step")));
+  return combination;
+}
+
+/// Judges it as job.verified or else the comparison with the reference does.
+void judge(Combination& combination, const SceneJob& job, const BackendInfo& info,
+           const AfterReference& reference) {
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)
@@ -166,36 +173,67 @@ Combination make_verified(const SceneJob& job, const BackendInfo& info, const In
       if (combination.backend && reference.second && !builds_scenes_itself(info))
         verify_second(combination, job, info, *reference.second);
     });
-  return combination;
 }
 
-/// Does what takes one thread for each of the job's integrators, by their number: as many at the same time as
-/// the backends have threads, and first those that take longer.
-void for_each_integrator(const SceneJob& job, const std::function<void(std::size_t i)>& work) {
+/// Does what takes one thread for each of the job's integrators, by their number, and for each of so many
+/// `parts` that do not need each other: as many at the same time as the backends have threads, and first
+/// those that take longer.
+void for_each_integrator(const SceneJob& job, std::size_t parts,
+                         const std::function<void(std::size_t i, std::size_t part)>& work) {
   std::vector<std::size_t> order(job.integrators.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(),
                            [&](std::size_t i) { return expected_evaluations(*job.integrators[i]); });
-  for_each_at_once(order.size(), job.windowed ? 1 : references_at_once(job),
-                   [&](std::size_t i) { work(order[i]); });
+  for_each_at_once(parts * order.size(), job.windowed ? 1 : static_cast<std::size_t>(job.execution.threads),
+                   [&](std::size_t task) { work(order[task / parts], task % parts); });
+}
+
+/// Takes as many steps as a reference is compared after that does not end before contact. Throws Interrupted
+/// like run_reference.
+void step_beside_reference(Combination& combination, const SceneJob& job) {
+  const int steps = std::min(combination.most_steps, verification_steps);
+  combination.backend->set_state(job.system->start);
+  while (combination.steps_taken < steps) {
+    if (const int signal = noted_ending_signal()) throw Interrupted{signal};
+    const int count = std::min(steps - combination.steps_taken, steps_between_looks);
+    combination.backend->step(count);
+    combination.steps_taken += count;
+  }
 }
 
 /// Runs the references of all integrators and verifies `serial` with each, but for job.verified. The results
-/// have the integrators' order.
+/// have the integrators' order. `serial` takes its steps beside the references; of a garment behind them,
+/// because there it starts again and again where a reference was.
 std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
                                            const State& start) {
   std::vector<AfterReference> results(job.integrators.size());
+  for_each_integrator(job, 1, [&](std::size_t i, std::size_t /*part*/) {
+    results[i].most_steps = most_sample_steps(job, *job.integrators[i]);
+  });
+  if (job.verified) return results;
   const auto serial = std::ranges::find_if(
       job.backends, [](const BackendInfo* info) { return info->role == BackendRole::baseline; });
-  for_each_integrator(job, [&](std::size_t i) {
-    results[i].most_steps = most_sample_steps(job, *job.integrators[i]);
-    if (job.verified) return;
-    results[i].verifier = make_verifier(job, *job.integrators[i], draped, results[i].step_seconds);
-    if (!job.garment && !job.windowed && !is_implicit(*job.integrators[i]))
-      results[i].second = run_second_stretch(*job.system, *job.integrators[i], job.dt_s);
-    if (serial != job.backends.end())
-      results[i].serial = make_verified(job, **serial, *job.integrators[i], start, results[i]);
+  const bool has_serial = serial != job.backends.end(), whole = !job.garment && !job.windowed;
+  const auto make_serial = [&](std::size_t i) {
+    results[i].serial = make_unjudged(job, **serial, *job.integrators[i], start, results[i].most_steps);
+  };
+  for_each_integrator(job, has_serial && whole ? 2 : 1, [&](std::size_t i, std::size_t part) {
+    const Integrator& integrator = *job.integrators[i];
+    if (part == 1) {
+      make_serial(i);
+      if (Combination& made = *results[i].serial; made.backend)
+        attempt(made, [&] { step_beside_reference(made, job); });
+      return;
+    }
+    results[i].verifier = make_verifier(job, integrator, draped, results[i].step_seconds);
+    if (whole && !is_implicit(integrator))
+      results[i].second = run_second_stretch(*job.system, integrator, job.dt_s);
   });
+  if (has_serial)
+    for_each_integrator(job, 1, [&](std::size_t i, std::size_t /*part*/) {
+      if (!results[i].serial) make_serial(i);
+      judge(*results[i].serial, job, **serial, results[i]);
+    });
   return results;
 }
 
@@ -302,7 +340,7 @@ class SampleSecrets {
   void compare(std::vector<Combination>& combinations) const {
     if (!has_checked_) return;
     const State start = sample_start(*job_.system, checked_);
-    for_each_integrator(job_, [&](std::size_t i) {
+    for_each_integrator(job_, 1, [&](std::size_t i, std::size_t /*part*/) {
       std::vector<Combination*> checked;
       std::vector<SampleEnd> ends;
       for (Combination& combination : combinations)
@@ -400,10 +438,11 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
                      done());
       if (watch.stop()) return {};
       std::optional<Combination>& serial = references[i].serial;
-      Combination& combination =
-          all.emplace_back(serial && info->name == serial->row.backend
-                               ? std::move(*serial)
-                               : make_verified(job, *info, *integrator, start, references[i]));
+      const bool is_judged = serial && info->name == serial->row.backend;
+      Combination& combination = all.emplace_back(
+          is_judged ? std::move(*serial)
+                    : make_unjudged(job, *info, *integrator, start, references[i].most_steps));
+      if (!is_judged) judge(combination, job, *info, references[i]);
       if (combination.backend && job.garment && !job.verified) {
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, watch.stop)) return {};

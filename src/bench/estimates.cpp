@@ -68,7 +68,7 @@ std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize
       const double bytes = memory_of(*backend, *integrator, size.grid)
                                .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
       held += bytes;
-      if (backend->role == BackendRole::baseline) serial += bytes;  // verified while the references run
+      if (backend->role == BackendRole::baseline) serial += bytes;  // steps while the references run
     }
   }
   return static_cast<std::uint64_t>(

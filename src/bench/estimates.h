@@ -16,7 +16,7 @@ struct SceneSize {
   bool garment = false;
 };
 
-/// How many references bench_scene runs at the same time.
+/// How many references bench_scene runs at the same time, at most.
 std::size_t references_at_once(const BenchSettings& settings);
 
 /// Bytes that bench_scene takes at its peak for a scene of this size, about: the System, and the larger of

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <ctime>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -15,6 +17,7 @@
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
+#include "platform/process.h"
 #include "tests/support/systems.h"
 
 namespace mssim {
@@ -181,6 +184,23 @@ std::unique_ptr<Backend> cheating(const System& system, const Integrator& integr
   return std::make_unique<Cheating>(system, integrator, dt_s, options);
 }
 constexpr BackendInfo cheat{"cheat", "", "looks fast", false, {}, cheating, {}, {}};
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// The baseline, which takes note of how its first steps are asked for.
+class WatchedSerial final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void step(int count) override {
+    if (std::exchange(first_steps, count) == 0 && on_first_step) on_first_step();
+    OtherSerial::step(count);
+  }
+
+  inline static int first_steps = 0;
+  inline static std::function<void()> on_first_step;
+};
+constexpr BackendInfo watched{
+    "serial", "", "", false, {}, make_other<WatchedSerial>, {}, {}, 1, BackendRole::baseline};
 
 class BenchScene : public testing::Test {
  protected:
@@ -472,6 +492,70 @@ TEST_F(BenchScene, TellsOfAProgramThatFailsInTheRounds) {
   EXPECT_EQ(rows[1].status, "failed: it stumbled");
   EXPECT_GT(rows[1].rounds, 0);
   EXPECT_LT(rows[1].rounds, 200);
+}
+
+TEST_F(BenchScene, StepsTheBaselineBesideItsReference) {
+  system_ = cloth_system(150, 150);  // a reference of some tenths of a second
+  job_.backends = {&watched};
+  job_.integrators = {find_integrator("rk4")};
+  job_.execution.threads = 2;
+  WatchedSerial::first_steps = 0;
+  bool others_compute = false;
+  WatchedSerial::on_first_step = [&] {
+    const double before = processor_seconds();
+    for (int wait = 0; wait < 200 && !others_compute; ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      others_compute = processor_seconds() - before > 0.02;
+    }
+  };
+  stop_after_ = 1;  // once it is verified
+  run();
+  EXPECT_TRUE(others_compute);
+}
+
+TEST_F(BenchScene, EndsWithinTenStepsOfTheBaselineWhenItIsToldTo) {
+  job_.backends = {&watched};
+  WatchedSerial::first_steps = 0;
+  int steps = 0;
+  WatchedSerial::on_first_step = [&] {
+    steps = WatchedSerial::first_steps;
+    note_ending_signal(SIGINT);
+  };
+  EXPECT_THROW(run(), Interrupted);
+  EXPECT_EQ(take_ending_signal(), SIGINT);
+  EXPECT_EQ(steps, 10);
+}
+
+TEST_F(BenchScene, JudgesTheBaselineAlikeBesideItsReferenceAndBehindIt) {
+  job_.rounds = 1;
+  const auto agreements = [&](int threads) {
+    job_.execution.threads = threads;
+    std::vector<Agreement> all;
+    for (const ResultRow& row : run())
+      if (row.backend == "serial") all.push_back(row);
+    return all;
+  };
+  const auto expect_alike = [&](const char* where) {
+    const std::vector<Agreement> behind = agreements(1), beside = agreements(4);
+    ASSERT_EQ(beside.size(), 2U) << where;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto serial = find_backend("serial")->make(system_, *job_.integrators[i], job_.dt_s, {});
+      const Verification found =
+          verify(*serial, system_, run_reference(system_, *job_.integrators[i], job_.dt_s), job_.dt_s);
+      for (const Agreement& agreement : {behind[i], beside[i]}) {
+        EXPECT_EQ(agreement.state_hash, found.state_hash) << where;
+        EXPECT_EQ(agreement.position_error, found.position_error) << where;
+        EXPECT_EQ(agreement.energy_drift, found.energy_drift) << where;
+      }
+    }
+  };
+  expect_alike("in the air");
+  double lowest = system_.start.position.front().y;
+  for (const Vec3d& x : system_.start.position) lowest = std::min(lowest, x.y);
+  system_.floor.height = lowest - 3e-4;  // it falls onto the floor in 8 ms
+  round_start_to_single(system_);
+  ASSERT_LT(run_reference(system_, *job_.integrators[0], job_.dt_s).steps, verification_steps);
+  expect_alike("where it meets the floor");
 }
 
 TEST_F(BenchScene, SaysHowManyProcessorsTheSamplesTook) {

@@ -96,6 +96,7 @@ struct Combination {
   std::unique_ptr<Backend> backend;     ///< null where the row has no times: it cannot run, or has failed
   DressingBackend* dressing = nullptr;  ///< the same, of a garment
   WindowBackend* windows = nullptr;     ///< the same, of a cloth that is seen in windows
+  int steps_taken = 0;                  ///< from the scene's start, before it is verified
   int steps = 1;                        ///< in a sample
   int most_steps = max_sample_steps;    ///< in a sample, so that its end can be compared with the reference
   std::vector<double> processors;       ///< that each sample of this run took: processor seconds a second

@@ -79,6 +79,10 @@ struct Reference {
 /// Steps of a verification run: enough for a wrong force to show, few enough that rounding does not.
 inline constexpr int verification_steps = 100;
 
+/// Steps that a reference, and what is stepped beside it, takes between two looks at the floor and at whether
+/// to end.
+inline constexpr int steps_between_looks = 10;
+
 /// Largest allowed difference of total energy, as a share of the energy in motion (energy_in_motion).
 inline constexpr double energy_tolerance = 0.01;
 
@@ -119,8 +123,10 @@ struct Verification {
   std::optional<std::string> failure;       ///< empty: verified
 };
 
-/// Steps the backend from the start and compares. Leaves the backend in any state.
-Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s);
+/// Steps the backend from the start and compares, where that is not what it has done already: `steps_taken`
+/// says how many steps from the start it is. Leaves the backend in any state.
+Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s,
+                    int steps_taken = 0);
 
 /// Takes steps and rounds the state to single precision after each: where roundings alone lead. Returns the
 /// last state.
