@@ -72,6 +72,17 @@ BackendProgram program_at(const std::string& path) {
   return program;
 }
 
+/// Whether the number of threads changes how the backend steps; a device's own processors do not follow it.
+bool has_threads(const BackendInfo& info, const ExecutionOptions& execution) {
+  if (info.threads > 0) return false;  // it says them itself
+  if (info.makes_threads || info.program) return true;
+  try {
+    return info.uses_device && find_opencl_device(execution.device).type == OpenclDeviceType::cpu;
+  } catch (const Unavailable&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 const Integrator& require_integrator(const std::string& name) {
@@ -131,6 +142,12 @@ std::vector<const BackendInfo*> table_backends() {
 BackendChoice::Row::Row(BackendProgram its_program)
     : program(std::move(its_program)), info(own_backend(program)) {}
 
+BackendChoice::Row::Row(const BackendInfo& of, int threads)
+    : name(fmt::format("{}:{}", of.name, threads)), info(of) {
+  info.name = name;
+  info.threads = threads;
+}
+
 BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBackendOptions& options,
                              const std::vector<std::string>& scenes)
     : known_(std::move(known)), limit_s_(options.limit_s) {
@@ -151,7 +168,7 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   if (is_path(name)) return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
   const std::optional<fs::path> file = description_of(name);
   if (!file)
-    if (const auto in_ranks = in_ranks_of(name)) return add(*in_ranks);
+    if (const BackendInfo* row = counted(name)) return *row;
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;
   if (file) return add_file(*file);
@@ -166,24 +183,55 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   throw UsageError(unknown_name("backend", name, names, others));
 }
 
-std::optional<BackendProgram> BackendChoice::in_ranks_of(const std::string& name) {
+const BackendInfo* BackendChoice::counted(const std::string& name) {
   const std::size_t colon = name.rfind(':');
-  if (colon == std::string::npos) return std::nullopt;
+  if (colon == std::string::npos) return nullptr;
   const std::string its_name = name.substr(0, colon), count = name.substr(colon + 1);
   const auto row = std::ranges::find(known_, its_name, &BackendInfo::name);
-  const std::optional<fs::path> file = row == known_.end() ? description_of(its_name) : std::nullopt;
-  if (row == known_.end() && !file) return std::nullopt;
+  const bool known = row != known_.end();
+  const std::optional<fs::path> file = known ? std::nullopt : description_of(its_name);
+  if (!known && !file) return nullptr;
   BackendProgram program = file ? read_description(*file) : BackendProgram{};
-  if (!program.in_ranks)
-    throw UsageError("{} says a number of ranks, and {} runs in one process: leave \":{}\" out",
+  if (known ? !(*row)->makes_threads && !(*row)->uses_device : !program.in_ranks)
+    throw UsageError("{} says a number of ranks or threads, which {} does not take: leave \":{}\" out",
                      printable(name), its_name, printable(count));
-  const std::optional<int> ranks = number_in<int>(count);
-  if (!ranks || *ranks < 1 || *ranks > most_ranks)
-    throw UsageError("{} says a number of ranks that cannot be: give one from 1 to {}, as in {}:4",
-                     printable(name), most_ranks, its_name);
-  program.ranks = *ranks;
-  program.name = fmt::format("{}:{}", its_name, *ranks);
-  return program;
+  const int most = known ? most_threads : most_ranks;
+  const std::optional<int> number = number_in<int>(count);
+  if (!number || *number < 1 || *number > most)
+    throw UsageError("{} says a number of {} that cannot be: give one from 1 to {}, as in {}:4",
+                     printable(name), known ? "threads" : "ranks", most, its_name);
+  if (known) {
+    require_few_threads(*number);
+    return &on_threads(**row, *number);
+  }
+  program.ranks = *number;
+  program.name = fmt::format("{}:{}", its_name, *number);
+  return &add(program);
+}
+
+const BackendInfo& BackendChoice::on_threads(const BackendInfo& info, int threads) {
+  auto row = std::make_unique<Row>(info, threads);
+  for (const std::unique_ptr<Row>& known : rows_)
+    if (known->info.name == row->name) return known->info;
+  return rows_.emplace_back(std::move(row))->info;
+}
+
+std::vector<const BackendInfo*> BackendChoice::with_fewer_threads(const std::vector<const BackendInfo*>& rows,
+                                                                  std::vector<int> counts,
+                                                                  const ExecutionOptions& execution) {
+  std::ranges::sort(counts);
+  std::erase_if(counts, [&](int count) { return count >= execution.threads; });
+  std::vector<const BackendInfo*> all;
+  for (const BackendInfo* info : rows) {
+    if (!counts.empty() && info->program && info->program->in_ranks)
+      throw UsageError(
+          "a list of --threads cannot be used with {}, which takes processes: leave one of them out",
+          info->name);
+    if (!counts.empty() && has_threads(*info, execution))
+      for (const int count : counts) all.push_back(&on_threads(*info, count));
+    all.push_back(info);
+  }
+  return all;
 }
 
 std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std::string>& names) {
@@ -264,7 +312,7 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
                   const ExecutionOptions& execution) {
   for (const BackendInfo* info : rows) {
     const BackendProgram* program = info->program;
-    if (!program) continue;
+    if (!program || info->threads > 0) continue;  // said of the row that has as many as asked for
     BackendProgramRecord record{.name = program->name, .command = program->command};
     if (program->in_ranks) {
       const RankCount count = ranks_of(*program, execution);

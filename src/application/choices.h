@@ -64,14 +64,20 @@ class BackendChoice {
                 const std::vector<std::string>& scenes = {});
 
   /// The row of that name: of the table, the file of that path (which has a slash), or the one described as
-  /// NAME.json; of one that runs in ranks, NAME:COUNT says in how many. Throws UsageError naming the nearest
-  /// or listing the known, and where a name stands for two; MissingProgram for a path at which nothing can be
-  /// run; SceneError for a description that is wrong.
+  /// NAME.json; NAME:COUNT is one that runs in so many ranks, or one of the table on so many threads. Throws
+  /// UsageError naming the nearest or listing the known, and where a name stands for two; MissingProgram for
+  /// a path at which nothing can be run; SceneError for a description that is wrong.
   const BackendInfo& require(const std::string& name);
 
   /// The rows of these names in the order of the table, and behind them those that are none of it. Throws
   /// like require().
   std::vector<const BackendInfo*> require_all(const std::vector<std::string>& names);
+
+  /// `rows`, and before each that has threads it on those of `counts` that are less than execution.threads,
+  /// ascending. Throws UsageError where there are several and one of the rows takes processes.
+  std::vector<const BackendInfo*> with_fewer_threads(const std::vector<const BackendInfo*>& rows,
+                                                     std::vector<int> counts,
+                                                     const ExecutionOptions& execution);
 
   /// All that are described in --backend-folder and the user's own folder. Throws like require().
   std::vector<const BackendInfo*> described() { return described_in(folders_); }
@@ -85,15 +91,19 @@ class BackendChoice {
  private:
   struct Row {
     explicit Row(BackendProgram its_program);
-    BackendProgram program;
+    Row(const BackendInfo& of, int threads);
+    BackendProgram program;  ///< of a program that was asked for
+    std::string name;        ///< of a row that says its threads
     BackendInfo info;
   };
 
   std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders);
   const BackendInfo& add(BackendProgram program);
   const BackendInfo& add_file(const std::filesystem::path& file);
-  /// What a name with a number of ranks stands for; none for any other name. Throws UsageError.
-  std::optional<BackendProgram> in_ranks_of(const std::string& name);
+  /// The row that a name with a number of ranks or threads stands for; null for any other name. Throws
+  /// UsageError.
+  const BackendInfo* counted(const std::string& name);
+  const BackendInfo& on_threads(const BackendInfo& info, int threads);
   std::optional<std::filesystem::path> description_of(const std::string& name) const;
 
   std::vector<const BackendInfo*> known_;

@@ -117,8 +117,9 @@ MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bo
 
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
-                                      const ExecutionOptions& options) {
-  if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, options);
+                                      const ExecutionOptions& asked) {
+  if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
+  const ExecutionOptions options = execution_of(backend, asked);
   if (backend.program != nullptr)
     return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
                       integrator, dt_s);
@@ -140,8 +141,9 @@ std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, c
 
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,
                                                        const Integrator& integrator, double dt_s,
-                                                       const ExecutionOptions& options) {
+                                                       const ExecutionOptions& asked) {
   if (!dresses(backend)) throw Unsupported("garments are dressed by " + names_of(dresses));
+  const ExecutionOptions options = execution_of(backend, asked);
   require_threads(backend, options);
   return backend.make_dressing(system, integrator, dt_s, options);
 }
@@ -158,7 +160,8 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
 }
 
 std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options) {
-  const int asked = info.program ? processors_of(*info.program, options) : options.threads;
+  const ExecutionOptions its = execution_of(info, options);
+  const int asked = info.program ? processors_of(*info.program, its) : its.threads;
   if (backend.threads() <= asked) return "";
   return fmt::format("on {} processors instead of {}: {}", backend.threads(), asked,
                      backend.reason_for_excess());

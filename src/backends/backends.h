@@ -52,7 +52,14 @@ struct BackendInfo {
   MemoryUse (*implicit_memory)(const Integrator& integrator, bool grid) = nullptr;
   /// The program that takes its steps; `make` is null then. It outlives the row.
   const BackendProgram* program = nullptr;
+  int threads = 0;  ///< of a row that says them itself; 0: as many as asked for
 };
+
+/// What its steps run with: `asked`, but for what the row says itself.
+inline ExecutionOptions execution_of(const BackendInfo& backend, ExecutionOptions asked) {
+  if (backend.threads > 0) asked.threads = backend.threads;
+  return asked;
+}
 
 /// The row of a program that is a backend. `program` must outlive it.
 BackendInfo own_backend(const BackendProgram& program);

@@ -66,7 +66,8 @@ std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize
     held += (size.garment ? garment_reference_node : state_node) * nodes;
     for (const BackendInfo* backend : settings.backends) {
       const double bytes = memory_of(*backend, *integrator, size.grid)
-                               .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
+                               .bytes(*integrator, size.nodes, size.springs,
+                                      execution_of(*backend, settings.execution).threads);
       held += bytes;
       if (backend->role == BackendRole::baseline) serial += bytes;  // steps while the references run
     }

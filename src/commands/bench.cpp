@@ -198,6 +198,7 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(options.rounds.has_value(), "--rounds");
   refuse(options.windows.has_value(), "--windows");
   refuse(!options.verified.empty(), "--verified");
+  refuse(options.threads.size() > 1, "a list of --threads");
   refuse(options.format != SummaryFormat::table, "--format");
   GuideOptions guide;
   guide.scenes = scenes_of_suite(options.suite, true);
@@ -285,7 +286,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
   declare_backend_limit(arguments, options->own_backends);
   arguments.add_list("--integrator NAME,...", options->integrators,
                      fmt::format("Integrators, or all (default: {})", default_integrators()));
-  declare_execution(arguments, options->execution);
+  declare_execution(arguments, options->execution, &options->threads);
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",
                        whole_number(1, most_rounds));
@@ -319,7 +320,10 @@ std::function<int()> declare_bench(Arguments& arguments) {
   arguments.add("--verified FOLDER", options->verified,
                 "Result folder in which this program has already verified these combinations: rely on it, "
                 "and only take samples");
-  return [options] { return run(*options); };
+  return [options] {
+    if (!options->threads.empty()) options->execution.threads = std::ranges::max(options->threads);
+    return run(*options);
+  };
 }
 
 }  // namespace mssim

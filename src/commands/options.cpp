@@ -155,11 +155,15 @@ void declare_listing_format(Arguments& arguments, ListingFormat& target) {
       "What to print: table, csv or json (default: table)");
 }
 
-void declare_execution(Arguments& arguments, ExecutionOptions& options) {
-  arguments.add_number(
-      "--threads N", options.threads,
-      "Threads, and compute units of an OpenCL device that is a processor (default: one for every processor)",
-      whole_number(1, most_threads));
+void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads) {
+  const std::string meaning =
+      "Threads, and compute units of an OpenCL device that is a processor (default: one for every processor)";
+  if (threads == nullptr)
+    arguments.add_number("--threads N", options.threads, meaning, whole_number(1, most_threads));
+  else
+    arguments.add_number("--threads N,...", *threads,
+                         meaning + "; of several numbers each is a row of its own",
+                         whole_numbers(1, most_threads));
   arguments.add_number("--ranks N", options.ranks,
                        "Processes of the backend mpi, of --threads threads each; mpi:N says it of one row "
                        "(default: as many as --threads, of one thread each)",

@@ -76,8 +76,8 @@ Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<s
 void declare_listing_format(Arguments& arguments, ListingFormat& target);
 
 /// Declares --threads, --ranks, --launcher, --device, --memory and --roots. `options` must outlive the
-/// parsing.
-void declare_execution(Arguments& arguments, ExecutionOptions& options);
+/// parsing, and so must `threads`, which takes several numbers instead, where it is given.
+void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads = nullptr);
 
 /// Declares --backend-folder. `options` must outlive the parsing.
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options);

@@ -10,21 +10,6 @@
 
 namespace mssim {
 
-std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than) {
-  if (!row || !than || !counts(*row) || !counts(*than)) return std::nullopt;
-  if (!row->samples_ms.empty() && row->samples_ms.size() == than->samples_ms.size()) {
-    const MedianInterval ratio = median_ratio(than->samples_ms, row->samples_ms);
-    return RatioInterval{ratio.median, ratio.low, ratio.high};
-  }
-  if (!row->ms_per_step || !than->ms_per_step) return std::nullopt;
-  const auto end = [](const ResultRow& of, std::optional<double> ResultRow::*value) {
-    return (of.*value).value_or(*of.ms_per_step);
-  };
-  return RatioInterval{*than->ms_per_step / *row->ms_per_step,
-                       end(*than, &ResultRow::ms_per_step_low) / end(*row, &ResultRow::ms_per_step_high),
-                       end(*than, &ResultRow::ms_per_step_high) / end(*row, &ResultRow::ms_per_step_low)};
-}
-
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y) {
   double mean_x = 0, mean_y = 0, across = 0, along = 0;
   const auto count = static_cast<double>(x.size());

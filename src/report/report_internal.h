@@ -15,20 +15,6 @@ namespace mssim {
 /// What a page is made of: comparisons of measured with published times, the sentences that follow from them,
 /// charts, and HTML.
 
-/// A ratio and its interval.
-struct RatioInterval {
-  double ratio = 1;
-  double low = 1, high = 1;
-
-  /// 1 where it lies above 1, -1 where it lies below, and 0 where it holds 1.
-  int side_of_one() const { return low > 1 ? 1 : high < 1 ? -1 : 0; }
-};
-
-/// How many times as fast as `than` a row is: the median of the ratios within each round, with its 95 %
-/// interval (statistics.h). Where their samples are no pairs: the quotient of the times, and of the ends of
-/// their intervals, which is wider. None where one of them does not count, or is null.
-std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than);
-
 /// The exponent p of y ~ x^p: the slope of the line of least squares on logarithmic axes. None for fewer than
 /// two different x. All are above zero.
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
@@ -105,6 +91,11 @@ std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::s
 /// with the slope of every line.
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
                                   std::span<const PublishedTable> published, const std::string& id);
+
+/// For each scene how many times as fast as on the fewest threads the rows with the first integrator are,
+/// against threads.
+std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenance& provenance,
+                                 const std::string& id);
 
 /// The slopes of all integrators: exponents p of time ~ nodes^p. Without rows where nothing has two sizes.
 Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,

@@ -214,6 +214,34 @@ std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLe
   return charts;
 }
 
+std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenance& provenance,
+                                 const std::string& id) {
+  std::vector<Chart> charts;
+  const std::vector<const ResultRow*> pointers = pointers_to(rows);
+  const ResultRow* last = nullptr;
+  for (const ThreadRow& of : thread_rows(pointers, provenance)) {
+    const std::optional<RatioInterval> speedup = of.speedup();
+    if (!speedup || of.row->integrator != rows.front().integrator) continue;
+    if (!last || last->scene != of.row->scene) {
+      charts.push_back(
+          chart_of(fmt::format("{}-threads-{}", id, charts.size()),
+                   of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
+                   {"threads", true}, {"times as fast", true}));
+      charts.back().series.push_back({.name = "as many times as threads", .origin = Origin::reference});
+    }
+    last = of.row;
+    std::vector<Series>& all = charts.back().series;
+    auto series = std::ranges::find(all, of.backend, &Series::family);
+    if (series == all.end())
+      series = all.insert(series, {.name = std::string(of.backend), .family = std::string(of.backend)});
+    if (all.size() == 2) all.front().add(of.threads, static_cast<double>(of.threads) / of.fewest_threads);
+    series->add(of.threads, speedup->ratio);
+    series->low.push_back(speedup->low);
+    series->high.push_back(speedup->high);
+  }
+  return charts;
+}
+
 Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
                   std::span<const PublishedTable> published) {
   Table table;

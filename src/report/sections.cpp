@@ -334,13 +334,18 @@ std::string speedup_section(const ReportInput& input) {
 
 std::string scaling_section(const ReportInput& input) {
   return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes: 1 "
-         "where a node costs the same at every size.</p>\n" +
+         "where a node costs the same at every size. Speed-ups over threads are those of one backend over "
+         "itself "
+         "on the fewest.</p>\n" +
          of_each_folder(
-             input, "<p>No folder has two sizes of a kind of scene.</p>\n",
+             input, "<p>No folder has two sizes of a kind of scene, or two numbers of threads.</p>\n",
              [&](const ReportFolder& folder, const std::string& id) {
                const Table slopes = slope_table(folder.rows, input.legend, input.published);
-               return figures_of(with_looks_of_backends(
-                          scaling_charts(folder.rows, input.legend, input.published, id), input.legend)) +
+               std::vector<Chart> charts = scaling_charts(folder.rows, input.legend, input.published, id);
+               if (folder.provenance)
+                 std::ranges::move(thread_charts(folder.rows, *folder.provenance, id),
+                                   std::back_inserter(charts));
+               return figures_of(with_looks_of_backends(std::move(charts), input.legend)) +
                       (slopes.rows.empty() ? "" : html_of(slopes));
              });
 }

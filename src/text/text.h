@@ -45,6 +45,20 @@ std::optional<Number> number_in(std::string_view text) {
   return error == std::errc() && stop == end ? std::optional(number) : std::nullopt;
 }
 
+/// The numbers that commas separate; none at all where something else stands between two of them.
+template <class Number>
+std::vector<Number> numbers_in(std::string_view text) {
+  std::vector<Number> numbers;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    const std::optional<Number> number = number_in<Number>(text.substr(0, comma));
+    if (!number) return {};
+    numbers.push_back(*number);
+    if (comma == std::string_view::npos) return numbers;
+    text.remove_prefix(comma + 1);
+  }
+}
+
 /// FNV-1a of the text's bytes, 64 bits: tells files apart that differ by accident, not by intent.
 /// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm, IETF
 /// draft.

@@ -63,6 +63,13 @@ expect 2 '^mssim: --resume and --overwrite exclude each other: leave out one of 
 
 # Values.
 expect 2 '^mssim: --threads: "x" is not a whole number from 1 to 4096; see mssim bench --help$' bench --scene cloth2500 --threads x
+expect 2 '^mssim: --threads: "0" is not a whole number from 1 to 4096;' bench --scene cloth2500 --threads 0
+for list in 1,,2 2,2 1,0 1,two "1," ",1"; do
+  expect 2 "^mssim: --threads: \"$list\" is not a list of different whole numbers from 1 to 4096;" bench --scene cloth2500 --threads "$list"
+done
+expect 2 '^mssim: --threads: "1,2" is not a whole number from 1 to 4096;' run --scene cloth2500 --threads 1,2
+expect 2 '^mssim: --threads 4000 is too many for the ' bench --scene cloth2500 --threads 1,4000
+expect 2 '^mssim: a list of --threads cannot be used with --suite guide' bench --suite guide --threads 1,2
 expect 2 '^mssim: WHAT: unknown word "scnes" (did you mean scenes?): known are ' list scnes
 expect 2 '^mssim: --precision: unknown precision "half": known are single and double;' run --scene cloth2500 --precision half
 expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all

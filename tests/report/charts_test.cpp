@@ -71,6 +71,23 @@ TEST(ScalingCharts, NameTheSlopes) {
   EXPECT_TRUE(scaling_charts(std::vector(rows.begin(), rows.begin() + 3), legend, published, "f1").empty());
 }
 
+TEST(ThreadCharts, ShowSpeedUpsOverTheFewestThreadsBesideTheNumberOfThreads) {
+  std::vector<ResultRow> rows{measured_row("serial", 4, 1.0), measured_row("openmp:1", 1, 4.0),
+                              measured_row("openmp:2", 0.625, 6.4), measured_row("openmp", 0.5, 8.0),
+                              measured_row("hybrid:1", 2, 2.0), measured_row("hybrid", 1, 4.0)};
+  Provenance provenance = made_up_provenance();
+  provenance.threads = 4;
+  const auto charts = thread_charts(rows, provenance, "f1");
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(charts[0].series.size(), 3U);
+  EXPECT_EQ(series(charts[0], "openmp").x, (std::vector<double>{1, 2, 4}));
+  EXPECT_EQ(series(charts[0], "openmp").y, (std::vector<double>{1, 1.6, 2}));
+  EXPECT_EQ(series(charts[0], "hybrid").y, (std::vector<double>{1, 2}));
+  EXPECT_EQ(charts[0].series.front().y, (std::vector<double>{1, 2, 4}));
+  rows.resize(2);
+  EXPECT_TRUE(thread_charts(rows, provenance, "f1").empty());
+}
+
 TEST(RooflineChart, PutsDotsBelowTheirRoofs) {
   std::vector<ResultRow> rows = two_cloths();
   for (ResultRow& row : rows) row.roofline_fraction = row.backend == "serial" ? 0.05 : 0.5;

@@ -122,6 +122,13 @@ TEST(NumberIn, RefusesWhatDoesNotFit) {
   EXPECT_EQ(number_in<double>("1e400"), std::nullopt);
 }
 
+TEST(NumbersIn, AreThoseBetweenCommasOrNone) {
+  EXPECT_EQ(numbers_in<int>("4"), std::vector{4});
+  EXPECT_EQ(numbers_in<int>("4,1,2"), (std::vector{4, 1, 2}));
+  for (const char* text : {"", ",", "1,,2", "1,", ",1", "1,x"})
+    EXPECT_TRUE(numbers_in<int>(text).empty()) << text;
+}
+
 TEST(Printable, LeavesTextAsItIsAndEscapesControlCharactersAsJsonDoes) {
   const std::string plain = "a \"b\" \\ \xC3\xA4\xE2\x82\xAC\xF0\x9F\xA7\xB5";
   EXPECT_EQ(printable(plain), plain);

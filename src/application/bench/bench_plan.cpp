@@ -12,6 +12,7 @@
 #include "application/outputs.h"
 #include "bench/windows/windows.h"
 #include "integrators/stability.h"
+#include "output/tables/suite_tables.h"
 #include "output/traces/energy_curve.h"
 #include "platform/machine.h"
 #include "scene/builders.h"
@@ -101,7 +102,8 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   ExecutionOptions execution = options.execution;
   if (execution.threads == 0) execution.threads = comparison.threads;
   settings.execution = complete(execution);
-  settings.backends = backends_of(options, comparison, settings.execution, choice);
+  settings.backends = choice.with_fewer_threads(backends_of(options, comparison, settings.execution, choice),
+                                                options.threads, settings.execution);
   require_use_of_ranks(options.execution, settings.backends);
   require_device(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
@@ -204,7 +206,7 @@ BenchPlan plan_of(const BenchOptions& options) {
     throw UsageError("there is nothing to measure: name a --scene or a --suite");
   require_folder_where_needed(options.output);
   plan.published = published_tables();
-  plan.tables = comparison.tables();
+  plan.tables = with_thread_table(comparison.tables());
 
   std::map<std::filesystem::path, SceneParts> known_parts;  // by the scene's file, each read once
   const auto parts_of = [&](const SceneSpec& spec) {

@@ -33,6 +33,8 @@ struct BenchOptions {
   OwnBackendOptions own_backends;
   std::vector<std::string> integrators;
   ExecutionOptions execution;
+  std::vector<int>
+      threads;  ///< backends that have threads also get a row for each that is less than execution's
   std::optional<int> rounds;  ///< none: the usual number, or as many as the budget allows
   std::optional<double> time_budget_s;
   std::optional<int> windows;  ///< none: only cloths that do not fit are verified in windows

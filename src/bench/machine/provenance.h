@@ -123,12 +123,12 @@ struct Provenance {
 /// `arguments` are main's.
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
 
-/// Processors that a row of this backend was asked to use.
-inline int asked_processors(const Provenance& provenance, std::string_view backend) {
-  for (const BackendProgramRecord& program : provenance.backend_programs)
-    if (program.name == backend && program.ranks > 0) return program.ranks * program.rank_threads;
-  return provenance.threads;
-}
+/// What a row's backend is, and the processors that it was asked to use.
+struct AskedProcessors {
+  std::string_view backend;  ///< without the threads that the row's name says: "openmp" of "openmp:2"
+  int count = 0;
+};
+AskedProcessors asked_processors(const Provenance& provenance, std::string_view row_name);
 
 /// Adds a program that is a backend, `record`, to which the hashes of its files are added: `program` is the
 /// file of the command's first word, `folder` the one it runs in.

@@ -43,6 +43,19 @@ ValueRule whole_number(std::int64_t low, std::int64_t high) {
       [low, high](std::int64_t number) { return number >= low && number <= high; });
 }
 
+ValueRule whole_numbers(std::int64_t low, std::int64_t high) {
+  return [one = whole_number(low, high), low, high](std::string& text) -> std::string {
+    if (text.find(',') == std::string::npos) return one(text);
+    std::vector<std::int64_t> numbers = numbers_in<std::int64_t>(text);
+    std::ranges::sort(numbers);
+    const bool good = !numbers.empty() && numbers.front() >= low && numbers.back() <= high &&
+                      std::ranges::adjacent_find(numbers) == numbers.end();
+    return good ? ""
+                : fmt::format("\"{}\" is not a list of different whole numbers from {} to {}",
+                              printable(text), low, high);
+  };
+}
+
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others) {
   return [what = std::move(what), words = std::move(words),
           others = std::move(others)](std::string& text) -> std::string {

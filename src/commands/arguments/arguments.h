@@ -28,6 +28,8 @@ ValueRule positive_number();
 /// From `low` to `high`.
 ValueRule number_between(double low, double high);
 ValueRule whole_number(std::int64_t low, std::int64_t high);
+/// One of them, or several different ones that commas separate.
+ValueRule whole_numbers(std::int64_t low, std::int64_t high);
 /// One of these words, in any case; the text becomes the word as it stands here. `what` is what they name,
 /// `others` are words that users type for one of them.
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others = {});
@@ -60,8 +62,8 @@ class Arguments {
   Argument add(const std::string& name, std::string& target, const std::string& description,
                const ValueRule& rule = {});
 
-  /// A number, an int or double or an optional one, that `rule` accepts; it accepts numbers of that kind
-  /// only.
+  /// A number, an int or double, an optional one or several, that `rule` accepts; it accepts numbers of that
+  /// kind only.
   template <class Target>
   Argument add_number(const std::string& name, Target& target, const std::string& description,
                       const ValueRule& rule) {
@@ -107,6 +109,10 @@ class Arguments {
   template <class Number>
   static void assign(std::optional<Number>& target, const std::string& text) {
     assign(target.emplace(), text);
+  }
+  template <class Number>
+  static void assign(std::vector<Number>& target, const std::string& text) {
+    target = numbers_in<Number>(text);
   }
 
   CLI::App* command_;

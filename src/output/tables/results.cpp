@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "statistics/statistics.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -131,17 +132,31 @@ std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row) {
 }
 
 std::string_view mark_of_excess(const ResultRow& row, const Provenance& provenance) {
-  return exceeds(row, asked_processors(provenance, row.backend)) ? " (!)" : "";
+  return exceeds(row, asked_processors(provenance, row.backend).count) ? " (!)" : "";
 }
 
 std::string legend_of_excess(RowPointers rows, const Provenance& provenance) {
   std::set<std::string> backends;
   for (const ResultRow* row : rows)
-    if (exceeds(*row, asked_processors(provenance, row->backend)))
-      backends.insert(fmt::format("{} ({})", row->backend, row->threads));
+    if (const int asked = asked_processors(provenance, row->backend).count; exceeds(*row, asked))
+      backends.insert(fmt::format("{} ({} instead of {})", row->backend, row->threads, asked));
   if (backends.empty()) return {};
-  return fmt::format("(!) on more processors than the {} asked for: {}", provenance.threads,
-                     fmt::join(backends, ", "));
+  return fmt::format("(!) on more processors than asked for: {}", fmt::join(backends, ", "));
+}
+
+std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than) {
+  if (!row || !than || !counts(*row) || !counts(*than)) return std::nullopt;
+  if (!row->samples_ms.empty() && row->samples_ms.size() == than->samples_ms.size()) {
+    const MedianInterval ratio = median_ratio(than->samples_ms, row->samples_ms);
+    return RatioInterval{ratio.median, ratio.low, ratio.high};
+  }
+  if (!row->ms_per_step || !than->ms_per_step) return std::nullopt;
+  const auto end = [](const ResultRow& of, std::optional<double> ResultRow::*value) {
+    return (of.*value).value_or(*of.ms_per_step);
+  };
+  return RatioInterval{*than->ms_per_step / *row->ms_per_step,
+                       end(*than, &ResultRow::ms_per_step_low) / end(*row, &ResultRow::ms_per_step_high),
+                       end(*than, &ResultRow::ms_per_step_high) / end(*row, &ResultRow::ms_per_step_low)};
 }
 
 std::string reason_without_speedups(std::span<const std::string_view> backends) {

@@ -112,8 +112,8 @@ std::string to_text(const RunComparison& comparison, ComparisonFormat format, bo
 /// The TABLE of tables of results, those of guides too: nothing makes another one (TableName), and a result
 /// folder that is emptied loses these.
 inline constexpr auto table_names = std::to_array<std::string_view>(
-    {"table1", "table2", "table3", "races", "scaling", "peers", "cluster", "figure6", "guide", "guide-steps",
-     "guide-errors", "guide-sizes", "guide-frames", "guide-crossovers"});
+    {"table1", "table2", "table3", "races", "scaling", "threads", "peers", "cluster", "figure6", "guide",
+     "guide-steps", "guide-errors", "guide-sizes", "guide-frames", "guide-crossovers"});
 
 /// One of these names; another one does not compile.
 class TableName {
@@ -201,6 +201,20 @@ std::string_view mark_of_excess(const ResultRow& row, const Provenance& provenan
 
 /// What that mark means, and which backends have it; empty where none has.
 std::string legend_of_excess(RowPointers rows, const Provenance& provenance);
+
+/// A ratio and its interval.
+struct RatioInterval {
+  double ratio = 1;
+  double low = 1, high = 1;
+
+  /// 1 where it lies above 1, -1 where it lies below, and 0 where it holds 1.
+  int side_of_one() const { return low > 1 ? 1 : high < 1 ? -1 : 0; }
+};
+
+/// How many times as fast as `than` a row is: the median of the ratios within each round, with its 95 %
+/// interval (statistics.h). Where their samples are no pairs: the quotient of the times, and of the ends of
+/// their intervals, which is wider. None where one of them does not count, or is null.
+std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than);
 
 /// Why a table shows no speed-ups, and what to do, where serial is not one of the backends; else empty.
 std::string reason_without_speedups(std::span<const std::string_view> backends);

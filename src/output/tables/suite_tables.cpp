@@ -202,6 +202,11 @@ Table data_of(RowPointers rows) {
                          "note"});
 }
 
+/// How many processors the steps kept busy.
+Cell busy_processors(const ResultRow& row) {
+  return counted_ms(row) && row.processors_used ? Cell(fmt::format("{:.2f}", *row.processors_used)) : Cell();
+}
+
 /// The columns of the page; none of them has a number of a row that does not count.
 std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenance) {
   return {{{"peer"},
@@ -212,11 +217,7 @@ std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenan
              if (counted_ms(row)) threads.suffix = mark_of_excess(row, provenance);
              return threads;
            }},
-          {{"processors", Align::right},
-           [](const ResultRow& row) {
-             return counted_ms(row) && row.processors_used ? Cell(fmt::format("{:.2f}", *row.processors_used))
-                                                           : Cell();
-           }},
+          {{"processors", Align::right}, busy_processors},
           {{"ms per step", Align::right},
            [](const ResultRow& row) { return measured_cell(&row, counted_ms(row)); }},
           {{"times `openmp`", Align::right, "×"},
@@ -260,7 +261,99 @@ Document page_of(RowPointers rows, const Provenance& provenance) {
   return page;
 }
 
+constexpr std::string_view how_to_read_threads =
+    "The same steps on more and more threads. Times are medians. *Times as fast*: as the same backend on the "
+    "fewest threads, the median of the ratios of each round with its 95 % interval. *Efficiency*: that over "
+    "how many times as many threads there are. *Processors*: how many the steps really kept busy.";
+
+ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenance& provenance) {
+  std::vector<const ResultRow*> all;
+  for (const ThreadRow& row : rows) all.push_back(row.row);
+  const auto of = [&](const ResultRow& row) { return *std::ranges::find(rows, &row, &ThreadRow::row); };
+  const auto threads = [&](const ResultRow& row) { return Cell(of(row).threads); };
+  const auto speedup = [&](double RatioInterval::*part) {
+    return [=](const ResultRow& row) {
+      const std::optional<RatioInterval> times = of(row).speedup();
+      return times ? Cell((*times).*part) : Cell();
+    };
+  };
+  const auto efficiency = [&](const ResultRow& row) {
+    const ThreadRow its = of(row);
+    const std::optional<RatioInterval> times = its.speedup();
+    return times ? Cell(times->ratio * its.fewest_threads / its.threads) : Cell();
+  };
+  Table data = table_of(all, {"scene",
+                              "nodes",
+                              "integrator",
+                              {{"backend"}, [&](const ResultRow& row) { return Cell(of(row).backend); }},
+                              {{"threads"}, threads},
+                              "processors_used",
+                              "ms_per_step",
+                              "ms_per_step_low",
+                              "ms_per_step_high",
+                              {{"speedup"}, speedup(&RatioInterval::ratio)},
+                              {{"speedup_low"}, speedup(&RatioInterval::low)},
+                              {{"speedup_high"}, speedup(&RatioInterval::high)},
+                              {{"efficiency"}, efficiency},
+                              {{"status"}, status_of}});
+  const std::vector<RowColumn> columns{
+      {{"backend"}, [&](const ResultRow& row) { return fmt::format("`{}`", of(row).backend); }},
+      {{"threads", Align::right}, threads},
+      {{"ms per step", Align::right},
+       [&](const ResultRow& row) {
+         Cell ms = measured_cell(&row, counted_ms(row));
+         if (counted_ms(row)) ms.suffix = mark_of_excess(row, provenance);
+         return ms;
+       }},
+      {{"times as fast", Align::right, "×"}, speedup(&RatioInterval::ratio)},
+      {{"interval", Align::right},
+       [&](const ResultRow& row) {
+         const std::optional<RatioInterval> times = of(row).speedup();
+         return times ? Cell(interval_text(times->low, times->high)) : Cell();
+       }},
+      {{"efficiency", Align::right}, efficiency},
+      {{"processors", Align::right}, busy_processors}};
+  Document page{Heading{1, "Scaling with threads"}, measured_on(all, provenance),
+                Paragraph{std::string(how_to_read_threads)}};
+  add_blocks(page, all, columns);
+  add_sentence(page, legend_of_excess(all, provenance));
+  add_rows_without_a_time(page, all);
+  return {"threads", std::move(data), std::move(page)};
+}
+
 }  // namespace
+
+std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenance) {
+  std::vector<ThreadRow> compared;
+  for (const ResultRow* row : rows) {
+    const auto [backend, threads] = asked_processors(provenance, row->backend);
+    ThreadRow found{row, backend, threads, row, threads};
+    bool alone = true;
+    for (const ResultRow* other : rows) {
+      const AskedProcessors its = asked_processors(provenance, other->backend);
+      if (other == row || its.backend != backend || other->scene != row->scene ||
+          other->integrator != row->integrator)
+        continue;
+      alone = false;
+      if (its.count < found.fewest_threads) {
+        found.fewest = other;
+        found.fewest_threads = its.count;
+      }
+    }
+    if (!alone) compared.push_back(found);
+  }
+  return compared;
+}
+
+TableMaker with_thread_table(TableMaker maker) {
+  return [maker = std::move(maker)](std::span<const ResultRow> rows, const Provenance& provenance) {
+    std::vector<ResultTable> tables = maker(rows, provenance);
+    const std::vector<const ResultRow*> pointers = pointers_to(rows);
+    if (const std::vector<ThreadRow> compared = thread_rows(pointers, provenance); !compared.empty())
+      tables.push_back(table_of_threads(compared, provenance));
+    return tables;
+  };
+}
 
 TableMaker race_tables(std::vector<RaceLegend> legend) {
   return [legend = std::move(legend)](std::span<const ResultRow> all, const Provenance& provenance) {

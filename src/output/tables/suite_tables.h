@@ -170,6 +170,26 @@ TableMaker scaling_tables(std::string base);
 /// processors, what it took of them, its error against the reference, and what it says of itself.
 TableMaker peer_tables();
 
+/// A row beside those of the same backend, scene and integrator on other numbers of threads.
+struct ThreadRow {
+  const ResultRow* row = nullptr;
+  std::string_view backend;  ///< without the number of threads
+  int threads = 0;           ///< that it was asked to use
+  /// The row on the fewest threads, and how many those are.
+  const ResultRow* fewest = nullptr;
+  int fewest_threads = 0;
+
+  /// How many times as fast as on the fewest threads it is.
+  std::optional<RatioInterval> speedup() const { return times_as_fast(row, fewest); }
+};
+
+/// Those of the rows of which there are several, in their order.
+std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenance);
+
+/// The maker, and behind its tables the table `threads` of thread_rows: times, speed-ups over the fewest
+/// threads, and efficiencies, which are these over how many times as many threads there are.
+TableMaker with_thread_table(TableMaker maker);
+
 /// A program in ranks, and the same ranks where each steps the whole scene for itself.
 inline constexpr std::string_view ranks_backend = "mpi", copies_backend = "mpi-copies";
 

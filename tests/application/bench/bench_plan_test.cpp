@@ -66,10 +66,39 @@ TEST_F(BenchPlanTest, RefusesToTraceOrResumeWithoutAFolder) {
   }
 }
 
-std::vector<std::string_view> backends_of(std::string_view suite) {
+std::vector<std::string_view> names_in(const std::vector<const BackendInfo*>& backends) {
   std::vector<std::string_view> names;
-  for (const BackendInfo* backend : comparison_of_suite(suite).backends()) names.push_back(backend->name);
+  for (const BackendInfo* backend : backends) names.push_back(backend->name);
   return names;
+}
+
+TEST_F(BenchPlanTest, HasARowForEachNumberOfThreadsButOfABackendOfOneThread) {
+  options_.backends = {"serial", "openmp", "threads-mutex"};
+  options_.threads = {2, 1};
+  options_.execution.threads = 2;
+  BenchPlan plan = plan_of(options_);
+  EXPECT_THAT(names_in(plan.timed.front().backends),
+              testing::ElementsAre("serial", "threads-mutex:1", "threads-mutex", "openmp:1", "openmp"));
+  EXPECT_EQ(plan.provenance.threads, 2);
+  const System system = plan.timed.front().prepare().system;
+  for (const BackendInfo* backend : plan.timed.front().backends) {
+    const auto made = make_backend(*backend, system, *find_integrator("semi-euler"), 1e-4, plan.settings.execution);
+    EXPECT_EQ(made->threads(), backend->role == BackendRole::baseline || backend->name.ends_with(":1") ? 1 : 2)
+        << backend->name;
+  }
+}
+
+TEST_F(BenchPlanTest, TakesABackendOnItsOwnNumberOfThreads) {
+  options_.backends = {"openmp:2", "openmp"};
+  EXPECT_THAT(names_in(plan_of(options_).settings.backends), testing::ElementsAre("openmp", "openmp:2"));
+  for (const char* wrong : {"serial:2", "openmp:0", "openmp:x", "openmp:4000"}) {
+    options_.backends = {wrong};
+    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
+  }
+}
+
+std::vector<std::string_view> backends_of(std::string_view suite) {
+  return names_in(comparison_of_suite(suite).backends());
 }
 
 TEST(Suites, NameScenesAndIntegratorsThatExist) {

@@ -134,9 +134,13 @@ TEST(Provenance, KnowsHowManyProcessorsABackendWasAskedToUse) {
   Provenance provenance;
   provenance.threads = 3;
   provenance.backend_programs = {{"mine", {"./mine"}}, {.name = "mpi", .ranks = 4, .rank_threads = 2}};
-  EXPECT_EQ(asked_processors(provenance, "openmp"), 3);
-  EXPECT_EQ(asked_processors(provenance, "mine"), 3);
-  EXPECT_EQ(asked_processors(provenance, "mpi"), 8);
+  provenance.backend_programs.push_back({"./a:2", {"./a:2"}});
+  EXPECT_EQ(asked_processors(provenance, "openmp").count, 3);
+  EXPECT_EQ(asked_processors(provenance, "openmp:2").count, 2);
+  EXPECT_EQ(asked_processors(provenance, "openmp:2").backend, "openmp");
+  EXPECT_EQ(asked_processors(provenance, "mine").count, 3);
+  EXPECT_EQ(asked_processors(provenance, "mpi").count, 8);
+  EXPECT_EQ(asked_processors(provenance, "./a:2").count, 3) << "a program that is called so";
 }
 
 TEST(BuildInfo, NamesTheCommitInFullOrSaysThatItIsUnknown) {

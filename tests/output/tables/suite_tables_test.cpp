@@ -64,6 +64,43 @@ TEST(PeerTable, ShowsNoTimeThatWasNotVerified) {
   EXPECT_THAT(table_csv(table.data), HasSubstr("false,failed: not verified"));
 }
 
+std::vector<ResultRow> rows_by_threads() {
+  std::vector<ResultRow> rows{measured_row("serial", 4, 1.0), measured_row("openmp:1", 1, 4.0),
+                              failed_row("opencl:1", "failed: step 3"), measured_row("openmp", 0.625, 6.4),
+                              measured_row("opencl", 0.5, 8.0)};
+  rows[1].threads = 1;
+  return rows;
+}
+
+ResultTable thread_table_of(const std::vector<ResultRow>& rows) {
+  return only_table(with_thread_table([](auto, const auto&) { return std::vector<ResultTable>(); })(
+                        rows, made_up_provenance()),
+                    "threads");
+}
+
+TEST(ThreadTable, AsCsvHasSpeedUpsOverTheFewestThreadsAndEfficiencies) {
+  EXPECT_EQ(table_csv(thread_table_of(rows_by_threads()).data),
+            "scene,nodes,integrator,backend,threads,processors_used,ms_per_step,ms_per_step_low,"
+            "ms_per_step_high,speedup,speedup_low,speedup_high,efficiency,status\n"
+            "cloth2500,2500,semi-euler,openmp,1,1.5,1,0.5,2,1,1,1,1,ok\n"
+            "cloth2500,2500,semi-euler,opencl,1,,,,,,,,,failed: step 3\n"
+            "cloth2500,2500,semi-euler,openmp,2,1.5,0.625,0.3125,1.25,1.6,1.6,1.6,0.8,ok\n"
+            "cloth2500,2500,semi-euler,opencl,2,1.5,0.5,0.25,1,,,,,ok\n");
+}
+
+TEST(ThreadTable, AsMarkdownNamesBackendsWithoutTheirThreads) {
+  const std::string page = markdown(thread_table_of(rows_by_threads()).page);
+  EXPECT_THAT(page, HasSubstr("| `openmp` | 2 | **0.625** | 1.60× | 1.60 to 1.60 | 0.800 | 1.50 |\n"));
+  EXPECT_THAT(page, HasSubstr("| `opencl` | 2 | **0.500** | – | – | – | 1.50 |\n"));
+  EXPECT_THAT(page, Not(HasSubstr("serial")));
+}
+
+TEST(ThreadTable, IsThereOnlyWithSeveralNumbersOfThreads) {
+  const auto maker = with_thread_table(peer_tables());
+  EXPECT_EQ(maker(peer_rows(), made_up_provenance()).size(), 1U);
+  EXPECT_EQ(maker(rows_by_threads(), made_up_provenance()).size(), 2U);
+}
+
 const std::vector<RaceLegend> race_methods{{"serial", "one thread", "none", "once", "yes"},
                                            {"gather", "each node sums", "32 bytes a spring", "twice", "yes"},
                                            {"atomic", "atomic adds", "none", "once", "no"}};

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# --threads 1,2: a row for each number, the table of them, the same bits, and a run that goes on. $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+bench=(bench --scene cloth2500 --backend "serial,threads-mutex,openmp" --integrator semi-euler)
+ends 0 "${bench[@]}" --threads 1,2 --rounds 2 --out list
+[ "$(paste -d' ' <(column_of list/timings.csv backend) <(column_of list/timings.csv threads) | tr '\n' ',')" = \
+  "serial 1,threads-mutex:1 1,threads-mutex 2,openmp:1 1,openmp 2," ] || fail "rows: $(cat list/timings.csv)"
+[ "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "state_hash") c = i } $5 ~ /^openmp/ { print $c }' list/timings.csv |
+  sort -u | wc -l)" -eq 1 ] || fail "the bits of openmp differ: $(cat list/timings.csv)"
+[ "$(column_of list/threads.csv threads | tr '\n' ' ')" = "1 2 1 2 " ] || fail "threads.csv: $(cat list/threads.csv)"
+grep -q '^| .openmp. | 1 | .* | 1.00× | 1.00 to 1.00 | 1.00 |' list/threads.md || fail "threads.md: $(cat list/threads.md)"
+says 'openmp:1 .*✓\|openmp:1 .*yes'
+
+# Goes on with the same list in another order only, and one number makes no table.
+ends 0 "${bench[@]}" --threads 2,1 --rounds 3 --resume --out list
+[ "$(column_of list/timings.csv rounds | sort -u)" = 3 ] || fail "after --resume: $(cat list/timings.csv)"
+ends 2 "${bench[@]}" --threads 2 --rounds 3 --resume --out list
+warns 'the folder has other backends or integrators'
+ends 0 "${bench[@]}" --threads 2 --rounds 1 --overwrite --out list
+[ ! -e list/threads.csv ] || fail "there is a table of one number of threads"
+ends 0 compare list list
+
+# What is advised for speed-ups can be typed.
+ends 0 bench --scene cloth2500 --backend openmp --integrator semi-euler --threads 1,2 --rounds 1
+advice=$(sed -n 's/.*add it: --backend //p' "$work/err")
+[ "$advice" = serial,openmp:1,openmp ] || fail "advice: $(cat "$work/err")"
+ends 0 bench --scene cloth2500 --backend "$advice" --integrator semi-euler --threads 2 --rounds 1 --out typed
+[ "$(column_of typed/timings.csv threads | tr '\n' ' ')" = "1 2 1 " ] || fail "typed: $(cat typed/timings.csv)"
