@@ -99,6 +99,8 @@ std::string provenance_of(const Provenance& provenance) {
   line("frequency", three_digits(machine.cpu_mhz / 1000) + " GHz");
   line("governor", machine.governor ? Cell(*machine.governor) : Cell());
   line("turbo", machine.turbo ? Cell(*machine.turbo) : Cell());
+  line("several logical CPUs a core (SMT)", machine.smt ? Cell(*machine.smt) : Cell());
+  line("NUMA nodes", machine.numa_nodes > 0 ? Cell(machine.numa_nodes) : Cell());
   line("kernel", machine.kernel);
   line("load average", or_nothing(join(load, ", ")));
   line("environment of threads", or_nothing(join(environment, ", ")));

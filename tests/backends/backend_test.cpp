@@ -185,6 +185,27 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
   }
 }
 
+// As many as large machines have, each with columns or slices of its own. Every number takes a minute and a
+// half.
+TEST(OpenMp, GivesTheSameBitsOnUpTo192Threads) {
+  const Integrator& euler = *find_integrator("semi-euler");
+  System block = solid_block(20, 20, 20);
+  block.floor.height = 0.497;
+  for (const System& system : {low_cloth(9, 1700), block}) {
+    const auto state_on = [&](int threads) {
+      const auto simulation = make_openmp(system, euler, backend_dt_of(euler), {threads, ""});
+      EXPECT_EQ(simulation->threads(), threads);
+      simulation->step(steps_with_a_bounce(euler));
+      return simulation->state();
+    };
+    const State expected = state_on(1);
+    EXPECT_TRUE(has_met_floor(system, expected));
+    for (int threads = 192; threads > 1; threads -= 1 + threads / 12)
+      EXPECT_TRUE(same_state(state_on(threads), expected))
+          << threads << " threads, " << system.nodes() << " nodes";
+  }
+}
+
 /// Calls it where OpenMP gives a thread nobody else: within threads, which have no threads of their own.
 template <class Call>
 void call_alone(Call call) {

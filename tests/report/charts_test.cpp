@@ -72,9 +72,9 @@ TEST(ScalingCharts, NameTheSlopes) {
 }
 
 TEST(ThreadCharts, ShowSpeedUpsOverTheFewestThreadsBesideTheNumberOfThreads) {
-  std::vector<ResultRow> rows{measured_row("serial", 4, 1.0), measured_row("openmp:1", 1, 4.0),
+  std::vector<ResultRow> rows{measured_row("serial", 4, 1.0),       measured_row("openmp:1", 1, 4.0),
                               measured_row("openmp:2", 0.625, 6.4), measured_row("openmp", 0.5, 8.0),
-                              measured_row("hybrid:1", 2, 2.0), measured_row("hybrid", 1, 4.0)};
+                              measured_row("hybrid:1", 2, 2.0),     measured_row("hybrid", 1, 4.0)};
   Provenance provenance = made_up_provenance();
   provenance.threads = 4;
   const auto charts = thread_charts(rows, provenance, "f1");

@@ -99,9 +99,9 @@ struct BenchPlan {
 double expected_rounds(const BenchPlan& plan);
 
 /// Finds all that can be wrong with what was asked for. Asks for OpenCL devices where one will be used, but
-/// for a dry run. Throws UsageError for names that are not known, for nothing to do and for options that do
-/// not go together; SceneError and MissingProgram for scenes that cannot be read, meshed or held; and what
-/// reading published tables and the folder of verified rows throws.
+/// for a dry run with one number of threads. Throws UsageError for names that are not known, for nothing to
+/// do and for options that do not go together; SceneError and MissingProgram for scenes that cannot be read,
+/// meshed or held; and what reading published tables and the folder of verified rows throws.
 BenchPlan plan_of(const BenchOptions& options);
 
 }  // namespace mssim

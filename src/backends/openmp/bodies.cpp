@@ -146,6 +146,19 @@ BodyLanes::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut, const
 
 }  // namespace
 
+void BodySteps::make_pairs_where_stepped(std::size_t floats,
+                                         const std::function<std::size_t(std::size_t chunk)>& first_float) {
+  constexpr std::size_t page = AlignedArray::alignment / sizeof(float);
+  make_pairs(floats);
+#pragma omp parallel for num_threads(static_cast <int>(threads)) schedule(static, 1)
+  for (std::size_t range = 0; range < threads; ++range) {
+    const std::size_t begin = first_float(chunks.size() * range / threads);
+    const std::size_t end = first_float(chunks.size() * (range + 1) / threads);
+    for (AlignedArray& pair : pairs)
+      for (std::size_t i = begin; i < std::min(end, pair.size()); i += page) pair.data()[i] = 0;
+  }
+}
+
 SlicedBodies::SlicedBodies(const System& system, const Integrator& method, double dt_s,
                            std::size_t slice_lanes, std::size_t thread_count)
     : SlicedBodies(system, graph_of_whole(system, slice_lanes), method, dt_s, thread_count) {}
@@ -160,7 +173,6 @@ SlicedBodies::SlicedBodies(const System& system, SlicedGraph graph, const Integr
     float* of_slot = constants.data() + i / lanes * slice_constants * lanes + i % lanes;
     *write_constants(of_slot, lanes, graph.constants[i]) = static_cast<float>(graph.held[i]);
   }
-  make_pairs((graph.slots() + graph.ghosts) * record_floats);
   slot.assign(graph.slot.begin(), graph.slot.end() - static_cast<std::ptrdiff_t>(graph.ghosts));
   first_entry = std::move(graph.first_entry);
   threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slices()));
@@ -170,6 +182,9 @@ SlicedBodies::SlicedBodies(const System& system, SlicedGraph graph, const Integr
       std::min({std::max(least_chunks * threads, by_cost), slices(), std::size_t{ChunkTickets::most_chunks}});
   chunks = balanced_chunks(first_entry, {0, graph.first_edge_slice}, count);
   if (graph.ghosts > 0) edge_chunks = balanced_chunks(first_entry, {graph.first_edge_slice, slices()}, count);
+  make_pairs_where_stepped((graph.slots() + graph.ghosts) * record_floats, [&](std::size_t chunk) {
+    return (chunk < chunks.size() ? chunks[chunk].begin : graph.first_edge_slice) * lanes * record_floats;
+  });
 }
 
 BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
@@ -209,7 +224,11 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
   spins = static_cast<int>(std::min<std::size_t>(most_spins, largest / springs_a_spin));
   threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, chunks.size()));
   for (std::size_t thread = 0; thread < threads; ++thread) forces.emplace_back(most_nodes * node_floats);
-  make_pairs(slices.floats());
+  make_pairs_where_stepped(slices.floats(), [&](std::size_t chunk) {
+    if (chunk == chunks.size()) return slices.floats();
+    const Piece& piece = pieces[chunks[chunk].begin];
+    return piece.offset + 2 * piece.begin * components * lane_count;
+  });
 }
 
 std::uint64_t BodyLanes::stored_springs() const {

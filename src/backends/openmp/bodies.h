@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "backends/interface/backend.h"
@@ -21,6 +22,13 @@ struct BodySteps : SeparateSteps {
   int spins = 0;
 
   using SeparateSteps::SeparateSteps;
+
+ protected:
+  /// Makes the pairs, of so many floats each, and lets each thread be the first to write what its range of
+  /// `chunks` (ChunkTickets) steps: there the system then takes it from the memory that is nearest to the
+  /// thread. `first_float`: of a chunk in a pair, and of what lies behind the last one.
+  void make_pairs_where_stepped(std::size_t floats,
+                                const std::function<std::size_t(std::size_t chunk)>& first_float);
 };
 
 /// How the nodes that one process steps reach those that step their neighbours, which have them as ghosts:

@@ -250,6 +250,8 @@ Machine read_machine(const fs::path& root) {
                                       value_of(root / "proc/cpuinfo", "CPU implementer", ':'), part);
   machine.cpu_generation = read_generation(root / "proc/cpuinfo");
   machine.logical_cpus = count_cpus(first_line(cpus / "online"));
+  if (const std::string smt = first_line(cpus / "smt/active"); !smt.empty()) machine.smt = smt == "1";
+  machine.numa_nodes = count_cpus(first_line(root / "sys/devices/system/node/online"));
   machine.cpu_mhz = leading_number<double>(value_of(root / "proc/cpuinfo", "cpu MHz", ':'));
   machine.caches = read_caches(cpus);
   if (std::string governor = first_line(cpus / "cpu0/cpufreq/scaling_governor"); !governor.empty())

@@ -49,6 +49,8 @@ struct Machine {
   std::string cpu_model;
   std::string cpu_generation;           ///< its design
   int logical_cpus = 0;                 ///< online
+  std::optional<bool> smt;              ///< whether cores have several of them
+  int numa_nodes = 0;                   ///< parts of the memory that are nearer to some of them
   double cpu_mhz = 0;                   ///< of the first CPU, now
   std::vector<Cache> caches;            ///< by level, then type
   std::optional<std::string> governor;  ///< of the first CPU's frequency; none in most virtual machines

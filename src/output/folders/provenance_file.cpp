@@ -139,6 +139,8 @@ Machine read_machine(const Place& document) {
     machine.cpu_quota = quota->number();
   if (const auto limit = document.find("memory_limit_bytes"); limit && !limit->is_null())
     machine.memory_limit_bytes = limit->count<std::uint64_t>();
+  if (const auto smt = cpu.find("smt"); smt && !smt->is_null()) machine.smt = smt->truth();
+  if (const auto nodes = cpu.find("numa_nodes")) machine.numa_nodes = nodes->count<int>();
   if (const auto turbo = cpu.find("turbo"); turbo && !turbo->is_null()) machine.turbo = turbo->truth();
   return machine;
 }
@@ -221,6 +223,8 @@ json to_json(const Provenance& provenance) {
        {{"model", machine.cpu_model},
         {"generation", machine.cpu_generation.empty() ? json() : json(machine.cpu_generation)},
         {"logical_cpus", machine.logical_cpus},
+        {"smt", machine.smt ? json(*machine.smt) : json()},
+        {"numa_nodes", machine.numa_nodes},
         {"mhz", machine.cpu_mhz},
         {"governor", machine.governor ? json(*machine.governor) : json()},
         {"turbo", machine.turbo ? json(*machine.turbo) : json()},

@@ -82,8 +82,10 @@ TEST_F(BenchPlanTest, HasARowForEachNumberOfThreadsButOfABackendOfOneThread) {
   EXPECT_EQ(plan.provenance.threads, 2);
   const System system = plan.timed.front().prepare().system;
   for (const BackendInfo* backend : plan.timed.front().backends) {
-    const auto made = make_backend(*backend, system, *find_integrator("semi-euler"), 1e-4, plan.settings.execution);
-    EXPECT_EQ(made->threads(), backend->role == BackendRole::baseline || backend->name.ends_with(":1") ? 1 : 2)
+    const auto made =
+        make_backend(*backend, system, *find_integrator("semi-euler"), 1e-4, plan.settings.execution);
+    EXPECT_EQ(made->threads(),
+              backend->role == BackendRole::baseline || backend->name.ends_with(":1") ? 1 : 2)
         << backend->name;
   }
 }

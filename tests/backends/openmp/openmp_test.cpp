@@ -1,6 +1,8 @@
 #include "backends/openmp/openmp.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
+#include <sys/resource.h>
 
 #include <cstddef>
 #include <string>
@@ -119,6 +121,37 @@ void expect_openmp_near_serial(const System& system) {
     for (std::size_t i = 0; i < state.position.size(); ++i)
       ASSERT_LT(length(state.position[i] - expected.position[i]), 1e-6) << set << ", node " << i;
   }
+}
+
+/// Pages that the second of two threads was the first to touch while `work` ran.
+template <class Work>
+long pages_of_the_second_thread(Work work) {
+  const auto pages = [] {
+    long touched = 0;
+#pragma omp parallel num_threads(2)
+    if (omp_get_thread_num() == 1) {
+      rusage usage{};
+      getrusage(RUSAGE_THREAD, &usage);
+      touched = usage.ru_minflt;
+    }
+    return touched;
+  };
+  pages();  // what the thread itself takes
+  const long before = pages();
+  work();
+  return pages() - before;
+}
+
+// So large that a pair has several pages where they are huge, too.
+TEST(Bodies, AreFirstTouchedByTheThreadThatStepsThem) {
+  const Integrator& euler = *find_integrator("semi-euler");
+  const System one = solid_block(40, 40, 64);
+  EXPECT_GT(pages_of_the_second_thread([&] { SlicedBodies bodies(one, euler, backend_dt_s, 16, 2); }), 0);
+  const System many = alike_bodies(solid_block(12, 12, 14), 64);
+  const auto alike = find_alike_bodies(many);
+  ASSERT_TRUE(alike);
+  EXPECT_GT(pages_of_the_second_thread([&] { BodyLanes bodies(many, *alike, euler, backend_dt_s, 16, 2); }),
+            0);
 }
 
 TEST(OpenMpOnASheetThroughTheOrigin, KeepsWhatIsNotThereFromTheNodes) {

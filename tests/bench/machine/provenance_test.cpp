@@ -38,6 +38,8 @@ TEST_F(MadeUpMachine, IsReadFromItsFiles) {
   put("proc/loadavg", "0.50 1.25 2.00 1/100 4242\n");
   put("etc/os-release", "ID=x\nPRETTY_NAME=\"Some Linux 12 (name)\"\n");
   put("sys/devices/system/cpu/online", "0-2,5\n");
+  put("sys/devices/system/cpu/smt/active", "1\n");
+  put("sys/devices/system/node/online", "0-1\n");
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n");
   for (const int cpu : {0, 1, 2, 5}) {
     put_cache(cpu, 0, "1", "Data", "48K", std::to_string(cpu));
@@ -50,6 +52,8 @@ TEST_F(MadeUpMachine, IsReadFromItsFiles) {
   EXPECT_EQ(cpu_name(machine), "A Processor (R) 9000, Zen 4");
   EXPECT_EQ(machine.cpu_mhz, 3400.125);
   EXPECT_EQ(machine.logical_cpus, 4);
+  EXPECT_EQ(machine.smt, true);
+  EXPECT_EQ(machine.numa_nodes, 2);
   EXPECT_EQ(machine.memory_bytes, 16U << 20);
   EXPECT_THAT(machine.load_average, ElementsAre(0.5, 1.25, 2.0));
   EXPECT_EQ(machine.operating_system, "Some Linux 12 (name)");
@@ -69,6 +73,8 @@ TEST_F(MadeUpMachine, MayHideEverything) {
   const Machine machine = read_machine(folder() / "nothing");
   EXPECT_EQ(machine.cpu_model, "");
   EXPECT_EQ(machine.governor, std::nullopt);
+  EXPECT_EQ(machine.smt, std::nullopt);
+  EXPECT_EQ(machine.numa_nodes, 0);
   EXPECT_TRUE(machine.caches.empty());
   EXPECT_TRUE(machine.load_average.empty());
   EXPECT_EQ(machine.memory_bytes, 0U);

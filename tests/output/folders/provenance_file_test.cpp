@@ -21,6 +21,8 @@ Provenance full_provenance() {
   Provenance provenance = made_up_provenance();
   provenance.machine.governor = "performance";
   provenance.machine.turbo = false;
+  provenance.machine.smt = true;
+  provenance.machine.numa_nodes = 2;
   provenance.machine.cpu_generation = "Zen 4";
   provenance.noise = {"turbo is on"};
   provenance.earlier_starts_utc = {"2026-01-30T12:00:00Z"};
@@ -132,8 +134,9 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
     if (document[place.parent_pointer()].is_array() || pointer.starts_with("/scenes_fnv1a_64/") ||
         pointer.starts_with("/threads/environment/") ||
         pointer.find("/files_fnv1a_64/") != std::string::npos || pointer == "/cpu/turbo" ||
-        pointer == "/cpu/generation" || pointer == "/program_fnv1a_64" || pointer == "/device_memory" ||
-        pointer == "/cpu/cpu_quota" || pointer == "/memory_limit_bytes")
+        pointer == "/cpu/smt" || pointer == "/cpu/numa_nodes" || pointer == "/cpu/generation" ||
+        pointer == "/program_fnv1a_64" || pointer == "/device_memory" || pointer == "/cpu/cpu_quota" ||
+        pointer == "/memory_limit_bytes")
       continue;
     EXPECT_EQ(refusal_with(pointer, gone), pointer + " is missing: give a provenance.json that mssim wrote");
     ++values;
@@ -143,7 +146,7 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
 
 TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   json document = json_of(full_provenance());
-  document["cpu"].erase("turbo");
+  for (const char* later : {"turbo", "smt", "numa_nodes"}) document["cpu"].erase(later);
   document["cpu"].erase("generation");
   document.erase("noise");
   document.erase("earlier_starts_utc");
@@ -152,6 +155,8 @@ TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   document.erase("backend_programs");
   const Provenance old = read_provenance(put("old.json", document.dump()));
   EXPECT_EQ(old.machine.turbo, std::nullopt);
+  EXPECT_EQ(old.machine.smt, std::nullopt);
+  EXPECT_EQ(old.machine.numa_nodes, 0);
   EXPECT_EQ(old.machine.cpu_generation, "");
   EXPECT_EQ(old.program_fnv1a_64, std::nullopt);
   EXPECT_TRUE(old.noise.empty());
