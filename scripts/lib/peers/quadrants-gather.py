@@ -1,25 +1,25 @@
-"""Taichi: a kernel over nodes, each of which gathers its springs."""
+"""Quadrants: a kernel over nodes, each of which gathers its springs."""
 
 import common
 import mssim_backend
 import numpy as np
-import taichi as ti
+import quadrants as qd
 
-single = ti.f32
+single = qd.f32
 
 
-@ti.func
+@qd.func
 def pull(d, u, k, k_rest, c):
-    inverse = 1 / ti.sqrt(d.dot(d))
+    inverse = 1 / qd.sqrt(d.dot(d))
     return (k + (c * u.dot(d) * inverse - k_rest) * inverse) * d
 
 
 def vectors(shape):
-    return ti.Vector.field(3, single, shape)
+    return qd.Vector.field(3, single, shape)
 
 
 def filled(values, dtype=single):
-    field = ti.field(dtype, values.shape)
+    field = qd.field(dtype, values.shape)
     field.from_numpy(values.astype(np.float32 if dtype == single else np.int32))
     return field
 
@@ -29,15 +29,15 @@ def mover(system, free):
     dt, viscous, gravity = system.dt, system.viscous_damping, -system.gravity[1]
     floor, restitution, friction = system.floor.height, system.floor.restitution, system.floor.friction
 
-    @ti.func
-    def move(i, x, v, a, x_next: ti.template(), v_next: ti.template()):
-        v += dt * free[i] * (a - viscous * v - ti.Vector([0.0, gravity, 0.0]))
+    @qd.func
+    def move(i, x, v, a, x_next: qd.template(), v_next: qd.template()):
+        v += dt * free[i] * (a - viscous * v - qd.Vector([0.0, gravity, 0.0]))
         x += dt * v
         if x.y < floor and free[i] > 0:
-            rebound = ti.select(v.y < 0, -restitution * v.y, v.y)
-            grip = ti.max(0.0, 1 - friction * (rebound - v.y) / ti.sqrt(v.x * v.x + v.z * v.z + 1e-30))
+            rebound = qd.select(v.y < 0, -restitution * v.y, v.y)
+            grip = qd.max(0.0, 1 - friction * (rebound - v.y) / qd.sqrt(v.x * v.x + v.z * v.z + 1e-30))
             x.y = floor
-            v = ti.Vector([grip * v.x, rebound, grip * v.z])
+            v = qd.Vector([grip * v.x, rebound, grip * v.z])
         x_next[i] = x
         v_next[i] = v
 
@@ -49,17 +49,17 @@ def cloth_kernel(system, shape):
     k, k_rest, c = common.kinds(system)
     move = mover(system, filled(common.free_nodes(system).reshape(shape)))
 
-    @ti.kernel
-    def step(x: ti.template(), v: ti.template(), x_next: ti.template(), v_next: ti.template()):
-        for i in ti.grouped(x):
-            a = ti.Vector([0.0, 0.0, 0.0])
+    @qd.kernel
+    def step(x: qd.template(), v: qd.template(), x_next: qd.template(), v_next: qd.template()):
+        for i in qd.grouped(x):
+            a = qd.Vector([0.0, 0.0, 0.0])
             if 2 <= i.x < rows - 2 and 2 <= i.y < columns - 2:
-                for row, column, kind in ti.static(common.ALL_TWELVE):
-                    j = i + ti.Vector([row, column])
+                for row, column, kind in qd.static(common.ALL_TWELVE):
+                    j = i + qd.Vector([row, column])
                     a += pull(x[j] - x[i], v[j] - v[i], k[kind], k_rest[kind], c[kind])
             else:
-                for row, column, kind in ti.static(common.ALL_TWELVE):
-                    j = i + ti.Vector([row, column])
+                for row, column, kind in qd.static(common.ALL_TWELVE):
+                    j = i + qd.Vector([row, column])
                     if 0 <= j.x < rows and 0 <= j.y < columns:
                         a += pull(x[j] - x[i], v[j] - v[i], k[kind], k_rest[kind], c[kind])
             move(i, x[i], v[i], a, x_next, v_next)
@@ -69,16 +69,16 @@ def cloth_kernel(system, shape):
 
 def bodies_kernel(system):
     starts, others, spring = common.neighbours(system)
-    starts, others = filled(starts, ti.i32), filled(others, ti.i32)
+    starts, others = filled(starts, qd.i32), filled(others, qd.i32)
     stiffness = system.stiffness[spring]
     k, k_rest, c = (filled(a) for a in (stiffness, stiffness * system.rest_length[spring], system.damping[spring]))
     mass = filled(system.mass)
     move = mover(system, filled(common.free_nodes(system)))
 
-    @ti.kernel
-    def step(x: ti.template(), v: ti.template(), x_next: ti.template(), v_next: ti.template()):
+    @qd.kernel
+    def step(x: qd.template(), v: qd.template(), x_next: qd.template(), v_next: qd.template()):
         for i in x:
-            force = ti.Vector([0.0, 0.0, 0.0])
+            force = qd.Vector([0.0, 0.0, 0.0])
             for s in range(starts[i], starts[i + 1]):
                 j = others[s]
                 force += pull(x[j] - x[i], v[j] - v[i], k[s], k_rest[s], c[s])
@@ -89,7 +89,7 @@ def bodies_kernel(system):
 
 class Program:
     def __init__(self, system, method):
-        ti.init(arch=ti.cpu, cpu_max_num_threads=system.threads, fast_math=True, default_fp=single, log_level=ti.ERROR,
+        qd.init(arch=qd.cpu, cpu_max_num_threads=system.threads, fast_math=True, default_fp=single, log_level=qd.ERROR,
                 offline_cache=False)
         shape = (system.grid.rows, system.grid.columns) if system.grid else (system.nodes,)
         self.kernel = cloth_kernel(system, shape) if system.grid else bodies_kernel(system)
@@ -107,11 +107,11 @@ class Program:
         for _ in range(count):
             self.kernel(*self.state, *self.next)
             self.state, self.next = self.next, self.state
-        ti.sync()
+        qd.sync()
 
     def get(self):
         return tuple(field.to_numpy().reshape(-1, 3) for field in self.state)
 
 
 mssim_backend.serve(Program, precision="single", note=common.note(
-    __file__, f"Taichi {'.'.join(map(str, ti.__version__))}", "gather from fields of vectors, fast_math"))
+    __file__, f"Quadrants {'.'.join(map(str, qd.__version__))}", "gather from fields of vectors, fast_math"))
