@@ -3,7 +3,7 @@
 # shellcheck source=scripts/lib/python_packages.sh
 . "$root/scripts/lib/python_packages.sh"
 
-compiled_peers=(cpp-list cpp-gather cpp-gather-clang)
+compiled_peers=(cpp-list cpp-gather cpp-gather-clang halide-window)
 
 # compile_peer NAME PROGRAM: compiles one of them. The gathers are compiled with -ffast-math, which mssim itself never is: they stand
 # for the fastest that this can be written, as Numba's peers do with fastmath. It reorders sums and estimates reciprocal roots. That
@@ -16,6 +16,11 @@ compile_peer() {
   [[ $1 != cpp-gather* || $(uname -m) != x86_64 ]] || flags+=(-mprefer-vector-width=512)
   version=$("$compiler" -dumpfullversion 2>/dev/null || "$compiler" -dumpversion)
   read -ra libraries <<<"$(pkg-config --cflags --libs hdf5)"
+  [[ $1 != halide-window ]] || {
+    local halide=("$root"/build/peers/lib/python3*/site-packages/halide)
+    way="Halide $(sed -n 's/^halide==//p' "$root/scripts/peers.txt"), strict_float off; each spring once in a sliding window"
+    libraries+=(-isystem "${halide[0]}/include" -L "${halide[0]}/lib64" -lHalide "-Wl,-rpath,${halide[0]}/lib64")
+  }
   lines=$(grep -cvE '^ *(//|$)' "$source")
   "$compiler" "${flags[@]}" -I "$root/src/starters/cpp" \
     -DPEER_NOTE="\"${compiler/#c++/g++} $version, ${flags[*]:1}; $way; $lines lines\"" "$source" "${libraries[@]}" -o "$2"

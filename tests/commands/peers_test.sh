@@ -14,7 +14,7 @@ expect 2 '^mssim: --suite peers compares backends that are described.*scripts/pe
 # mssim reads all descriptions, and all of them are in the suite.
 ends 0 bench --suite peers --backend-folder "$peers" --dry-run
 described=$(find "$peers" -name '*.json' | wc -l)
-[ "$described" -eq 9 ] || fail "there are $described descriptions"
+[ "$described" -eq 10 ] || fail "there are $described descriptions"
 [ "$(grep -c "^bodies38233 .* $((described + 2)) " "$work/out")" -eq 1 ] || fail "not all are in the suite: $(cat "$work/out")"
 
 [ $# -lt 3 ] || exit 77 # the peer would be of the machine that emulates
