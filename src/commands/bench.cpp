@@ -298,6 +298,8 @@ std::function<int()> declare_bench(Arguments& arguments) {
       "Verify cloths in N windows, without building the whole (default: only where the whole does "
       "not fit into the memory, in --ranks + 8); with backends in ranks alone",
       whole_number(2, 100'000));
+  arguments.add_flag("--new-references", options->new_references,
+                     "Take no double-precision references of earlier runs, and keep none for later ones");
   arguments.add_flag("--dry-run", options->dry_run,
                      "Print what would be measured and about how long it would take, then exit");
   arguments.add("--out FOLDER", options->output.folder,

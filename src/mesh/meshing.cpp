@@ -93,15 +93,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view extension = ".mesh";
 
-fs::path cache_folder() {
-  // The XDG base directory specification has a relative path ignored.
-  const char* xdg = std::getenv("XDG_CACHE_HOME");
-  if (xdg && *xdg == '/') return fs::path(xdg) / "mssim" / "meshes";
-  const char* home = std::getenv("HOME");
-  if (home && *home == '/') return fs::path(home) / ".cache" / "mssim" / "meshes";
-  return {};
-}
-
 /// "mssim mesh 1 BYTES HASH": bytes of the .node text, hash of both texts.
 std::string header_of(const std::string& nodes, const std::string& tetrahedra) {
   return fmt::format("mssim mesh 1 {} {}\n", nodes.size(), to_hex(fnv1a_64(nodes + tetrahedra)));
@@ -177,7 +168,7 @@ class MeshCache {
     return folder_ / fmt::format("{}-{}{}", to_hex(input), to_hex(program), extension);
   }
 
-  fs::path folder_ = cache_folder();  ///< empty when the user has neither variable nor home
+  fs::path folder_ = cache_folder("meshes");  ///< empty when the user has neither variable nor home
 };
 
 Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }

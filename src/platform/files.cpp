@@ -354,6 +354,15 @@ fs::path data_folder() {
   return folder;
 }
 
+fs::path cache_folder(std::string_view name) {
+  // The XDG base directory specification has a relative path ignored.
+  const char* xdg = std::getenv("XDG_CACHE_HOME");
+  if (xdg && *xdg == '/') return fs::path(xdg) / "mssim" / name;
+  const char* home = std::getenv("HOME");
+  if (home && *home == '/') return fs::path(home) / ".cache" / "mssim" / name;
+  return {};
+}
+
 fs::path helper_program(std::string_view name) { return own_prefix() / "libexec" / "mssim" / name; }
 
 fs::path mssim_program() {

@@ -147,6 +147,10 @@ void remove_temporary_folder_of_process();
 /// with one sentence when it is missing.
 std::filesystem::path data_folder();
 
+/// The folder of that name in mssim's part of the user's cache folder, $XDG_CACHE_HOME or ~/.cache; empty
+/// where the user has neither.
+std::filesystem::path cache_folder(std::string_view name);
+
 /// A program of mssim's that it runs itself: `libexec/mssim` beside the program's `bin` folder holds it.
 /// Throws std::runtime_error when this program cannot be found.
 std::filesystem::path helper_program(std::string_view name);

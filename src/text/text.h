@@ -61,9 +61,8 @@ std::vector<Number> numbers_in(std::string_view text) {
 
 /// FNV-1a of the text's bytes, 64 bits: tells files apart that differ by accident, not by intent.
 /// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm, IETF
-/// draft.
-constexpr std::uint64_t fnv1a_64(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
+/// draft. `hash`: that of what stands before it.
+constexpr std::uint64_t fnv1a_64(std::string_view text, std::uint64_t hash = 0xcbf29ce484222325) {
   for (const char character : text) {
     hash ^= static_cast<unsigned char>(character);
     hash *= 0x100000001b3;

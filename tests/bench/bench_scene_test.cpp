@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -15,10 +16,13 @@
 #include <utility>
 
 #include "backends/backends.h"
+#include "bench/verification/reference_cache.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
+#include "platform/files.h"
 #include "platform/process.h"
 #include "tests/support/systems.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -556,6 +560,42 @@ TEST_F(BenchScene, JudgesTheBaselineAlikeBesideItsReferenceAndBehindIt) {
   round_start_to_single(system_);
   ASSERT_LT(run_reference(system_, *job_.integrators[0], job_.dt_s).steps, verification_steps);
   expect_alike("where it meets the floor");
+}
+
+class BenchSceneWithReferences : public BenchScene, public TemporaryFolder {
+ protected:
+  BenchSceneWithReferences() {
+    job_.references = {.folder = path() / "references", .program_fnv1a_64 = 1, .least_seconds = 0};
+    job_.integrators = {find_integrator("semi-euler")};
+  }
+};
+
+TEST_F(BenchSceneWithReferences, SaysOfARowThatAnEarlierRunHasFoundItsReference) {
+  const std::vector<ResultRow> first = run(), second = run();
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(first[i].note, "");
+    EXPECT_EQ(second[i].note, "compared with a reference of an earlier run");
+    EXPECT_TRUE(second[i].verified);
+    EXPECT_EQ(first[i].position_error, second[i].position_error);
+    EXPECT_EQ(first[i].energy_drift, second[i].energy_drift);
+  }
+}
+
+TEST_F(BenchSceneWithReferences, FailsNoRowByWhatAFileSays) {
+  run();
+  const std::filesystem::path file = std::filesystem::directory_iterator(job_.references->folder)->path();
+  std::string text = read_file(file);
+  text.resize(text.size() - 8);
+  text[text.size() - 2 - 24 * system_.nodes()] ^= 0x20;  // the exponent of the last coordinate
+  const std::uint64_t hash = fnv1a_64(text);
+  text.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+  write_file_atomically(file, text);
+  ASSERT_TRUE(recall_reference(*job_.references, system_, *job_.integrators[0], job_.dt_s).recalled);
+  for (const ResultRow& row : run()) {
+    EXPECT_EQ(row.status, "ok");
+    EXPECT_EQ(row.note, "");
+  }
+  EXPECT_EQ(run()[0].note, "compared with a reference of an earlier run") << "it was replaced";
 }
 
 TEST_F(BenchScene, SaysHowManyProcessorsTheSamplesTook) {

@@ -126,7 +126,7 @@ ranks                 requests
 bench/machine         provenance
 bench/results         result comparison
 bench/roofline        roofline
-bench/verification    verification
+bench/verification    verification reference_cache
 bench/windows         windows
 bench/job             job
 bench                 bench_scene estimates

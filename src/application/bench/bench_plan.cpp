@@ -14,6 +14,7 @@
 #include "integrators/stability.h"
 #include "output/tables/suite_tables.h"
 #include "output/traces/energy_curve.h"
+#include "platform/files.h"
 #include "platform/machine.h"
 #include "scene/builders.h"
 #include "scene/scene_file.h"
@@ -228,6 +229,8 @@ BenchPlan plan_of(const BenchOptions& options) {
 
   plan.uses_device = !timed.empty() && std::ranges::any_of(plan.settings.backends, &BackendInfo::uses_device);
   plan.provenance = run_provenance(plan.settings.execution.threads, plan.uses_device && !options.dry_run);
+  if (!options.new_references && plan.provenance.program_fnv1a_64)
+    plan.settings.references = {cache_folder("references"), *plan.provenance.program_fnv1a_64};
   add_programs(plan.provenance, plan.backends.own(), plan.settings.execution);
   plan.provenance.device_memory = name_of(plan.settings.execution.memory);
   for (const UnbuiltScene& scene : plan.described)

@@ -40,7 +40,8 @@ struct BenchOptions {
   std::optional<int> windows;  ///< none: only cloths that do not fit are verified in windows
   bool dry_run = false;
   BenchOutput output;
-  std::string verified;  ///< a folder whose rows need not be verified again; empty: none
+  bool new_references = false;  ///< those of earlier runs are not taken, nor is any kept
+  std::string verified;         ///< a folder whose rows need not be verified again; empty: none
 };
 
 /// Rounds of a bench that says nothing of them.

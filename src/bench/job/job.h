@@ -11,6 +11,7 @@
 
 #include "backends/backends.h"
 #include "bench/results/result.h"
+#include "bench/verification/reference_cache.h"
 #include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
 #include "garment/fitting/fitting.h"
@@ -57,6 +58,7 @@ struct BenchSettings {
   int rounds = 0;                   ///< at most, with a deadline
   std::optional<int> windows = {};  ///< a cloth is verified in so many, and nobody builds the whole
   double sample_seconds = 0.1;      ///< what a sample's steps should add up to
+  std::optional<ReferenceCache> references = {};  ///< none: references are not kept for later runs
   /// Where an earlier process of the same program has verified every combination: its rows, which tell which
   /// are right. Then samples are taken and nothing else is done.
   std::optional<std::vector<ResultRow>> verified = {};

@@ -73,6 +73,7 @@ struct Reference {
   Energy energy;
   double tolerance = 0;     ///< on the position error, in mean rest lengths
   double step_seconds = 0;  ///< that a step of it took: the median, because the first ones are slow
+  bool recalled = false;    ///< an earlier run of the program has found it (reference_cache.h)
   std::optional<std::string> failure;  ///< why there is no reference
 };
 

@@ -1,0 +1,149 @@
+#include "bench/verification/reference_cache.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Value>
+requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const Value& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+template <class Value>
+requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const std::vector<Value>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
+}
+
+/// Hash of all that a reference of a cloth or of bodies can depend on.
+std::uint64_t hash_of(const System& system) {
+  // All members by name, so that none that comes is forgotten.
+  const auto& [topology, springs, materials, pins, masses, gravity, viscous_damping, floor, solver, start] =
+      system;
+  std::string numbers =
+      fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", springs.size(), materials.size(), pins.size(),
+                  masses.size(), gravity, viscous_damping, floor.height, floor.restitution, floor.friction,
+                  solver.tolerance, solver.iterations, solver.substeps);
+  if (const auto* grid = std::get_if<GridPatch>(&topology))
+    numbers += fmt::format(" grid {} {} {} {}", grid->rows, grid->columns, grid->spacing, grid->first_column);
+  std::uint64_t hash = fnv1a_64(numbers);
+  for (const std::string_view bytes : {bytes_of(springs), bytes_of(materials), bytes_of(pins),
+                                       bytes_of(masses), bytes_of(start.position), bytes_of(start.velocity)})
+    hash = fnv1a_64(bytes, hash);
+  if (const auto* mesh = std::get_if<TetrahedralMesh>(&topology))
+    hash = fnv1a_64(bytes_of(mesh->tetrahedra), hash);
+  return hash;
+}
+
+/// What an entry holds behind its head, before the positions and velocities.
+struct Numbers {
+  std::int64_t steps;
+  double step_seconds;
+};
+
+/// The reference, or nothing for a file that is not, or no longer, what was written.
+std::optional<Reference> read_entry(const fs::path& file, const std::string& head, const System& system) {
+  const std::size_t vectors = system.nodes() * sizeof(Vec3d);
+  const std::size_t size = head.size() + sizeof(Numbers) + 2 * vectors + sizeof(std::uint64_t);
+  try {
+    const std::string text = read_file(file, size);
+    const std::size_t hashed = size - sizeof(std::uint64_t);
+    if (text.size() != size || !text.starts_with(head) ||
+        text.substr(hashed) != bytes_of(fnv1a_64(std::string_view(text).substr(0, hashed))))
+      return std::nullopt;
+    Numbers numbers{};
+    Reference reference;
+    reference.state.position.resize(system.nodes());
+    reference.state.velocity.resize(system.nodes());
+    const char* from = text.data() + head.size();
+    std::memcpy(&numbers, from, sizeof numbers);
+    std::memcpy(reference.state.position.data(), from += sizeof numbers, vectors);
+    std::memcpy(reference.state.velocity.data(), from + vectors, vectors);
+    reference.steps = static_cast<int>(numbers.steps);
+    reference.step_seconds = numbers.step_seconds;
+    return reference;
+  } catch (const ReadError&) {
+    return std::nullopt;
+  }
+}
+
+void forget_oldest(const ReferenceCache& cache) {
+  std::vector<fs::directory_entry> files;
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (fs::directory_iterator at(cache.folder, error), end; !error && at != end; at.increment(error))
+    if (const std::uint64_t size = at->file_size(error); !error) {
+      files.push_back(*at);
+      bytes += size;
+    }
+  const auto used = [](const fs::directory_entry& file) {
+    std::error_code gone;  // another process tidies up, too
+    return file.last_write_time(gone);
+  };
+  std::ranges::sort(files, {}, used);
+  for (const fs::directory_entry& file : files) {
+    if (bytes <= cache.most_bytes) return;
+    bytes -= file.file_size(error);
+    fs::remove(file, error);
+  }
+}
+
+void keep(const ReferenceCache& cache, const fs::path& file, const std::string& head,
+          const Reference& reference) {
+  try {
+    make_folder(cache.folder);
+    AtomicFile entry(file);
+    const Numbers numbers{reference.steps, reference.step_seconds};
+    std::uint64_t hash = fnv1a_64("");
+    for (const std::string_view part :
+         {std::string_view(head), bytes_of(numbers), bytes_of(reference.state.position),
+          bytes_of(reference.state.velocity)}) {
+      entry.append(part);
+      hash = fnv1a_64(part, hash);
+    }
+    entry.append(bytes_of(hash));
+    entry.move_into_place();
+    forget_oldest(cache);
+  } catch (const WriteError&) {
+    // It is run anew next time; or another process is keeping the same.
+  }
+}
+
+}  // namespace
+
+Reference recall_reference(const ReferenceCache& cache, const System& system, const Integrator& integrator,
+                           double dt_s, bool anew) {
+  if (cache.folder.empty() || 2 * system.nodes() * sizeof(Vec3d) > cache.most_bytes / 4)
+    return run_reference(system, integrator, dt_s);
+  const std::string head = fmt::format("mssim reference 1 {} {} {} {} {}\n", to_hex(cache.program_fnv1a_64),
+                                       to_hex(hash_of(system)), integrator.name, dt_s, verification_steps);
+  const fs::path file = cache.folder / to_hex(fnv1a_64(head));
+  if (std::optional<Reference> found = anew ? std::nullopt : read_entry(file, head, system)) {
+    std::error_code ignored;
+    fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
+    found->energy = energy_of(system, found->state);
+    found->tolerance = position_tolerance(system, integrator, found->steps);
+    found->recalled = true;
+    return *std::move(found);
+  }
+  const Stopwatch watch;
+  Reference reference = run_reference(system, integrator, dt_s);
+  if (!reference.failure && watch.seconds() >= cache.least_seconds) keep(cache, file, head, reference);
+  return reference;
+}
+
+}  // namespace mssim
