@@ -72,10 +72,11 @@ std::vector<ResultRow> rows_by_threads() {
   return rows;
 }
 
-ResultTable thread_table_of(const std::vector<ResultRow>& rows) {
-  return only_table(with_thread_table([](auto, const auto&) { return std::vector<ResultTable>(); })(
-                        rows, made_up_provenance()),
-                    "threads");
+ResultTable thread_table_of(const std::vector<ResultRow>& rows,
+                            const Provenance& provenance = made_up_provenance()) {
+  return only_table(
+      with_thread_table([](auto, const auto&) { return std::vector<ResultTable>(); })(rows, provenance),
+      "threads");
 }
 
 TEST(ThreadTable, AsCsvHasSpeedUpsOverTheFewestThreadsAndEfficiencies) {
@@ -93,6 +94,14 @@ TEST(ThreadTable, AsMarkdownNamesBackendsWithoutTheirThreads) {
   EXPECT_THAT(page, HasSubstr("| `openmp` | 2 | **0.625** | 1.60× | 1.60 to 1.60 | 0.800 | 1.50 |\n"));
   EXPECT_THAT(page, HasSubstr("| `opencl` | 2 | **0.500** | – | – | – | 1.50 |\n"));
   EXPECT_THAT(page, Not(HasSubstr("serial")));
+}
+
+TEST(ThreadTable, HasEfficienciesOverTheFewestThreadsThatAreSeveral) {
+  Provenance provenance = made_up_provenance();
+  provenance.threads = 8;
+  const std::vector<ResultRow> rows{measured_row("openmp:2", 1, 1.0), measured_row("openmp", 0.4, 2.5)};
+  EXPECT_THAT(table_csv(thread_table_of(rows, provenance).data),
+              HasSubstr(",8,1.5,0.4,0.2,0.8,2.5,2.5,2.5,0.625,ok\n"));
 }
 
 TEST(ThreadTable, IsThereOnlyWithSeveralNumbersOfThreads) {
