@@ -106,13 +106,14 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
 
 std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
 
-void require_few_threads(int threads) {
+void require_few_threads(int threads, std::string_view asked) {
   constexpr int most_a_processor = 8;
   const int processors = omp_get_num_procs();
   if (threads > most_a_processor * processors)
     throw UsageError(
-        "--threads {} is too many for the {} that this process may use; ask for at most {}, {} for each",
-        threads, pluralize(processors, "processor"), most_a_processor * processors, most_a_processor);
+        "{} is too many for the {} that this process may use; ask for at most {} threads, {} for each",
+        asked.empty() ? fmt::format("--threads {}", threads) : printable(asked),
+        pluralize(processors, "processor"), most_a_processor * processors, most_a_processor);
 }
 
 ExecutionOptions complete(ExecutionOptions options) {
@@ -146,6 +147,7 @@ BackendChoice::Row::Row(const BackendInfo& of, int threads)
     : name(fmt::format("{}:{}", of.name, threads)), info(of) {
   info.name = name;
   info.threads = threads;
+  info.paper_configuration = {};  // that of the row which tables of the paper take
 }
 
 BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBackendOptions& options,
@@ -201,7 +203,7 @@ const BackendInfo* BackendChoice::counted(const std::string& name) {
     throw UsageError("{} says a number of {} that cannot be: give one from 1 to {}, as in {}:4",
                      printable(name), known ? "threads" : "ranks", most, its_name);
   if (known) {
-    require_few_threads(*number);
+    require_few_threads(*number, name);
     return &on_threads(**row, *number);
   }
   program.ranks = *number;
@@ -228,7 +230,10 @@ std::vector<const BackendInfo*> BackendChoice::with_fewer_threads(const std::vec
           "a list of --threads cannot be used with {}, which takes processes: leave one of them out",
           info->name);
     if (!counts.empty() && has_threads(*info, execution))
-      for (const int count : counts) all.push_back(&on_threads(*info, count));
+      for (const int count : counts)
+        if (const BackendInfo* row = &on_threads(*info, count);
+            std::ranges::find(rows, row) == rows.end())  // named by itself, too
+          all.push_back(row);
     all.push_back(info);
   }
   return all;

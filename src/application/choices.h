@@ -33,8 +33,9 @@ inline constexpr int most_ranks = 65536;
 std::string name_of(DeviceMemory memory);
 
 /// Throws UsageError for more threads than eight for each processor that this process may use: each step
-/// would take as long as the system needs to let all of them run.
-void require_few_threads(int threads);
+/// would take as long as the system needs to let all of them run. `asked`: what says the number, where that
+/// is not --threads.
+void require_few_threads(int threads, std::string_view asked = {});
 
 /// `threads` as given or, for 0, one for every processor that this process may use, as far as a container's
 /// quota lets it; OpenMP then gives as many, whatever OMP_DYNAMIC says. Throws UsageError where

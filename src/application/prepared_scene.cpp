@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <variant>
@@ -69,11 +71,21 @@ void warn_of_note(const PreparedScene& scene) {
 }
 
 void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured) {
+  const auto is_shipped = [](const SceneHash& scene) {
+    try {
+      // What a folder calls by the name of a file would be read from wherever that leads.
+      return !is_path_of_scene(scene.name) && is_scene(scene.name) &&
+             scene.fnv1a_64 == fnv1a_64(find_scene(scene.name).source);
+    } catch (const std::exception&) {
+      return false;  // no scene can be read that it could be
+    }
+  };
+  std::set<std::string> shipped;
+  for (const SceneHash& scene : measured.scenes)
+    if (is_shipped(scene)) shipped.insert(scene.name);
   for (ResultRow& row : rows) {
-    const auto scene = std::ranges::find(measured.scenes, row.scene, &SceneHash::name);
-    // What a folder calls by the name of a file would be read from wherever that leads.
-    row.scene_as_shipped = scene != measured.scenes.end() && !is_path_of_scene(row.scene) &&
-                           is_scene(row.scene) && scene->fnv1a_64 == fnv1a_64(find_scene(row.scene).source);
+    row.scene_as_shipped = shipped.contains(row.scene);
+    if (!row.scene_as_shipped) row.paper_ms.reset();
   }
 }
 

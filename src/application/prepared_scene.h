@@ -37,7 +37,8 @@ ModeBound mode_bound(const System& system);
 /// Says the note, if there is one, on stderr.
 void warn_of_note(const PreparedScene& scene);
 
-/// Sets scene_as_shipped of rows that were measured with scenes of these hashes.
+/// Sets scene_as_shipped of rows that were measured with scenes of these hashes; the others have no published
+/// time.
 void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured);
 
 /// A body to measure fits against: the mesh of its trunk and legs, which is what garments meet; for how far

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "platform/files.h"
 #include "report/report_internal.h"
@@ -51,9 +50,22 @@ void visit_claims(FieldVisitor& fields, std::vector<Claim>& claims) {
               "A claim.", [&](FieldVisitor& claim) { visit_claim(claim, claims.emplace_back()); });
 }
 
-/// Is the row's device one that the claim asks for? A device of OpenCL that is this processor is no GPU.
-bool may_decide(const ResultRow* row, const ClaimTest& test, const Provenance& provenance) {
-  return row && (!test.on_gpu || opencl_device(*row).empty() || !is_this_processor(*row, provenance));
+std::string configuration_of(const PaperLegend& legend, std::string_view backend) {
+  const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
+  return found == legend.backends.end() ? std::string() : found->configuration;
+}
+
+/// Does the paper run on several threads what the backend stands for?
+bool has_threads(const PaperLegend& legend, std::string_view backend) {
+  return configuration_of(legend, backend).find("multi-thread") != std::string::npos;
+}
+
+/// Did the row run on what the claim is about? A device of OpenCL that is this processor is no GPU, and one
+/// thread is not several.
+bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& legend,
+                const Provenance& provenance) {
+  return row && (row->threads > 1 || !has_threads(legend, row->backend)) &&
+         (!test.on_gpu || opencl_device(*row).empty() || !is_this_processor(*row, provenance));
 }
 
 std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
@@ -89,11 +101,7 @@ std::string range_of(double least, double most) {
 
 /// The published ratios that stand behind a claim.
 std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, const PublishedTable& table) {
-  const auto configuration = [&](const std::string& backend) {
-    const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
-    return found == legend.backends.end() ? std::string() : found->configuration;
-  };
-  const std::string fast = configuration(test.fast), slow = configuration(test.slow);
+  const std::string fast = configuration_of(legend, test.fast), slow = configuration_of(legend, test.slow);
   const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
                            const std::string& of_slow) -> std::optional<double> {
     const auto fast_ms = table.ms(of_fast, fast, scene.nodes, scene.springs);
@@ -110,7 +118,8 @@ std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, c
                              });
   if (all.empty()) return {};
   const auto [least, most] = std::ranges::minmax(all);
-  return fmt::format("{} ({})", range_of(least, most), pluralize(all.size(), "ratio"));
+  return fmt::format("{} ({}{})", range_of(least, most), pluralize(all.size(), "ratio"),
+                     test.of_average ? ", geometric mean " + times(geometric_mean(all)) : "");
 }
 
 /// The measured ratios of a claim.
@@ -120,7 +129,9 @@ std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const PaperSce
                            const std::string& of_slow) -> std::optional<RatioInterval> {
     const ResultRow* fast = scenes.row(scene, test.fast, of_fast);
     const ResultRow* slow = scenes.row(scene, test.slow, of_slow);
-    if (!may_decide(fast, test, provenance) || !may_decide(slow, test, provenance)) return std::nullopt;
+    if (!may_decide(fast, test, scenes.legend(), provenance) ||
+        !may_decide(slow, test, scenes.legend(), provenance))
+      return std::nullopt;
     return times_as_fast(fast, slow);
   };
   return ratios_of(test, scenes.legend(), scenes.scenes(),
@@ -169,8 +180,9 @@ JudgedClaim judge_rows(const Claim& claim, const PaperScenes& scenes, const Publ
   else if (!claim.needs.empty())
     judged.measured = "needs " + claim.needs;
   else
-    judged.measured = fmt::format("needs verified rows of `{}`{}", test.fast,
-                                  test.slow == test.fast ? "" : fmt::format(" and `{}`", test.slow));
+    judged.measured = fmt::format("needs verified rows of `{}`{}{}", test.fast,
+                                  test.slow == test.fast ? "" : fmt::format(" and `{}`", test.slow),
+                                  has_threads(scenes.legend(), test.fast) ? " on several threads" : "");
   return judged;
 }
 
@@ -209,8 +221,8 @@ std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& in
       if (claim.test && claim.test->scenes == table.info().name)
         all.push_back(judge_rows(claim, scenes, table, provenance));
   }
-  const bool has_garments =
-      std::ranges::any_of(folder.rows, [](const ResultRow& row) { return row.dressing.has_value(); });
+  const bool has_garments = std::ranges::any_of(
+      folder.rows, [](const ResultRow& row) { return row.dressing && row.scene_as_shipped; });
   const bool of_hong = !all.empty();
   for (const Claim& claim : input.claims)
     if (!claim.test && (claim.paper == paper_words.front() ? of_hong : has_garments))

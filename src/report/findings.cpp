@@ -1,11 +1,7 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
-#include <map>
 
 #include "report/report_internal.h"
-#include "statistics/statistics.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -29,18 +25,6 @@ std::optional<double> exponent_of(std::span<const double> x, std::span<const dou
 PaperScenes::PaperScenes(std::span<const ResultRow> rows, const PaperLegend& legend,
                          const PublishedTable& published)
     : rows_(rows), legend_(legend), published_(published), scenes_(published.scenes_of(rows)) {}
-
-std::string PaperScenes::label() const {
-  // The title says what is measured, the table, and whose it is: "Cloth: Table 1 of Hong et al. (2016)".
-  const std::string_view title = published_.info().title;
-  const std::size_t colon = title.find(": "), from = colon == std::string_view::npos ? 0 : colon + 2;
-  return std::string(title.substr(from, title.find(" of ", from) - from));
-}
-
-std::optional<double> PaperScenes::published_ms(const PaperScene& scene, std::string_view integrator,
-                                                std::string_view configuration) const {
-  return published_.ms(integrator, configuration, scene.nodes, scene.springs);
-}
 
 std::optional<double> PaperScenes::published_speedup(const PaperScene& scene, std::string_view integrator,
                                                      std::string_view configuration) const {

@@ -27,11 +27,6 @@ class PaperScenes {
 
   const std::vector<PaperScene>& scenes() const { return scenes_; }  ///< by size
   const PaperLegend& legend() const { return legend_; }
-  /// "Table 1", for sentences.
-  std::string label() const;
-
-  std::optional<double> published_ms(const PaperScene& scene, std::string_view integrator,
-                                     std::string_view configuration) const;
   /// Over one thread; none where either time is missing.
   std::optional<double> published_speedup(const PaperScene& scene, std::string_view integrator,
                                           std::string_view configuration) const;

@@ -151,11 +151,11 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
 }
 
 std::string verdict_section(const ReportInput& input) {
-  return "<p>What the papers say, and whether it holds of the rows of this machine, which is not theirs: "
+  return "<p>What the papers say, and whether it holds of the rows of a folder, whose machine is not theirs: "
          "Hong et al. measured on a Nexus 7, with ten threads. A claim held where every ratio lies above "
-         "what it needs "
-         "with its whole interval, and did not where one lies below. A row that is not verified counts "
-         "nowhere, and OpenCL on the processor decides nothing about a GPU.</p>\n" +
+         "what it needs with its whole interval, and did not where one lies below. A row that is not "
+         "verified "
+         "counts nowhere, and OpenCL on the processor decides nothing about a GPU.</p>\n" +
          of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
            if (folder.rows.empty()) return std::string("<p>There is no row to judge.</p>\n");
            return table_of(judge(folder, input)) +

@@ -11,7 +11,8 @@
 
 namespace mssim {
 
-// Each stands beside the spec and the builder that it names.
+// Each stands beside the spec and the builder that it names; garment_kind in garment/scene, of which nothing
+// else is needed here.
 extern const SceneKind cloth_kind, bodies_kind, garment_kind;
 
 namespace {

@@ -185,8 +185,8 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
   }
 }
 
-// As many as large machines have, each with columns or slices of its own. Every number takes a minute and a
-// half.
+// As many as large machines have, each with columns or slices of its own. All 192 numbers would take a minute
+// and a half, so some are tried.
 TEST(OpenMp, GivesTheSameBitsOnUpTo192Threads) {
   const Integrator& euler = *find_integrator("semi-euler");
   System block = solid_block(20, 20, 20);

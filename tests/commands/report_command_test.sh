@@ -146,6 +146,9 @@ sed 's/"stiffness_n_per_m": 200/"stiffness_n_per_m": 100/' "$2/scenes/cloth2500.
 [ ! -e "$work/own/out/table1.md" ] || fail "a scene of the user's is in Table 1"
 report "$work/own/out"
 has 'No row is of a scene of the papers'
+(cd "$work" && "$mssim" bench --scene own/cloth2500.json,cloth4900 --backend serial,openmp --integrator semi-euler --rounds 2 --resume \
+  --out own/out >"$work/out")
+grep -q '^,,,nodes,4900$' "$work/own/out/table1.csv" || fail "--resume puts a scene of the user's into Table 1: $(cat "$work/own/out/table1.csv")"
 
 # Damaged folders.
 cp -r "$results/table3/zen5" "$work/damaged"

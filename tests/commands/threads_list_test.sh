@@ -28,6 +28,6 @@ ends 0 compare list list
 # What is advised for speed-ups can be typed.
 ends 0 bench --scene cloth2500 --backend openmp --integrator semi-euler --threads 1,2 --rounds 1
 advice=$(sed -n 's/.*add it: --backend //p' "$work/err")
-[ "$advice" = serial,openmp:1,openmp ] || fail "advice: $(cat "$work/err")"
-ends 0 bench --scene cloth2500 --backend "$advice" --integrator semi-euler --threads 2 --rounds 1 --out typed
-[ "$(column_of typed/timings.csv threads | tr '\n' ' ')" = "1 2 1 " ] || fail "typed: $(cat typed/timings.csv)"
+[ "$advice" = serial,openmp ] || fail "advice: $(cat "$work/err")"
+ends 0 bench --scene cloth2500 --backend "$advice" --integrator semi-euler --threads 1,2 --rounds 1 --out typed
+[ "$(column_of typed/timings.csv threads | tr '\n' ' ')" = "1 1 2 " ] || fail "typed: $(cat typed/timings.csv)"

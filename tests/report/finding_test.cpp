@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "scene/fields/fields.h"
 #include "tests/support/result_fixture.h"
@@ -75,6 +76,10 @@ TEST(Claims, AreNamedOnceAndEitherTestedOrNeedSomething) {
       EXPECT_NE(std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name),
                 legend.backends.end())
           << claim.name;
+    std::vector<std::string> integrators = claim.test->integrators;
+    for (const std::string& one : {claim.test->slow_integrator, claim.test->gains_more_than})
+      if (!one.empty()) integrators.push_back(one);
+    for (const std::string& integrator : integrators) EXPECT_TRUE(find_integrator(integrator)) << claim.name;
   }
 }
 
@@ -126,6 +131,15 @@ TEST(Claims, AboutAGpuAreNotDecidedOnTheProcessor) {
   EXPECT_THAT(claim.measured, testing::HasSubstr("a GPU"));
 }
 
+TEST(Claims, AboutThreadsAreNotDecidedByOne) {
+  const ResultRow serial = small("serial", 1);
+  ResultRow one = faster(small("threads-mutex", 1), serial, {0.5, 0.5, 0.5});
+  one.threads = 1;
+  const JudgedClaim claim = judged("threads-before-cpu", {serial, one});
+  EXPECT_EQ(claim.outcome, ClaimOutcome::not_testable);
+  EXPECT_THAT(claim.measured, testing::HasSubstr("several threads"));
+}
+
 TEST(Claims, OfAnAverageTakeTheGeometricMean) {
   const auto with = [](double first, double second) {
     std::vector<ResultRow> rows;
@@ -140,6 +154,7 @@ TEST(Claims, OfAnAverageTakeTheGeometricMean) {
   EXPECT_EQ(with(1.5, 3).outcome, ClaimOutcome::held) << "2.12";
   EXPECT_EQ(with(1.2, 3).outcome, ClaimOutcome::not_held) << "1.90";
   EXPECT_THAT(with(1.5, 3).measured, testing::HasSubstr("geometric mean 2.12"));
+  EXPECT_THAT(with(1.5, 3).published, testing::HasSubstr("geometric mean 1.5"));
 }
 
 TEST(Claims, AboutAGainCompareSpeedUps) {

@@ -87,7 +87,7 @@ class Cloth : public mssim_backend::Backend {
     constexpr std::size_t cache = 4 << 20;
     pass_ = states_[0].size() * sizeof(float) > cache ? 2 : 1;
     one_step_ = compiled(1);
-    one_pass_ = compiled(pass_);
+    one_pass_ = pass_ == 1 ? one_step_ : compiled(pass_);
     about.precision = "single";
     about.note = PEER_NOTE;  // Halide, settings and the lines of this file, from whoever compiles it
   }

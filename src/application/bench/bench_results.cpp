@@ -118,7 +118,10 @@ std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan)
     const Provenance earlier = read_provenance(std::filesystem::path(output.folder) / "provenance.json");
     require_same_origin(earlier, plan.provenance, output.folder);
     folder.go_on_with(earlier);
-    return folder.has_rows() ? read_run(output.folder).rows : std::vector<ResultRow>();
+    if (!folder.has_rows()) return {};
+    std::vector<ResultRow> rows = read_run(output.folder).rows;
+    mark_own_scenes(rows, plan.provenance);
+    return rows;
   }
   if (!output.overwrite)
     throw UsageError(output.folder +

@@ -64,6 +64,9 @@ double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std:
   return walked * (static_cast<double>(layout.height) + rows_beside);
 }
 
+/// Measured on an Intel Xeon; for passes of several stages everywhere.
+ColumnCosts usual_column_costs() { return {0.7, 0.97, cache_bytes(_SC_LEVEL1_DCACHE_SIZE, 32L << 10)}; }
+
 }  // namespace
 
 BandRows::BandRows(const BandLayout& layout, const std::vector<SpringPerMass>& springs, float gravity,
@@ -105,25 +108,24 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
 
 ColumnCosts ColumnCosts::here() {
 #if defined(__x86_64__)
-  // Measured on Zen 4: a column takes 1.4 rows beside its own, and of one stage the second-level cache, of
-  // which threads and other arrays need a part, is as quick as the first. Folded, cloth40k and cloth350k take
-  // 0.94 and 0.96 of the time.
+  // On Zen 4 a column takes 1 to 1.4 rows beside its own, and the second-level cache, of which threads and
+  // other arrays need a part, is as quick as the first.
   if (__builtin_cpu_is("amd")) return {1, 0.98, cache_bytes(_SC_LEVEL2_CACHE_SIZE, 1L << 20) / 4};
 #endif
-  return {0.7, 0.97, cache_bytes(_SC_LEVEL1_DCACHE_SIZE, 32L << 10)};  // measured on an Intel Xeon
+  return usual_column_costs();
 }
 
 /// Folded where that leaves fewer rows to walk through, clearly, and where a cache holds the columns under
-/// way: three of the state and two of forces. That of several stages is the first-level one.
+/// way: three of the state and two of forces.
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
-                       std::size_t threads, const ColumnCosts& costs) {
+                       std::size_t threads, const ColumnCosts& of_one_stage) {
   if (layout.lanes < 2) return 1;
+  const ColumnCosts costs =
+      integrator.stage_count * steps_per_pass == 1 ? of_one_stage : usual_column_costs();
   const BandLayout folded(
       {static_cast<std::uint32_t>(layout.rows), static_cast<std::uint32_t>(layout.columns)}, layout.lanes, 2);
   const std::size_t under_way = (3 * folded.column_floats() + 2 * folded.force_floats()) * sizeof(float);
-  const bool one_stage = integrator.stage_count * steps_per_pass == 1;
-  if (under_way > (one_stage ? costs.one_stage_bytes : cache_bytes(_SC_LEVEL1_DCACHE_SIZE, 32L << 10)))
-    return 1;
+  if (under_way > costs.bytes) return 1;
   const auto rows = [&](const BandLayout& of) {
     return rows_of_pass(of, integrator, steps_per_pass, threads, costs.rows_beside);
   };

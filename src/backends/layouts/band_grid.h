@@ -141,11 +141,12 @@ std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integ
 std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator,
                                std::size_t partitions);
 
-/// What a processor takes for columns, on which depends whether a cloth had best be folded.
+/// What a processor takes for columns where a pass has one stage, on which depends whether a cloth had best
+/// be folded.
 struct ColumnCosts {
-  double rows_beside;           ///< a column takes the time of so many rows beside its own
-  double clearly_fewer;         ///< a fold that leaves this share of the rows pays
-  std::size_t one_stage_bytes;  ///< so much may be under way where a pass has one stage
+  double rows_beside;    ///< a column takes the time of so many rows beside its own
+  double clearly_fewer;  ///< a fold that leaves this share of the rows pays
+  std::size_t bytes;     ///< so much may be under way
 
   /// Those of this processor.
   static ColumnCosts here();
@@ -153,7 +154,7 @@ struct ColumnCosts {
 
 /// Halves in which a cloth of that layout, which has one, had best be walked over by so many threads.
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
-                       std::size_t threads, const ColumnCosts& costs = ColumnCosts::here());
+                       std::size_t threads, const ColumnCosts& of_one_stage = ColumnCosts::here());
 
 /// How the columns of a cloth at the ends of a piece reach the processes that step the columns beside it, and
 /// theirs this one: what a copy between the threads of a process is, between processes.

@@ -285,16 +285,6 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
   return provenance;
 }
 
-AskedProcessors asked_processors(const Provenance& provenance, std::string_view row_name) {
-  for (const BackendProgramRecord& program : provenance.backend_programs)
-    if (program.name == row_name)
-      return {row_name, program.ranks > 0 ? program.ranks * program.rank_threads : provenance.threads};
-  const std::size_t colon = std::min(row_name.rfind(':'), row_name.size() - 1);
-  const std::optional<int> threads = number_in<int>(row_name.substr(colon + 1));
-  return threads ? AskedProcessors{row_name.substr(0, colon), *threads}
-                 : AskedProcessors{row_name, provenance.threads};
-}
-
 void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
                  const std::filesystem::path& folder) {
   // Larger ones are data, and reading them would take longer than a step.

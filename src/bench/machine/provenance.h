@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -7,6 +8,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "text/text.h"
 
 namespace mssim {
 
@@ -130,7 +133,15 @@ struct AskedProcessors {
   std::string_view backend;  ///< without the threads that the row's name says: "openmp" of "openmp:2"
   int count = 0;
 };
-AskedProcessors asked_processors(const Provenance& provenance, std::string_view row_name);
+inline AskedProcessors asked_processors(const Provenance& provenance, std::string_view row_name) {
+  for (const BackendProgramRecord& program : provenance.backend_programs)
+    if (program.name == row_name)
+      return {row_name, program.ranks > 0 ? program.ranks * program.rank_threads : provenance.threads};
+  const std::size_t colon = std::min(row_name.rfind(':'), row_name.size() - 1);
+  const std::optional<int> threads = number_in<int>(row_name.substr(colon + 1));
+  return threads ? AskedProcessors{row_name.substr(0, colon), *threads}
+                 : AskedProcessors{row_name, provenance.threads};
+}
 
 /// Adds a program that is a backend, `record`, to which the hashes of its files are added: `program` is the
 /// file of the command's first word, `folder` the one it runs in.

@@ -82,23 +82,30 @@ std::optional<Reference> read_entry(const fs::path& file, const std::string& hea
 }
 
 void forget_oldest(const ReferenceCache& cache) {
-  std::vector<fs::directory_entry> files;
-  std::uint64_t bytes = 0;
-  std::error_code error;
-  for (fs::directory_iterator at(cache.folder, error), end; !error && at != end; at.increment(error))
-    if (const std::uint64_t size = at->file_size(error); !error) {
-      files.push_back(*at);
-      bytes += size;
-    }
-  const auto used = [](const fs::directory_entry& file) {
-    std::error_code gone;  // another process tidies up, too
-    return file.last_write_time(gone);
+  /// As it was when the folder was read: other processes use entries and tidy up at the same time.
+  struct Entry {
+    fs::path file;
+    fs::file_time_type used;
+    std::uint64_t bytes;
   };
-  std::ranges::sort(files, {}, used);
-  for (const fs::directory_entry& file : files) {
+  std::vector<Entry> entries;
+  std::uint64_t bytes = 0;
+  std::error_code end_of_list;
+  for (fs::directory_iterator at(cache.folder, end_of_list), end; !end_of_list && at != end;
+       at.increment(end_of_list)) {
+    std::error_code gone, unknown;
+    const std::uint64_t size = at->file_size(gone);
+    const fs::file_time_type used = at->last_write_time(unknown);
+    if (gone || unknown) continue;
+    entries.push_back({at->path(), used, size});
+    bytes += size;
+  }
+  std::ranges::sort(entries, {}, &Entry::used);
+  for (const Entry& entry : entries) {
     if (bytes <= cache.most_bytes) return;
-    bytes -= file.file_size(error);
-    fs::remove(file, error);
+    bytes -= entry.bytes;
+    std::error_code ignored;
+    fs::remove(entry.file, ignored);
   }
 }
 

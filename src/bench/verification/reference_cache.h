@@ -20,8 +20,8 @@ struct ReferenceCache {
   std::uint64_t most_bytes = 1ULL << 30;  ///< of all entries, of which the least recently used go
 };
 
-/// run_reference, or what it has found in an earlier run, but for how long a step took. `anew`: whatever is
-/// there is replaced. One that takes more than a quarter of most_bytes is not kept.
+/// run_reference, or what it has found in an earlier run; `step_seconds` are then those of that run. `anew`:
+/// whatever is there is replaced. One that takes more than a quarter of most_bytes is not kept.
 Reference recall_reference(const ReferenceCache& cache, const System& system, const Integrator& integrator,
                            double dt_s, bool anew = false);
 

@@ -194,7 +194,6 @@ std::string touches_at_once(int steps) {
 }
 
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s) {
-  constexpr int stride = steps_between_looks;
   Reference reference;
   std::unique_ptr<Backend> backend;
   try {
@@ -212,7 +211,8 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
   for (int steps = 0; steps < verification_steps;) {
     // Not taken: those that run beside this one are to see it, too.
     if (const int signal = noted_ending_signal()) throw Interrupted{signal};
-    const int next = std::min(steps + stride, steps < comparable ? comparable : verification_steps);
+    const int next =
+        std::min(steps + steps_between_looks, steps < comparable ? comparable : verification_steps);
     const auto start = std::chrono::steady_clock::now();
     backend->step(next - steps);
     State state = backend->state();
@@ -233,7 +233,7 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
     before = std::move(state);
   }
   if (reference.steps == 0) {
-    reference.failure = touches_at_once(std::min(stride, comparable));
+    reference.failure = touches_at_once(std::min(steps_between_looks, comparable));
     return reference;
   }
   reference.energy = energy_of(system, reference.state);

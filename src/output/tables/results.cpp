@@ -86,9 +86,15 @@ std::string_view opencl_device(const ResultRow& row) {
 }
 
 bool is_this_processor(const ResultRow& row, const Provenance& provenance) {
-  // CPU drivers put the model of the processor into the name of their device.
+  const std::string_view device = opencl_device(row);
+  if (device.empty()) return false;
+  // CPU drivers put the model of the processor into the name of their device; some models have no name.
   const std::string& processor = provenance.machine.cpu_model;
-  return !processor.empty() && row.device.find(processor) != std::string::npos;
+  if (!processor.empty() && device.find(processor) != std::string_view::npos) return true;
+  return std::ranges::any_of(provenance.opencl_devices, [&](const std::string& known) {
+    return known.find(device) != std::string::npos &&
+           (known.starts_with("Portable Computing Language") || known.starts_with("Oclgrind"));
+  });
 }
 
 std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance) {
@@ -162,7 +168,12 @@ std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow
 std::string reason_without_speedups(std::span<const std::string_view> backends) {
   if (backends.empty() || std::ranges::find(backends, baseline_name) != backends.end()) return {};
   std::string all(baseline_name);
-  for (const std::string_view backend : backends) all.append(",").append(backend);
+  for (const std::string_view backend : backends) {
+    const std::size_t colon = backend.rfind(':');  // of a list of threads, which is asked for anyway
+    if (colon == std::string_view::npos ||
+        std::ranges::find(backends, backend.substr(0, colon)) == backends.end())
+      all.append(",").append(backend);
+  }
   return "speed-ups are missing, since serial is not among the backends; add it: --backend " + all;
 }
 

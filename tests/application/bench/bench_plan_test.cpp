@@ -90,6 +90,16 @@ TEST_F(BenchPlanTest, HasARowForEachNumberOfThreadsButOfABackendOfOneThread) {
   }
 }
 
+TEST_F(BenchPlanTest, HasARowOnceThatIsNamedByItselfToo) {
+  options_.backends = {"openmp:1", "openmp"};
+  options_.threads = {1, 2};
+  options_.execution.threads = 2;
+  const BenchPlan plan = plan_of(options_);
+  std::vector<std::string_view> names;
+  for (const BackendInfo* backend : plan.settings.backends) names.push_back(backend->name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre("openmp:1", "openmp"));
+}
+
 TEST_F(BenchPlanTest, TakesABackendOnItsOwnNumberOfThreads) {
   options_.backends = {"openmp:2", "openmp"};
   EXPECT_THAT(names_in(plan_of(options_).settings.backends), testing::ElementsAre("openmp", "openmp:2"));
