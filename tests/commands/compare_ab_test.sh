@@ -227,6 +227,6 @@ esac
 SCRIPT
 chmod +x "$work/older"
 ends 0 compare --ab "$work/older" "$mssim" --scene "$work/small.json" --threads 1 --threshold 1900 --time-budget 6
-says '^small  openmp   semi-euler  [0-9]'
+says '^small  *openmp  *semi-euler  *[0-9]'
 warns '^mssim: [1-9][0-9]* rounds\{0,1\} in'
 warns 'older has no bench --verified'
