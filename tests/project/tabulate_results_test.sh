@@ -27,7 +27,9 @@ differs() {
   grep -q "^--- $1" "$place/out" || fail "$2: no word of $1"
 }
 
-sed -i 's/^\(cloth350k,.*,openmp,.*,semi-euler,[^,]*,[^,]*,\)[^,]*/\112345/' "$place/results/table1/zen4/timings.csv"
+for timings in "$place"/results/table1/*/timings.csv; do
+  sed -i 's/^\(cloth350k,.*,openmp,.*,semi-euler,[^,]*,[^,]*,\)[^,]*/\112345/' "$timings"
+done
 differs docs/hardware.md 'another time'
 "$place/scripts/tabulate-results" || fail 'the tables cannot be made'
 grep -q "^| cloth350k, .openmp. .* 12345 (" "$place/docs/hardware.md" || fail 'the page has no new time'
@@ -40,7 +42,7 @@ differs results/README.md 'another scene'
 printf '2099-01-01T00:00:00Z,0000000,serial,bodies,Zen 9,faster,,,\n' >>"$place/results/changes.csv"
 differs results/README.md 'a new change of speed'
 "$place/scripts/tabulate-results"
-grep -q "^| .table3/granite-rapids.*before 1 change of .serial." "$place/results/README.md" || fail 'no folder is older'
+grep -q "^| .table3/.*before 1 change of .serial." "$place/results/README.md" || fail 'no folder is older'
 
 status=0
 "$place/scripts/tabulate-results" --all >"$place/out" 2>&1 || status=$?
