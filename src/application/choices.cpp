@@ -14,6 +14,7 @@
 #include "backends/described/backend_description.h"
 #include "backends/devices/drivers.h"
 #include "backends/process/process_backend.h"
+#include "bench/results/result.h"
 #include "integrators/all_integrators.h"
 #include "platform/files.h"
 #include "platform/machine.h"
@@ -34,6 +35,9 @@ int usable_processors() {
 namespace fs = std::filesystem;
 
 constexpr std::string_view description_extension = ".json";
+
+/// What follows the colon in hybrid:each.
+constexpr std::string_view each_word = each_suffix.substr(1);
 
 /// The folder of the user's own descriptions; none where the user has no home.
 std::optional<fs::path> user_folder() {
@@ -107,13 +111,9 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
 std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
 
 void require_few_threads(int threads, std::string_view asked) {
-  constexpr int most_a_processor = 8;
-  const int processors = omp_get_num_procs();
-  if (threads > most_a_processor * processors)
-    throw UsageError(
-        "{} is too many for the {} that this process may use; ask for at most {} threads, {} for each",
-        asked.empty() ? fmt::format("--threads {}", threads) : printable(asked),
-        pluralize(processors, "processor"), most_a_processor * processors, most_a_processor);
+  if (const auto excess = thread_excess(threads))
+    throw UsageError("{} is {}", asked.empty() ? fmt::format("--threads {}", threads) : printable(asked),
+                     *excess);
 }
 
 ExecutionOptions complete(ExecutionOptions options) {
@@ -143,11 +143,16 @@ std::vector<const BackendInfo*> table_backends() {
 BackendChoice::Row::Row(BackendProgram its_program)
     : program(std::move(its_program)), info(own_backend(program)) {}
 
-BackendChoice::Row::Row(const BackendInfo& of, int threads)
-    : name(fmt::format("{}:{}", of.name, threads)), info(of) {
+BackendChoice::Row::Row(const BackendInfo& of, std::string_view how)
+    : name(fmt::format("{}:{}", of.name, how)), info(of) {
   info.name = name;
-  info.threads = threads;
-  info.paper_configuration = {};  // that of the row which tables of the paper take
+  if (how == each_word) {
+    info.each_body = true;
+    info.role = BackendRole::as_published;
+    info.make_dressing = nullptr;
+  } else {
+    info.threads = number_in<int>(how).value();
+  }
 }
 
 BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBackendOptions& options,
@@ -170,7 +175,10 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   if (is_path(name)) return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
   const std::optional<fs::path> file = description_of(name);
   if (!file)
-    if (const BackendInfo* row = counted(name)) return *row;
+    if (const BackendInfo* row = variant(name)) {
+      if (row->threads > 0) require_few_threads(row->threads, name);
+      return *row;
+    }
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;
   if (file) return add_file(*file);
@@ -185,37 +193,55 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   throw UsageError(unknown_name("backend", name, names, others));
 }
 
-const BackendInfo* BackendChoice::counted(const std::string& name) {
+const BackendInfo* BackendChoice::variant(const std::string& name) {
   const std::size_t colon = name.rfind(':');
   if (colon == std::string::npos) return nullptr;
-  const std::string its_name = name.substr(0, colon), count = name.substr(colon + 1);
-  const auto row = std::ranges::find(known_, its_name, &BackendInfo::name);
-  const bool known = row != known_.end();
-  const std::optional<fs::path> file = known ? std::nullopt : description_of(its_name);
-  if (!known && !file) return nullptr;
+  const std::string its_name = name.substr(0, colon), how = name.substr(colon + 1);
+  const auto in_table = std::ranges::find(known_, its_name, &BackendInfo::name);
+  const BackendInfo* row = in_table != known_.end()                              ? *in_table
+                           : its_name.ends_with(each_suffix) && how != each_word ? variant(its_name)
+                                                                                 : nullptr;
+  const std::optional<fs::path> file = row ? std::nullopt : description_of(its_name);
+  if (!row && !file) return nullptr;
+  if (how == each_word) {
+    if (file)
+      throw UsageError(
+          "{} asks for a step of each body for itself, which only mssim's own backends take: leave "
+          "\":{}\" out",
+          printable(name), each_word);
+    return &add_variant(*row, how);
+  }
   BackendProgram program = file ? read_description(*file) : BackendProgram{};
-  if (known ? !(*row)->makes_threads && !(*row)->uses_device : !program.in_ranks)
+  if (row ? !row->makes_threads && !row->uses_device : !program.in_ranks)
     throw UsageError("{} says a number of ranks or threads, which {} does not take: leave \":{}\" out",
-                     printable(name), its_name, printable(count));
-  const int most = known ? most_threads : most_ranks;
-  const std::optional<int> number = number_in<int>(count);
+                     printable(name), its_name, printable(how));
+  const int most = row ? most_threads : most_ranks;
+  const std::optional<int> number = number_in<int>(how);
   if (!number || *number < 1 || *number > most)
     throw UsageError("{} says a number of {} that cannot be: give one from 1 to {}, as in {}:4",
-                     printable(name), known ? "threads" : "ranks", most, its_name);
-  if (known) {
-    require_few_threads(*number, name);
-    return &on_threads(**row, *number);
-  }
+                     printable(name), row ? "threads" : "ranks", most, its_name);
+  if (row) return &add_variant(*row, std::to_string(*number));
   program.ranks = *number;
   program.name = fmt::format("{}:{}", its_name, *number);
   return &add(program);
 }
 
-const BackendInfo& BackendChoice::on_threads(const BackendInfo& info, int threads) {
-  auto row = std::make_unique<Row>(info, threads);
+const BackendInfo& BackendChoice::add_variant(const BackendInfo& info, std::string_view how) {
+  auto row = std::make_unique<Row>(info, how);
   for (const std::unique_ptr<Row>& known : rows_)
     if (known->info.name == row->name) return known->info;
   return rows_.emplace_back(std::move(row))->info;
+}
+
+std::vector<const BackendInfo*> BackendChoice::with_variants(const std::vector<const BackendInfo*>& rows,
+                                                             std::span<const std::string_view> names) {
+  std::vector<const BackendInfo*> all;
+  for (const BackendInfo* row : rows) {
+    all.push_back(row);
+    for (const std::string_view name : names)
+      if (is_variant(name, row->name)) all.push_back(variant(std::string(name)));
+  }
+  return all;
 }
 
 std::vector<const BackendInfo*> BackendChoice::with_fewer_threads(const std::vector<const BackendInfo*>& rows,
@@ -231,7 +257,7 @@ std::vector<const BackendInfo*> BackendChoice::with_fewer_threads(const std::vec
           info->name);
     if (!counts.empty() && has_threads(*info, execution))
       for (const int count : counts)
-        if (const BackendInfo* row = &on_threads(*info, count);
+        if (const BackendInfo* row = &add_variant(*info, std::to_string(count));
             std::ranges::find(rows, row) == rows.end())  // named by itself, too
           all.push_back(row);
     all.push_back(info);

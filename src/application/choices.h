@@ -32,9 +32,8 @@ inline constexpr int most_ranks = 65536;
 /// The word for it that --memory takes.
 std::string name_of(DeviceMemory memory);
 
-/// Throws UsageError for more threads than eight for each processor that this process may use: each step
-/// would take as long as the system needs to let all of them run. `asked`: what says the number, where that
-/// is not --threads.
+/// Throws UsageError where there is a thread_excess. `asked`: what says the number, where that is not
+/// --threads.
 void require_few_threads(int threads, std::string_view asked = {});
 
 /// `threads` as given or, for 0, one for every processor that this process may use, as far as a container's
@@ -51,6 +50,11 @@ struct OwnBackendOptions {
 /// What the row is called of a backend that was asked for by this name or path.
 std::string row_name(const std::string& asked);
 
+/// Whether a row is another one of that backend: "openmp:2" of "openmp".
+inline bool is_variant(std::string_view row, std::string_view backend) {
+  return row.starts_with(backend) && row.substr(backend.size()).starts_with(':');
+}
+
 /// The rows of the TABLE of backends, in its order.
 std::vector<const BackendInfo*> table_backends();
 
@@ -65,9 +69,10 @@ class BackendChoice {
                 const std::vector<std::string>& scenes = {});
 
   /// The row of that name: of the table, the file of that path (which has a slash), or the one described as
-  /// NAME.json; NAME:COUNT is one that runs in so many ranks, or one of the table on so many threads. Throws
-  /// UsageError naming the nearest or listing the known, and where a name stands for two; MissingProgram for
-  /// a path at which nothing can be run; SceneError for a description that is wrong.
+  /// NAME.json; NAME:COUNT is one that runs in so many ranks, or one of the table on so many threads, and
+  /// NAME:each one of the table that steps each body for itself (NAME:each:COUNT both). Throws UsageError
+  /// naming the nearest or listing the known, where a name stands for two, and as require_few_threads;
+  /// MissingProgram for a path at which nothing can be run; SceneError for a description that is wrong.
   const BackendInfo& require(const std::string& name);
 
   /// The rows of these names in the order of the table, and behind them those that are none of it. Throws
@@ -79,6 +84,11 @@ class BackendChoice {
   std::vector<const BackendInfo*> with_fewer_threads(const std::vector<const BackendInfo*>& rows,
                                                      std::vector<int> counts,
                                                      const ExecutionOptions& execution);
+
+  /// `rows`, and after each those of `names` that are its variants (require). Where one has too many threads
+  /// for this machine, make_backend says so.
+  std::vector<const BackendInfo*> with_variants(const std::vector<const BackendInfo*>& rows,
+                                                std::span<const std::string_view> names);
 
   /// All that are described in --backend-folder and the user's own folder. Throws like require().
   std::vector<const BackendInfo*> described() { return described_in(folders_); }
@@ -92,19 +102,18 @@ class BackendChoice {
  private:
   struct Row {
     explicit Row(BackendProgram its_program);
-    Row(const BackendInfo& of, int threads);
+    Row(const BackendInfo& of, std::string_view how);
     BackendProgram program;  ///< of a program that was asked for
-    std::string name;        ///< of a row that says its threads
+    std::string name;        ///< of a variant
     BackendInfo info;
   };
 
   std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders);
   const BackendInfo& add(BackendProgram program);
   const BackendInfo& add_file(const std::filesystem::path& file);
-  /// The row that a name with a number of ranks or threads stands for; null for any other name. Throws
-  /// UsageError.
-  const BackendInfo* counted(const std::string& name);
-  const BackendInfo& on_threads(const BackendInfo& info, int threads);
+  /// The row that a name with a colon stands for; null where nothing is called so. Throws UsageError.
+  const BackendInfo* variant(const std::string& name);
+  const BackendInfo& add_variant(const BackendInfo& info, std::string_view how);
   std::optional<std::filesystem::path> description_of(const std::string& name) const;
 
   std::vector<const BackendInfo*> known_;

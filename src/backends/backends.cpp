@@ -77,8 +77,12 @@ constexpr const BackendInfo& only_row(BackendRole role) {
 static_assert(std::ranges::count(table, BackendRole::baseline, &BackendInfo::role) == 1 &&
               std::ranges::count(table, BackendRole::best_of_host, &BackendInfo::role) == 1);
 
-/// Throws Unavailable where the system does not make the threads that the backend would.
+/// Throws Unavailable where the system does not make the threads that the backend would, or where those that
+/// its row says are more than make sense here.
 void require_threads(const BackendInfo& backend, const ExecutionOptions& options) {
+  if (backend.threads > 0)
+    if (const auto excess = thread_excess(backend.threads))
+      throw Unavailable(fmt::format("{} are {}", pluralize(backend.threads, "thread"), *excess));
   if (!backend.makes_threads) return;
   if (const auto shortage = thread_shortage(options.threads, *backend.makes_threads))
     throw Unavailable(*shortage);
@@ -118,6 +122,12 @@ MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bo
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& asked) {
+  if (backend.each_body) {
+    BackendInfo of_one = backend;
+    of_one.each_body = false;
+    return make_for_each_body(
+        system, [&](const System& body) { return make_backend(of_one, body, integrator, dt_s, asked); });
+  }
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);
   if (backend.program != nullptr)

@@ -53,6 +53,8 @@ struct BackendInfo {
   /// The program that takes its steps; `make` is null then. It outlives the row.
   const BackendProgram* program = nullptr;
   int threads = 0;  ///< of a row that says them itself; 0: as many as asked for
+  bool each_body =
+      false;  ///< has a backend for each body of the scene, which take a step one after the other
 };
 
 /// What its steps run with: `asked`, but for what the row says itself.
@@ -80,10 +82,18 @@ MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bo
 /// Empty when the backend can run here, else the reason why not.
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options);
 
-/// Makes the backend for any system. Throws Unavailable, Unsupported or BackendFailure.
+/// Makes the backend for any system. Throws Unavailable, Unsupported or BackendFailure; Unsupported also
+/// where it is to step each body for itself, and the system has no bodies.
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& options);
+
+/// What makes a backend for a system of one body, which must outlive it.
+using MakeBackend = std::function<std::unique_ptr<Backend>(const System& system)>;
+
+/// A backend for each body of a system, made by `make`. In each step they take theirs one after the other, as
+/// Hong et al. step objects. Throws Unsupported for a cloth or a garment, and what `make` throws.
+std::unique_ptr<Backend> make_for_each_body(const System& system, const MakeBackend& make);
 
 /// Makes the program of `backend` for a cloth of which there is an outline alone (outline_of_cloth).
 /// `window_nodes`: of every window that it will be asked for. Throws Unavailable, Unsupported or

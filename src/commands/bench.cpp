@@ -279,8 +279,8 @@ std::function<int()> declare_bench(Arguments& arguments) {
                 one_of("suite", names, {{"all", "tables"}}));
   arguments.add_list(
       "--backend NAME|FILE,...", options->backends,
-      "Backends, or methods with --suite races (default: all of mssim's); a path with a slash, or a "
-      "described name, is a program of your own",
+      "Backends, or methods with --suite races (default: all of mssim's); NAME:each steps each body for "
+      "itself, NAME:4 takes four threads; a path with a slash, or a described name, is a program of your own",
       names_and_files_in);
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);

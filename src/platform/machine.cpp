@@ -358,6 +358,14 @@ std::optional<std::string> thread_shortage(int threads, ThreadStack stack) {
       stack == ThreadStack::openmp && size ? fmt::format(", or lower OMP_STACKSIZE, which is {}", size) : "");
 }
 
+std::optional<std::string> thread_excess(int threads) {
+  constexpr int most_a_processor = 8;
+  const int processors = omp_get_num_procs();
+  if (threads <= most_a_processor * processors) return std::nullopt;
+  return fmt::format("too many for the {} that this process may use; ask for at most {} threads, {} for each",
+                     pluralize(processors, "processor"), most_a_processor * processors, most_a_processor);
+}
+
 int openmp_team(int wanted) {
   const int threads = wanted > 0 ? wanted : omp_get_max_threads();
   return std::min(threads, try_threads(threads, ThreadStack::openmp).made);

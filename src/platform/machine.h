@@ -81,6 +81,11 @@ enum class ThreadStack : std::uint8_t { usual, openmp };
 /// has succeeded for OpenMP is not tried again, because OpenMP keeps its threads.
 std::optional<std::string> thread_shortage(int threads, ThreadStack stack);
 
+/// Why so many threads make no sense, as what follows "are": more than eight for each processor that this
+/// process may use, so that each step would take as long as the system needs to let all of them run. None
+/// where they do.
+std::optional<std::string> thread_excess(int threads);
+
 /// How many threads a parallel region can have whose result does not depend on their number: `wanted` (0: as
 /// many as OpenMP takes by itself), or where the system does not make so many, as many as it makes.
 int openmp_team(int wanted);

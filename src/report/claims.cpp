@@ -104,6 +104,7 @@ std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, c
   const std::string fast = configuration_of(legend, test.fast), slow = configuration_of(legend, test.slow);
   const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
                            const std::string& of_slow) -> std::optional<double> {
+    if (fast == slow && of_fast == of_slow) return std::nullopt;  // one and the same time
     const auto fast_ms = table.ms(of_fast, fast, scene.nodes, scene.springs);
     const auto slow_ms = table.ms(of_slow, slow, scene.nodes, scene.springs);
     return fast_ms && slow_ms ? std::optional(*slow_ms / *fast_ms) : std::nullopt;

@@ -134,7 +134,7 @@ Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, dou
 std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& id) {
   std::vector<Chart> charts;
   const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
-  if (one_thread.empty()) return charts;
+  if (std::ranges::find(one_thread, baseline_name) == one_thread.end()) return charts;
   for (const PaperLegend::Integrator& integrator : scenes.legend().integrators) {
     if (integrator.name != integrator.paper_name) continue;
     Chart chart =
@@ -153,7 +153,7 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& 
         Series measured{.name = backend + ", measured", .family = backend};
         for (const PaperScene& scene : scenes.scenes()) {
           const auto speedup = times_as_fast(scenes.row(scene, backend, integrator.name),
-                                             scenes.row(scene, one_thread.front(), integrator.name));
+                                             scenes.row(scene, baseline_name, integrator.name));
           if (!speedup) continue;
           add_point(measured, scene.nodes, speedup->ratio);
           measured.low.push_back(speedup->low);

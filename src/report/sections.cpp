@@ -283,11 +283,13 @@ std::string in_figures(const std::string& figures) {
   return figures.empty() ? figures : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
 }
 
-/// Where nothing else decides how series look, each backend looks the same in every chart.
+/// Where nothing else decides how series look, each backend looks the same in every chart, whatever variants
+/// of backends are beside it.
 std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
   for (Chart& chart : charts) {
     if (!chart.families.empty()) continue;
-    for (const PaperLegend::Backend& backend : legend.backends) chart.families.push_back(backend.name);
+    for (const PaperLegend::Backend& backend : legend.backends)
+      if (backend.name.find(':') == std::string::npos) chart.families.push_back(backend.name);
   }
   return charts;
 }

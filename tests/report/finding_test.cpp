@@ -140,6 +140,34 @@ TEST(Claims, AboutThreadsAreNotDecidedByOne) {
   EXPECT_THAT(claim.measured, testing::HasSubstr("several threads"));
 }
 
+TEST(Claims, AboutThreadsAreDecidedByAsManyAsProcessors) {
+  const ResultRow serial = small("serial", 1);
+  const auto with = [&](double times, double times_on_ten) {
+    return outcome_of("threads-before-cpu",
+                      {serial, faster(small("threads-mutex", 1), serial, {times, times}),
+                       faster(small("threads-mutex:10", 1), serial, {times_on_ten, times_on_ten})});
+  };
+  EXPECT_EQ(with(2, 0.5), ClaimOutcome::held);
+  EXPECT_EQ(with(0.5, 2), ClaimOutcome::not_held);
+}
+
+TEST(Claims, AboutOneObjectAtATimeCompareWithAllTogether) {
+  const auto row = [](const std::string& backend) { return cloth_row(3858, 72951, backend, 1); };
+  const ResultRow each = row("threads-mutex:each");
+  const auto with = [&](double times) {
+    return judged("together-with-threads", {each, faster(row("threads-mutex"), each, {times, times, times})});
+  };
+  EXPECT_EQ(with(1.5).outcome, ClaimOutcome::held);
+  EXPECT_EQ(with(0.9).outcome, ClaimOutcome::not_held);
+  EXPECT_EQ(with(1.5).published, "") << "the paper has no such times";
+  ResultRow hybrid_each = row("hybrid:each");
+  ResultRow hybrid = faster(row("hybrid"), hybrid_each, {2, 2, 2});
+  EXPECT_EQ(outcome_of("together-with-gpu", {hybrid_each, hybrid}), ClaimOutcome::held);
+  for (ResultRow* one : {&hybrid, &hybrid_each})
+    one->device = "pthread-" + made_up_provenance().machine.cpu_model;
+  EXPECT_EQ(outcome_of("together-with-gpu", {hybrid_each, hybrid}), ClaimOutcome::not_testable);
+}
+
 TEST(Claims, OfAnAverageTakeTheGeometricMean) {
   const auto with = [](double first, double second) {
     std::vector<ResultRow> rows;

@@ -87,9 +87,12 @@ inline Provenance made_up_provenance() {
 inline const PaperLegend legend{
     {{"serial", "cpu-only"},
      {"threads-mutex", "multi-thread-cpu"},
+     {"threads-mutex:10", "multi-thread-cpu"},
+     {"threads-mutex:each", "multi-thread-cpu"},
      {"openmp", "multi-thread-cpu"},
      {"opencl", "gpu"},
-     {"hybrid", "gpu+multi-thread-cpu"}},
+     {"hybrid", "gpu+multi-thread-cpu"},
+     {"hybrid:each", "gpu+multi-thread-cpu"}},
     {{"semi-euler", "semi-euler", 1}, {"rk4", "rk4", 4}, {"rk4-frozen", "rk4", 1}}};
 
 /// Rows of two published scenes and of one that is not.

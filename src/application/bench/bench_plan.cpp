@@ -98,6 +98,11 @@ std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const C
   return all;
 }
 
+/// A user who names backends or threads gets those and no others.
+bool has_variants(const BenchOptions& options) {
+  return options.backends.empty() && options.execution.threads == 0;
+}
+
 BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison, BackendChoice& choice) {
   BenchSettings settings;
   ExecutionOptions execution = options.execution;
@@ -105,6 +110,8 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   settings.execution = complete(execution);
   settings.backends = choice.with_fewer_threads(backends_of(options, comparison, settings.execution, choice),
                                                 options.threads, settings.execution);
+  if (has_variants(options))
+    settings.backends = choice.with_variants(settings.backends, variants_of_suite(options.suite));
   require_use_of_ranks(options.execution, settings.backends);
   require_device(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
@@ -129,8 +136,18 @@ std::vector<SceneSpec> find_scenes(const std::vector<std::string>& names) {
 
 /// The settings with the backends that the suite has for this scene.
 BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
-                                const std::string& scene) {
+                                const BenchOptions& options, const std::string& scene) {
   BenchSettings settings = all;
+  if (has_variants(options)) {
+    const std::vector<std::string_view> any = variants_of_suite(options.suite),
+                                        its = variants_of_suite(options.suite, scene);
+    const auto has = [](const std::vector<std::string_view>& names, std::string_view name) {
+      return std::ranges::find(names, name) != names.end();
+    };
+    std::erase_if(settings.backends, [&](const BackendInfo* backend) {
+      return has(any, backend->name) && !has(its, backend->name);
+    });
+  }
   if (comparison.is_compared)
     std::erase_if(settings.backends,
                   [&](const BackendInfo* backend) { return !comparison.is_compared(scene, backend->name); });
@@ -222,7 +239,7 @@ BenchPlan plan_of(const BenchOptions& options) {
   }
   std::vector<SceneSpec> timed = find_scenes(timed_ones);
   std::erase_if(timed, [&](const SceneSpec& spec) {
-    return settings_of_scene(plan.settings, comparison, spec.name).backends.empty();
+    return settings_of_scene(plan.settings, comparison, options, spec.name).backends.empty();
   });
   if (options.output.trace) std::ranges::for_each(timed, require_traceable);
   require_distinct_names(timed);
@@ -236,11 +253,11 @@ BenchPlan plan_of(const BenchOptions& options) {
   for (const UnbuiltScene& scene : plan.described)
     add_scene(plan.provenance, scene.spec.name, scene.spec.source);
   for (const SceneSpec& spec : timed) add_scene(plan.provenance, spec.name, spec.source);
-  if (!options.verified.empty())
-    plan.settings.verified = verified_rows(options.verified, plan.provenance, plan.settings, timed);
+  if (!options.verified.empty()) plan.settings.verified = verified_rows(options.verified, plan.provenance);
   for (SceneSpec& spec : timed) {
     SceneParts parts = parts_of(spec);
-    const BenchSettings settings = settings_of_scene(plan.settings, comparison, spec.name);
+    const BenchSettings settings = settings_of_scene(plan.settings, comparison, options, spec.name);
+    if (settings.verified) require_rows(*settings.verified, spec.name, settings, options.verified);
     plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
     if (options.output.trace && !plan.timed.back().windows.empty())
       throw UsageError("--trace needs the whole of {}, which is verified in windows: leave it out",

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "application/bench/suites.h"
 #include "bench/results/comparison.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
@@ -151,16 +152,6 @@ std::vector<std::string> doubts(const Provenance& then, const Provenance& now) {
   return all;
 }
 
-void require_row(const std::vector<ResultRow>& rows, const std::string& scene, const BackendInfo& backend,
-                 const Integrator& integrator, const std::string& folder) {
-  const bool found = std::ranges::any_of(rows, [&](const ResultRow& row) {
-    return row.scene == scene && row.backend == backend.name && row.integrator == integrator.name;
-  });
-  if (!found)
-    throw UsageError("--verified {} has no row of {}, {}, {}: ask for what it has, or leave --verified out",
-                     folder, scene, backend.name, integrator.name);
-}
-
 std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
   if (plan.output.folder.empty()) return std::nullopt;
   return std::make_optional<ResultFolder>(plan.output.folder, plan.provenance, plan.tables);
@@ -168,11 +159,12 @@ std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
 
 void add_published_times(std::vector<ResultRow>& rows, const BenchPlan& plan) {
   mark_own_scenes(rows, plan.provenance);
+  static const PaperLegend legend = paper_legend();
   for (ResultRow& row : rows) {
-    if (!row.scene_as_shipped) continue;
-    const BackendInfo& backend = **std::ranges::find(plan.settings.backends, row.backend, &BackendInfo::name);
+    const auto backend = std::ranges::find(legend.backends, row.backend, &PaperLegend::Backend::name);
+    if (!row.scene_as_shipped || backend == legend.backends.end()) continue;
     for (const PublishedTable& table : plan.published)
-      if (const auto ms = table.ms(find_integrator(row.integrator)->paper_name, backend.paper_configuration,
+      if (const auto ms = table.ms(find_integrator(row.integrator)->paper_name, backend->configuration,
                                    row.nodes, row.springs_published))
         row.paper_ms = ms;
   }
@@ -187,17 +179,23 @@ MeasuredRun read_run(const fs::path& path) {
   return run;
 }
 
-std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now,
-                                     const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
+std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now) {
   MeasuredRun earlier = read_run(folder);
   if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
     throw UsageError("--verified cannot rely on {}: {}; leave it out to verify anew", folder,
                      join(all, "; "));
-  for (const SceneSpec& scene : scenes)
-    for (const Integrator* integrator : settings.integrators)
-      for (const BackendInfo* backend : settings.backends)
-        require_row(earlier.rows, scene.name, *backend, *integrator, folder);
   return std::move(earlier.rows);
+}
+
+void require_rows(const std::vector<ResultRow>& verified, const std::string& scene,
+                  const BenchSettings& settings, const std::string& folder) {
+  const std::vector<const ResultRow*> rows = pointers_to(verified);
+  for (const Integrator* integrator : settings.integrators)
+    for (const BackendInfo* backend : settings.backends)
+      if (!find_row(rows, scene, backend->name, integrator->name))
+        throw UsageError(
+            "--verified {} has no row of {}, {}, {}: ask for what it has, or leave --verified out", folder,
+            scene, backend->name, integrator->name);
 }
 
 BenchResults::BenchResults(const BenchPlan& plan)

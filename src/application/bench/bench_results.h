@@ -44,12 +44,14 @@ struct MeasuredRun {
 /// samples are not those of its rows, CsvError and ProvenanceError for files that cannot be read.
 MeasuredRun read_run(const std::filesystem::path& path);
 
-/// The rows of a result folder in which all that is to be timed has been verified before, by the very program
-/// that runs now (the same bytes), on the same machine, for the same threads, devices and scenes; whatever of
-/// them failed there stays failed. Throws UsageError where it is not so, and what reading them throws.
-/// `now`: with the scenes.
-std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now,
-                                     const BenchSettings& settings, const std::vector<SceneSpec>& scenes);
+/// The rows of a result folder that were verified by the very program that runs now (the same bytes), on the
+/// same machine, for the same threads, devices and scenes; whatever of them failed there stays failed. Throws
+/// UsageError where it is not so, and what reading them throws. `now`: with the scenes.
+std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now);
+
+/// Throws UsageError where these rows of a folder leave out a combination of the scene.
+void require_rows(const std::vector<ResultRow>& verified, const std::string& scene,
+                  const BenchSettings& settings, const std::string& folder);
 
 /// The results of a bench, what an earlier run left among them, in the plan's folder where there is one.
 class BenchResults {

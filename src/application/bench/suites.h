@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,6 +35,9 @@ struct Suite {
   bool timed;                    ///< else the table says what the scenes are, and nothing is measured
   std::span<const std::string_view> scenes;
   Comparison comparison;
+  /// Variants (BackendChoice::require) that its scenes are also measured with, where the user names neither
+  /// backends nor threads.
+  std::span<const std::string_view> variants = {};
 };
 
 /// The suite whose scenes `mssim guide` measures, in a table of its own kind.
@@ -41,7 +45,7 @@ inline constexpr std::string_view guide_suite = "guide";
 
 std::span<const Suite> suites();
 
-/// What the tables of backends and integrators say about the papers.
+/// What the tables of backends, integrators and suites say about the papers.
 PaperLegend paper_legend();
 
 /// The names of the suites, and "tables".
@@ -50,6 +54,10 @@ std::vector<std::string> suite_names();
 /// The scenes of the suites of that name whose tables are timed or not, each once. "tables" stands
 /// for the suites that are in it.
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
+
+/// The variants of the suites of that name, each once; with a scene, of those that have it.
+std::vector<std::string_view> variants_of_suite(std::string_view name,
+                                                std::optional<std::string_view> scene = std::nullopt);
 
 /// What the suite of that name compares. "tables", and no suite (an empty name), compare the backends that
 /// `bench` takes by default.

@@ -14,6 +14,9 @@ namespace mssim {
 /// BackendRole::baseline.
 inline constexpr std::string_view baseline_name = "serial";
 
+/// What the names of rows end in, before a number of threads, that step each body for itself.
+inline constexpr std::string_view each_suffix = ":each";
+
 /// A number that says how a dressed garment fits.
 struct FitNumberRecord {
   std::string name;             ///< ends in its unit

@@ -327,12 +327,13 @@ std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenanc
   std::vector<ThreadRow> compared;
   for (const ResultRow* row : rows) {
     const auto [backend, threads] = asked_processors(provenance, row->backend);
+    if (threads > provenance.threads) continue;
     ThreadRow found{row, backend, threads, row, threads};
     bool alone = true;
     for (const ResultRow* other : rows) {
       const AskedProcessors its = asked_processors(provenance, other->backend);
-      if (other == row || its.backend != backend || other->scene != row->scene ||
-          other->integrator != row->integrator)
+      if (other == row || its.backend != backend || its.count > provenance.threads ||
+          other->scene != row->scene || other->integrator != row->integrator)
         continue;
       alone = false;
       if (its.count < found.fewest_threads) {

@@ -183,7 +183,8 @@ struct ThreadRow {
   std::optional<RatioInterval> speedup() const { return times_as_fast(row, fewest); }
 };
 
-/// Those of the rows of which there are several, in their order.
+/// Those of the rows of which there are several, in their order. More threads than the run has, as rows have
+/// that repeat a paper's, are no part of how a backend scales.
 std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenance);
 
 /// The maker, and behind its tables the table `threads` of thread_rows: times, speed-ups over the fewest

@@ -109,6 +109,89 @@ TEST_F(BenchPlanTest, TakesABackendOnItsOwnNumberOfThreads) {
   }
 }
 
+TEST_F(BenchPlanTest, TakesABackendThatStepsEachBodyForItself) {
+  options_.scenes = {"bodies3858"};
+  options_.backends = {"openmp:each:2", "serial", "serial:each", "openmp:each"};
+  options_.threads = {1, 2};
+  options_.execution.threads = 2;
+  const BenchPlan plan = plan_of(options_);
+  EXPECT_THAT(names_in(plan.settings.backends),
+              testing::UnorderedElementsAre("serial", "serial:each", "openmp:each:1", "openmp:each:2",
+                                            "openmp:each"));
+  for (const BackendInfo* backend : plan.settings.backends) {
+    EXPECT_EQ(backend->each_body, backend->name != "serial") << backend->name;
+    EXPECT_EQ(backend->role == BackendRole::baseline, backend->name == "serial") << backend->name;
+    EXPECT_EQ(execution_of(*backend, plan.settings.execution).threads, backend->name.ends_with(":1") ? 1 : 2);
+  }
+  for (const char* wrong :
+       {"serial:each:2", "openmp:2:each", "openmp:each:each", "openmp:each:0", "mpi:each", "openmp:eac"}) {
+    options_.backends = {wrong};
+    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
+  }
+}
+
+/// The plan of a suite, where no user names backends or threads.
+BenchPlan plan_of_suite(std::string suite, const std::vector<std::string>& scenes = {}) {
+  BenchOptions options;
+  options.suite = std::move(suite);
+  options.scenes = scenes;
+  options.dry_run = true;
+  return plan_of(options);
+}
+
+TEST(Suites, HaveTheirVariantsOnTheirOwnScenesWhereNobodyNamesBackendsOrThreads) {
+  EXPECT_THAT(variants_of_suite("table1"), testing::ElementsAre("threads-mutex:10"));
+  EXPECT_THAT(variants_of_suite("table3"), testing::IsSupersetOf({"serial:each", "threads-mutex:10",
+                                                                  "threads-mutex:each", "hybrid:each"}));
+  EXPECT_TRUE(variants_of_suite("").empty());
+  for (const Suite& suite : suites()) {
+    if (!suite.timed || suite.name == guide_suite || suite.comparison.described_too) continue;
+    for (const PlannedScene& scene : plan_of_suite(std::string(suite.name)).timed) {
+      std::vector<std::string_view> names = names_in(scene.backends);
+      for (const std::string_view variant : suite.variants)
+        EXPECT_EQ(std::erase(names, variant), 1U) << suite.name << ", " << scene.spec.name;
+      EXPECT_TRUE(std::ranges::none_of(names, [](std::string_view name) { return name.ends_with(":each"); }))
+          << suite.name;
+    }
+  }
+  const auto planned = plan_of_suite("tables", {"cloth1m", "sphere-small"}).timed;
+  for (const PlannedScene& scene : planned) {
+    const auto has = [&](std::string_view name) {
+      return std::ranges::find(scene.backends, name, &BackendInfo::name) != scene.backends.end();
+    };
+    const bool in_suite = scene.spec.name != "cloth1m" && scene.spec.name != "sphere-small";
+    EXPECT_EQ(has("threads-mutex:10"), in_suite) << scene.spec.name;
+    EXPECT_EQ(has("hybrid:each"), in_suite && scene.spec.name.starts_with("bodies")) << scene.spec.name;
+  }
+  BenchOptions options;
+  options.suite = "table3";
+  options.dry_run = true;
+  options.execution.threads = 1;
+  EXPECT_THAT(names_in(plan_of(options).settings.backends),
+              testing::Not(testing::Contains("threads-mutex:10")));
+  options.execution.threads = 0;
+  options.backends = {"hybrid:each"};
+  EXPECT_THAT(names_in(plan_of(options).timed.front().backends), testing::ElementsAre("hybrid:each"));
+}
+
+TEST(Suites, HaveVariantsOfBackendsThatThePaperHas) {
+  for (const Suite& suite : suites())
+    for (const std::string_view variant : suite.variants)
+      EXPECT_EQ(std::ranges::count_if(backends(),
+                                      [&](const BackendInfo& backend) {
+                                        return is_variant(variant, backend.name) &&
+                                               !backend.paper_configuration.empty();
+                                      }),
+                1)
+          << suite.name << ": " << variant;
+  const PaperLegend legend = paper_legend();
+  const auto configuration = [&](std::string_view name) {
+    return std::ranges::find(legend.backends, name, &PaperLegend::Backend::name)->configuration;
+  };
+  EXPECT_EQ(configuration("threads-mutex:10"), configuration("threads-mutex"));
+  EXPECT_EQ(configuration("hybrid:each"), configuration("hybrid"));
+}
+
 std::vector<std::string_view> backends_of(std::string_view suite) {
   return names_in(comparison_of_suite(suite).backends());
 }

@@ -92,6 +92,28 @@ TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
   EXPECT_THAT(text, Not(HasSubstr("my-own")));
 }
 
+TEST(PaperTable, HasVariantsBelowOnePublishedLine) {
+  std::vector<ResultRow> rows = table_rows();
+  EXPECT_THAT(page_of(rows), Not(HasSubstr(":each")));
+  rows.push_back(measured_row("threads-mutex", 0.2, 0.5));
+  rows.push_back(measured_row("threads-mutex:10", 0.25, 0.4));
+  rows.push_back(failed_row("hybrid:each", "unavailable: no device"));
+  const std::string text = page_of(rows);
+  EXPECT_THAT(text, HasSubstr("| Multi-thread CPU, *published* | 6.6 (2.95×) | 586.35 (4.66×) |\n"
+                              "| `threads-mutex`, **measured** | **0.200** (0.500×) | – |\n"
+                              "| `threads-mutex:10`, **measured** | **0.250** (0.400×) | – |\n"
+                              "| `openmp`, **measured** |"));
+  EXPECT_THAT(text, HasSubstr("| `hybrid:each`, **measured** | unavailable | – |\n"));
+  EXPECT_THAT(text, HasSubstr("Lines with `:each`"));
+}
+
+TEST(PaperTable, SaysWhereBothKindsOfTimesAreFrom) {
+  const std::string text = page_of(table_rows());
+  for (const char* fact : {"2016", "Nexus 7", "ten threads", "mobile GPU"})
+    EXPECT_THAT(text, HasSubstr(fact));
+  for (const char* fact : {"A Processor", "0123456789ab", "2026-01-31"}) EXPECT_THAT(text, HasSubstr(fact));
+}
+
 TEST(PaperTable, TellsTheInstructionSetOfTheProcessorFromDevices) {
   std::vector<ResultRow> rows = table_rows();
   for (ResultRow& row : rows)

@@ -104,6 +104,16 @@ TEST(ThreadTable, HasEfficienciesOverTheFewestThreadsThatAreSeveral) {
               HasSubstr(",8,1.5,0.4,0.2,0.8,2.5,2.5,2.5,0.625,ok\n"));
 }
 
+TEST(ThreadTable, LeavesOutMoreThreadsThanTheRunHas) {
+  const auto maker = with_thread_table(peer_tables());
+  const std::vector<ResultRow> rows{measured_row("threads-mutex", 1, 1.0),
+                                    measured_row("threads-mutex:10", 2, 0.5)};
+  Provenance provenance = made_up_provenance();
+  EXPECT_EQ(maker(rows, provenance).size(), 1U);
+  provenance.threads = 16;
+  EXPECT_EQ(maker(rows, provenance).size(), 2U);
+}
+
 TEST(ThreadTable, IsThereOnlyWithSeveralNumbersOfThreads) {
   const auto maker = with_thread_table(peer_tables());
   EXPECT_EQ(maker(peer_rows(), made_up_provenance()).size(), 1U);
