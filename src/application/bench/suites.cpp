@@ -59,6 +59,9 @@ std::vector<const BackendInfo*> all_methods() {
   return rows;
 }
 
+/// The other backends are rows that say that they cannot dress.
+std::vector<const BackendInfo*> all_that_dress() { return with_garment_backends(table_backends()); }
+
 /// What peers and ranks are held against: the plain list and the fastest of the host's.
 std::vector<const BackendInfo*> baseline_and_best() { return {&baseline_backend(), &best_host_backend()}; }
 
@@ -162,7 +165,7 @@ constexpr auto table = std::to_array<Suite>({
      false,
      true,
      jeans,
-     {table_backends, cheapest_method, garment_tables}},
+     {all_that_dress, cheapest_method, garment_tables}},
     {guide_suite,
      "which integrator, backend and step for cloths and bodies: mssim guide, scene by scene",
      false,
@@ -179,8 +182,9 @@ bool belongs(const Suite& suite, std::string_view name) {
 
 PaperLegend paper_legend() {
   PaperLegend legend;
-  for (const BackendInfo& backend : backends())
-    legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
+  for (const BackendInfo* backend : with_garment_backends(table_backends()))
+    legend.backends.push_back({std::string(backend->name), std::string(backend->paper_configuration),
+                               backend->makes_threads.has_value()});
   for (const Integrator* integrator : all_integrators)
     legend.integrators.push_back({std::string(integrator->name), std::string(integrator->paper_name),
                                   static_cast<int>(integrator->stage_count)});
