@@ -140,6 +140,12 @@ std::vector<const BackendInfo*> table_backends() {
   return rows;
 }
 
+std::vector<const BackendInfo*> with_garment_backends(std::vector<const BackendInfo*> rows) {
+  for (const BackendInfo& backend : garment_backends())
+    if (std::ranges::find(rows, &backend) == rows.end()) rows.push_back(&backend);
+  return rows;
+}
+
 BackendChoice::Row::Row(BackendProgram its_program)
     : program(std::move(its_program)), info(own_backend(program)) {}
 

@@ -58,6 +58,9 @@ inline bool is_variant(std::string_view row, std::string_view backend) {
 /// The rows of the TABLE of backends, in its order.
 std::vector<const BackendInfo*> table_backends();
 
+/// `rows`, and after them the backends that step nothing but garments.
+std::vector<const BackendInfo*> with_garment_backends(std::vector<const BackendInfo*> rows);
+
 /// The backends that a command may use: the rows of a table, and programs of the user's, which are looked up
 /// when they are asked for. Rows stay where they are while this object lives, also where it is moved.
 class BackendChoice {

@@ -377,7 +377,7 @@ int run_scene(RunOptions options) {
     if (!file->empty()) *file = target_of(*file).string();
   require_trace_name();
   const Integrator& integrator = require_integrator(options.integrator);
-  BackendChoice choice(table_backends(), options.own_backends, {options.scene});
+  BackendChoice choice(with_garment_backends(table_backends()), options.own_backends, {options.scene});
   const BackendInfo& info = choice.require(options.backend);
   require_use_of_ranks(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));

@@ -11,6 +11,7 @@
 #include "backends/opencl/opencl.h"
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/list_backends.h"
+#include "garment/stepping/published_dressing.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -63,6 +64,11 @@ constexpr auto table = std::to_array<BackendInfo>({
      ThreadStack::openmp, make_hybrid, packed, packed, 0.35},
 });
 
+std::unique_ptr<Backend> steps_garments_only(const System& /*system*/, const Integrator& /*integrator*/,
+                                             double /*dt_s*/, const ExecutionOptions& /*options*/) {
+  throw Unsupported("it steps garments only");
+}
+
 /// The names of the rows that have something, in words.
 std::string names_of(bool (*has)(const BackendInfo& row)) {
   std::vector<std::string_view> names;
@@ -96,9 +102,32 @@ const BackendInfo& baseline_backend() { return only_row(BackendRole::baseline); 
 
 const BackendInfo& best_host_backend() { return only_row(BackendRole::best_of_host); }
 
+std::span<const BackendInfo> garment_backends() {
+  static const std::vector<BackendInfo> rows = [] {
+    // Springs and joints are kept in an order of their own, beside nodes of three vectors and two masses.
+    constexpr MemoryUse loops{.node = 72, .spring = 28};
+    std::vector<BackendInfo> of_garments;
+    for (const PublishedDressing& dressing : published_dressings())
+      of_garments.push_back(
+          {.name = dressing.name,
+           .paper_configuration = "",
+           .description = dressing.description,
+           .uses_device = false,
+           .makes_threads = dressing.parallel ? std::optional(ThreadStack::openmp) : std::nullopt,
+           .make = steps_garments_only,
+           .grid_memory = loops,
+           .mesh_memory = loops,
+           .make_dressing = dressing.make,
+           .make_dressing_reference = make_published_reference});
+    return of_garments;
+  }();
+  return rows;
+}
+
 const BackendInfo* find_backend(std::string_view name) {
-  const auto row = std::ranges::find(table, name, &BackendInfo::name);
-  return row == table.end() ? nullptr : &*row;
+  for (const std::span<const BackendInfo> rows : {backends(), garment_backends()})
+    if (const auto row = std::ranges::find(rows, name, &BackendInfo::name); row != rows.end()) return &*row;
+  return nullptr;
 }
 
 BackendInfo own_backend(const BackendProgram& program) {

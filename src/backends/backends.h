@@ -53,8 +53,11 @@ struct BackendInfo {
   /// The program that takes its steps; `make` is null then. It outlives the row.
   const BackendProgram* program = nullptr;
   int threads = 0;  ///< of a row that says them itself; 0: as many as asked for
-  bool each_body =
-      false;  ///< has a backend for each body of the scene, which take a step one after the other
+  bool each_body = false;  ///< one backend per body of the scene; the bodies take a step in turn
+  /// What `make_dressing` makes, in double precision: its garments are verified against it.
+  std::unique_ptr<DressingBackend> (*make_dressing_reference)(const System& system,
+                                                              const Integrator& integrator,
+                                                              double dt_s) = make_reference_dressing;
 };
 
 /// What its steps run with: `asked`, but for what the row says itself.
@@ -69,11 +72,15 @@ BackendInfo own_backend(const BackendProgram& program);
 /// The TABLE of backends, in the order of every listing and result. A new backend is one row in backends.cpp.
 std::span<const BackendInfo> backends();
 
+/// The rows of the TABLE of published dressings (garment/stepping/published_dressing.h), in its order: they
+/// step nothing but garments, and have the role `as_published`.
+std::span<const BackendInfo> garment_backends();
+
 /// The one row of that role.
 const BackendInfo& baseline_backend();
 const BackendInfo& best_host_backend();
 
-/// The backend of that name, or nullptr.
+/// The backend of that name, of both tables, or nullptr.
 const BackendInfo* find_backend(std::string_view name);
 
 /// What the backend takes for a scene with this integrator: a cloth (`grid`) or bodies.

@@ -72,24 +72,33 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
 }
 
 /// Compares a backend with the reference.
-using Verifier = std::function<Verification(Combination& combination)>;
+using Verifier = std::function<Verification(Combination& combination, const BackendInfo& info)>;
 
-/// Runs the reference. `draped`: the garment, settled; none where the scene is no garment or cannot be
-/// dressed. `step_seconds`: is set to what a step of it took where the ends of samples are compared with it,
-/// too. The verifier is empty where no backend has the scene with this integrator.
+/// Runs the reference; of a garment when a backend is first compared with it. `draped`: the garment, settled,
+/// which must outlive the verifier; none where the scene is no garment or cannot be dressed. `step_seconds`:
+/// is set to what a step of it took where the ends of samples are compared with it, too. The verifier is
+/// empty where no backend has the scene with this integrator.
 Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const std::optional<State>& draped,
                        double& step_seconds) {
   if (job.garment && !dresses(integrator)) return {};
   if (job.garment)
-    return [&job, reference = run_garment_reference(*job.system, integrator, job.dt_s, *draped)](
-               Combination& combination) {
-      return verify_garment(*combination.backend, *job.system, reference, job.dt_s);
+    return [&job, &integrator, &draped,
+            references = std::map<decltype(BackendInfo::make_dressing_reference), GarmentReference>()](
+               Combination& combination, const BackendInfo& info) mutable {
+      const auto make = info.make_dressing_reference;
+      auto found = references.find(make);
+      if (found == references.end())
+        found = references
+                    .emplace(make, run_garment_reference(*make(*job.system, integrator, job.dt_s),
+                                                         *job.system, integrator, job.dt_s, *draped))
+                    .first;
+      return verify_garment(*combination.backend, *job.system, found->second, job.dt_s);
     };
   if (job.windowed)
     return [&job, &integrator,
             reference = std::make_shared<const WindowReferences>(run_window_references(
                 *job.windowed, integrator, job.dt_s, static_cast<std::size_t>(job.execution.threads)))](
-               Combination& combination) {
+               Combination& combination, const BackendInfo& /*info*/) {
       Verification found =
           verify_windows(*combination.windows, *job.windowed, integrator, *reference, job.dt_s);
       if (found.failure) return found;
@@ -106,7 +115,8 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
   };
   Reference reference = refer(false);
   step_seconds = reference.step_seconds;
-  return [&job, refer, reference = std::move(reference)](Combination& combination) mutable {
+  return [&job, refer, reference = std::move(reference)](Combination& combination,
+                                                         const BackendInfo& /*info*/) mutable {
     Verification found =
         verify(*combination.backend, *job.system, reference, job.dt_s, combination.steps_taken);
     if (found.failure && reference.recalled) {  // no row fails by what a file says
@@ -181,7 +191,7 @@ void judge(Combination& combination, const SceneJob& job, const BackendInfo& inf
     take_verification(combination, *job.verified);
   else if (combination.backend)
     attempt(combination, [&] {
-      take_verification(combination, reference.verifier(combination));
+      take_verification(combination, reference.verifier(combination, info));
       if (combination.backend && reference.second && !builds_scenes_itself(info))
         verify_second(combination, job, info, *reference.second);
     });
@@ -457,7 +467,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       if (!is_judged) judge(combination, job, *info, references[i]);
       if (combination.backend && job.garment && !job.verified) {
         watch.progress("dress with " + std::string(info->name), done());
-        if (!dress_combination(combination, job, watch.stop)) return {};
+        if (!dress_combination(combination, job, *info, watch.stop)) return {};
       }
       if (combination.backend) leave_untimed(combination);
       if (combination.backend) calibrate(combination, job);

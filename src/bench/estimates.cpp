@@ -42,8 +42,9 @@ double list_step_time(const Integrator& integrator, const SceneSize& size) {
 /// Seconds of a step of the backend.
 double step_time(const BackendInfo& backend, const Integrator& integrator, const SceneSize& size) {
   const double list = list_step_time(integrator, size);
-  if (size.garment || is_implicit(integrator))
-    return backend.role == BackendRole::baseline || backend.program != nullptr ? list : other_methods * list;
+  const bool is_plain = backend.role == BackendRole::baseline || backend.program != nullptr ||
+                        (backend.role == BackendRole::as_published && dresses(backend));
+  if (size.garment || is_implicit(integrator)) return is_plain ? list : other_methods * list;
   return backend.step_share * list;
 }
 

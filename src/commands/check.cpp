@@ -63,18 +63,20 @@ bool can_step(const SceneSize& size, const Integrator& integrator, const Backend
 Table combination_table(const PreparedScene& scene, const SceneSize& size, const ModeBound& modes) {
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
   Table table;
+  const std::vector<const BackendInfo*> all =
+      size.garment ? with_garment_backends(table_backends()) : table_backends();
   for (const Integrator* integrator : all_integrators) {
     const double largest_dt_s = largest_stable_dt(*integrator, modes);
-    for (const BackendInfo& backend : backends()) {
-      if (!can_step(size, *integrator, backend)) continue;
-      const BenchSettings settings = usual_settings({&backend}, {integrator});
+    for (const BackendInfo* backend : all) {
+      if (!can_step(size, *integrator, *backend)) continue;
+      const BenchSettings settings = usual_settings({backend}, {integrator});
       table.add({{"integrator", integrator->name},
                  {"largest_stable_dt_s", std::isinf(largest_dt_s) ? Cell() : Cell(largest_dt_s)},
                  {"stable", scene.dt_s <= largest_dt_s},
-                 {"backend", backend.name},
+                 {"backend", backend->name},
                  {"memory_bytes", bench_memory_needed(settings, size)},
                  {"bench_s", expected_time(settings, size).with(settings.rounds)},
-                 {"run_s", expected_run_time(backend, *integrator, size, steps)}});
+                 {"run_s", expected_run_time(*backend, *integrator, size, steps)}});
     }
   }
   return table;

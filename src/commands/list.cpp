@@ -68,8 +68,8 @@ Table list_scenes(const ListOptions& /*options*/) {
 
 Table list_backends(const ListOptions& options) {
   Table table;
-  BackendChoice choice(table_backends(), options.own_backends);
-  std::vector<const BackendInfo*> all = table_backends();
+  std::vector<const BackendInfo*> all = with_garment_backends(table_backends());
+  BackendChoice choice(all, options.own_backends);
   std::ranges::copy(choice.shipped(), std::back_inserter(all));
   std::ranges::copy(choice.described(), std::back_inserter(all));
   for (const BackendInfo* backend : all) {

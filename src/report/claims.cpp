@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "output/tables/results.h"
 #include "platform/files.h"
 #include "report/report_internal.h"
 #include "scene/fields/fields.h"
@@ -12,10 +13,12 @@ namespace {
 
 constexpr std::size_t most_claims = 100;
 constexpr std::array<std::string_view, 2> paper_words{"Hong et al. (2016)", "Vassilev"};
+/// What stands for the shipped garments, of which no numbers are published.
+constexpr std::string_view table_of_garments = "figure6";
 constexpr std::array<std::string_view, 2> device_words{"any", "GPU"}, of_words{"each", "average"};
 
 void visit_test(FieldVisitor& fields, ClaimTest& test) {
-  fields.text({"scenes", "The published table whose scenes decide: table1, table3."}, Presence::required,
+  fields.text({"scenes", "The table whose scenes decide: table1, table3 or figure6."}, Presence::required,
               test.scenes);
   fields.text({"fast", "The backend that is said to be faster."}, Presence::required, test.fast);
   fields.text({"slow", "The backend that it is compared with."}, Presence::required, test.slow);
@@ -57,7 +60,8 @@ std::string configuration_of(const PaperLegend& legend, std::string_view backend
 
 /// Does the paper run on several threads what the backend stands for?
 bool has_threads(const PaperLegend& legend, std::string_view backend) {
-  return configuration_of(legend, backend).find("multi-thread") != std::string::npos;
+  const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
+  return found != legend.backends.end() && found->has_threads;
 }
 
 /// Did the row run on what the claim is about? A device of OpenCL that is this processor is no GPU, and one
@@ -123,19 +127,26 @@ std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, c
                      test.of_average ? ", geometric mean " + times(geometric_mean(all)) : "");
 }
 
+/// The scenes that decide, and what was measured.
+struct Measured {
+  const std::vector<PaperScene>& scenes;
+  RowPointers rows;
+  const PaperLegend& legend;
+  const Provenance& provenance;
+};
+
 /// The measured ratios of a claim.
-std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const PaperScenes& scenes,
-                                           const Provenance& provenance) {
+std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const Measured& measured) {
   const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
                            const std::string& of_slow) -> std::optional<RatioInterval> {
-    const ResultRow* fast = scenes.row(scene, test.fast, of_fast);
-    const ResultRow* slow = scenes.row(scene, test.slow, of_slow);
-    if (!may_decide(fast, test, scenes.legend(), provenance) ||
-        !may_decide(slow, test, scenes.legend(), provenance))
+    const ResultRow* fast = find_row(measured.rows, scene.name, test.fast, of_fast);
+    const ResultRow* slow = find_row(measured.rows, scene.name, test.slow, of_slow);
+    if (!may_decide(fast, test, measured.legend, measured.provenance) ||
+        !may_decide(slow, test, measured.legend, measured.provenance))
       return std::nullopt;
     return times_as_fast(fast, slow);
   };
-  return ratios_of(test, scenes.legend(), scenes.scenes(),
+  return ratios_of(test, measured.legend, measured.scenes,
                    [&](const PaperScene& scene, const std::string& of_fast, const std::string& of_slow) {
                      const auto ratio = speedup(scene, of_fast, of_slow);
                      if (test.gains_more_than.empty()) return ratio;
@@ -172,19 +183,28 @@ void judge_ratios(JudgedClaim& judged, const ClaimTest& test, const std::vector<
                     times(test.at_least), below, std::ssize(all) - above - below);
 }
 
-JudgedClaim judge_rows(const Claim& claim, const PaperScenes& scenes, const PublishedTable& table,
-                       const Provenance& provenance) {
+JudgedClaim judge_rows(const Claim& claim, const Measured& measured, std::string published = {}) {
   const ClaimTest& test = *claim.test;
-  JudgedClaim judged{.claim = &claim, .published = published_ratios(test, scenes.legend(), table)};
-  if (const auto ratios = measured_ratios(test, scenes, provenance); !ratios.empty())
+  JudgedClaim judged{.claim = &claim, .published = std::move(published)};
+  if (const auto ratios = measured_ratios(test, measured); !ratios.empty())
     judge_ratios(judged, test, ratios);
   else if (!claim.needs.empty())
     judged.measured = "needs " + claim.needs;
   else
     judged.measured = fmt::format("needs verified rows of `{}`{}{}", test.fast,
                                   test.slow == test.fast ? "" : fmt::format(" and `{}`", test.slow),
-                                  has_threads(scenes.legend(), test.fast) ? " on several threads" : "");
+                                  has_threads(measured.legend, test.fast) ? " on several threads" : "");
   return judged;
+}
+
+/// The garments of mssim's that any row was dressed in.
+std::vector<PaperScene> shipped_garments(RowPointers rows) {
+  std::vector<PaperScene> scenes;
+  for (const ResultRow* row : rows)
+    if (row->dressing && row->scene_as_shipped &&
+        std::ranges::find(scenes, row->scene, &PaperScene::name) == scenes.end())
+      scenes.push_back({row->scene, row->nodes, 0});
+  return scenes;
 }
 
 }  // namespace
@@ -214,17 +234,23 @@ std::string_view name_of(ClaimOutcome outcome) {
 
 std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& input) {
   const Provenance provenance = folder.provenance.value_or(Provenance());
+  std::vector<const ResultRow*> rows;
+  for (const ResultRow& row : folder.rows) rows.push_back(&row);
   std::vector<JudgedClaim> all;
   for (const PublishedTable& table : input.published) {
-    const PaperScenes scenes(folder.rows, input.legend, table);
-    if (scenes.scenes().empty()) continue;
+    const std::vector<PaperScene> scenes = table.scenes_of(folder.rows);
+    if (scenes.empty()) continue;
     for (const Claim& claim : input.claims)
       if (claim.test && claim.test->scenes == table.info().name)
-        all.push_back(judge_rows(claim, scenes, table, provenance));
+        all.push_back(judge_rows(claim, {scenes, rows, input.legend, provenance},
+                                 published_ratios(*claim.test, input.legend, table)));
   }
-  const bool has_garments = std::ranges::any_of(
-      folder.rows, [](const ResultRow& row) { return row.dressing && row.scene_as_shipped; });
   const bool of_hong = !all.empty();
+  const std::vector<PaperScene> garments = shipped_garments(rows);
+  const bool has_garments = !garments.empty();
+  for (const Claim& claim : input.claims)
+    if (claim.test && claim.test->scenes == table_of_garments && has_garments)
+      all.push_back(judge_rows(claim, {garments, rows, input.legend, provenance}));
   for (const Claim& claim : input.claims)
     if (!claim.test && (claim.paper == paper_words.front() ? of_hong : has_garments))
       all.push_back({.claim = &claim, .measured = "needs " + claim.needs});

@@ -83,9 +83,9 @@ std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_v
 enum class ContentKind : std::uint8_t { cloth, bodies, garment, other };
 ContentKind kind_of(const ResultRow& row);
 
-/// How rows decide a claim: the ratio of two backends' times on the scenes of a published table.
+/// How rows decide a claim: the ratio of two backends' times on the scenes of a table.
 struct ClaimTest {
-  std::string scenes;                    ///< name of the published table
+  std::string scenes;                    ///< name of the published table; figure6: all garments of mssim's
   std::string fast, slow;                ///< backends
   std::vector<std::string> integrators;  ///< empty: the paper's
   std::string slow_integrator;           ///< of `slow`; empty: that of `fast`

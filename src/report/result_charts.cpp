@@ -4,6 +4,7 @@
 #include <map>
 
 #include "bench/roofline/roofline.h"
+#include "garment/output/garment_tables.h"
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "text/text.h"
@@ -175,7 +176,7 @@ std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::s
   for (const ResultRow& row : rows) {
     if (!row.dressing || !counts(row)) continue;
     const std::string name =
-        row.backend + (row.backend == baseline_name ? ", without parallelisation" : ", with parallelisation");
+        row.backend + (is_parallel(row.backend) ? ", with parallelisation" : ", without parallelisation");
     auto series = std::ranges::find(chart.series, name, &Series::name);
     if (series == chart.series.end())
       series = chart.series.insert(series, Series{.name = name, .family = row.backend});

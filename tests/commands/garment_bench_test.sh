@@ -67,6 +67,35 @@ bench 3 --scene jeans1k --backend openmp,hybrid --rounds 1
 bench 3 --scene jeans1k --backend openmp --integrator rk4 --rounds 1 --format json
 grep -q '"status": "unsupported: a garment is dressed with semi-euler only' out || fail "rk4: $(cat out)"
 
+# Algorithm 1 as printed: four rows, each verified against itself and timed, whether it fits or not.
+printed="algorithm1 algorithm1-simd algorithm1-threads algorithm1-threads-simd"
+"$mssim" list backends --format csv >out
+for backend in $printed; do grep -q "^$backend,,true," out || fail "list backends: $(cat out)"; done
+bench 0 --scene jeans1k --backend "serial,${printed// /,}" --integrator semi-euler --threads 2 --rounds 1 --out printed
+for backend in $printed; do
+  has printed/timings.csv verified "$backend" true
+  has printed/garment.csv status "$backend" ok
+  [ -n "$(column printed/garment.csv dressing_iterations "$backend")" ] || fail "$backend has not dressed"
+  case $backend in
+    *threads*) has printed/timings.csv threads "$backend" 2 ;;
+    *) has printed/timings.csv threads "$backend" 1 ;;
+  esac
+done
+[ "$(column printed/timings.csv state_hash algorithm1)" = "$(column printed/timings.csv state_hash algorithm1-threads-simd)" ] ||
+  fail "SIMD instructions or threads change the result: $(cat printed/timings.csv)"
+for line in 'without: .algorithm1.' 'without: .algorithm1-simd.' 'with: .algorithm1-threads.' 'with: .algorithm1-threads-simd.'; do
+  grep -q "as printed, $line | \*\*" printed/figure6.md || fail "figure6.md has no line $line: $(cat printed/figure6.md)"
+done
+grep -q 'i7-4702MQ' printed/figure6.md && grep -q 'Cortex-A17' printed/figure6.md || fail "figure6.md does not name the paper's devices"
+grep -q '^algorithm1-threads,semi-euler,with,ms_per_iteration,[0-9.e-]*$' printed/figure6.csv || fail "figure6.csv: $(cat printed/figure6.csv)"
+ends 0 report printed --no-runs --out printed.html
+for claim in parallel-iterations simd-is-faster; do
+  grep -Eo "\"name\": ?\"$claim\"[^}]*" printed.html >out || fail "the report has no claim $claim"
+  ! grep -q 'not testable' out || fail "$claim is not judged: $(cat out)"
+done
+bench 3 --scene cloth2500 --backend serial,algorithm1 --integrator semi-euler --rounds 1 --out cloth
+grep -q 'algorithm1.*unsupported: .*garments' cloth/timings.csv || fail "a cloth: $(cat cloth/timings.csv)"
+
 # What does not fit is no result.
 sed 's/"correction": "bounded"/"correction": "none"/; s/"bounded": {[^}]*}/"none": {}/; s/": 200,/": 60,/' \
   "$source/scenes/jeans1k.json" >slack.json
@@ -79,6 +108,7 @@ head -n 1 slack/garment.csv | grep elongation_999_within >/dev/null || fail "the
 # Plans, budgets, and what does not go with a garment.
 bench 0 --suite garment --dry-run
 [ "$(grep -c '^jeans[0-9]*k ' out)" -eq 6 ] || fail "the plan has not six jeans: $(cat out)"
+for backend in $printed; do grep -q "\b$backend\b" out || fail "the plan has no $backend: $(cat out)"; done
 awk '/^about/ { exit !($2 > 20 && $2 < 600) }' out || fail "the suite is expected to take $(tail -n 1 out)"
 expect 2 'time-budget is too short' bench --scene jeans1k --time-budget 0.1
 expect 2 '.--trace cannot be used with jeans1k, which is a garment' bench --scene jeans1k --trace --out traced

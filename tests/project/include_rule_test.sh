@@ -68,7 +68,7 @@ guide                 text statistics platform laws integrators model backends/i
 
 output/tables         text statistics platform bench/machine bench/results
 output/guide          text integrators backends guide output/tables
-garment/output        text garment bench/results hdf5 output/tables
+garment/output        text garment garment/stepping bench/results hdf5 output/tables
 output/traces         text platform geometry model hdf5 garment/output
 output/pictures       platform geometry render picture model scene/fields garment output/traces
 output/exports        text platform geometry model hdf5 output/traces
@@ -105,7 +105,7 @@ garment/bench         garment_bench
 garment/fitting       fitting
 garment/layers        cloth_contacts cloth_cloth
 garment/output        garment_tables h5md_garment
-garment/stepping      dressing_backend
+garment/stepping      dressing_backend published_dressing
 platform              files process supervised_process machine
 mesh                  meshing surface_file tetgen
 model                 system node_shape

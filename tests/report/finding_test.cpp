@@ -71,7 +71,9 @@ TEST(Claims, AreNamedOnceAndEitherTestedOrNeedSomething) {
     EXPECT_TRUE(names.insert(claim.name).second) << claim.name;
     EXPECT_TRUE(claim.test || !claim.needs.empty()) << claim.name;
     if (!claim.test) continue;
-    EXPECT_TRUE(claim.test->scenes == "table1" || claim.test->scenes == "table3") << claim.name;
+    EXPECT_TRUE(claim.test->scenes == "table1" || claim.test->scenes == "table3" ||
+                claim.test->scenes == "figure6")
+        << claim.name;
     for (const std::string& backend : {claim.test->fast, claim.test->slow})
       EXPECT_NE(std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name),
                 legend.backends.end())
@@ -203,6 +205,34 @@ TEST(Claims, AboutAGainCompareSpeedUps) {
   // 23.954 / 1.688 over 19.475 / 1.827 at 2,500 nodes is the largest of the six, 399.049 / 22.393 over
   // 331.933 / 20.264 the least.
   EXPECT_THAT(with(10, 15).published, testing::HasSubstr("1.09× to 1.33× (6 ratios)"));
+}
+
+TEST(Claims, OfGarmentsAreDecidedByThePublishedAlgorithmOnEachGarment) {
+  const auto jeans = [](const std::string& backend, std::uint64_t nodes, double ms) {
+    ResultRow row = cloth_row(nodes, 1, backend, ms);
+    row.scene = "jeans" + std::to_string(nodes);
+    row.springs_published.reset();
+    row.dressing.emplace();
+    return row;
+  };
+  const auto outcome = [&](double small_ms, double large_ms, int threads) {
+    std::vector<ResultRow> rows{jeans("algorithm1-simd", 1000, 1), jeans("algorithm1-simd", 4000, 4),
+                                jeans("algorithm1-threads-simd", 1000, small_ms),
+                                jeans("algorithm1-threads-simd", 4000, large_ms)};
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].threads = i < 2 ? 1 : threads;
+    EXPECT_EQ(outcome_of("simd-is-faster", rows), ClaimOutcome::not_testable) << "without rows without SIMD";
+    EXPECT_EQ(outcome_of("parallel-on-device", rows), ClaimOutcome::not_testable);
+    return outcome_of("parallel-iterations", rows);
+  };
+  EXPECT_EQ(outcome(0.5, 2, 2), ClaimOutcome::held);
+  EXPECT_EQ(outcome(1.5, 2, 2), ClaimOutcome::not_held) << "of the smaller one";
+  EXPECT_EQ(outcome(0.5, 2, 1), ClaimOutcome::not_testable) << "one thread is not parallel";
+  std::vector<ResultRow> rows{jeans("algorithm1", 1000, 1.5), jeans("algorithm1-simd", 1000, 1)};
+  EXPECT_EQ(outcome_of("simd-is-faster", rows), ClaimOutcome::held);
+  for (ResultRow& row : rows) row.scene_as_shipped = false;
+  ReportFolder folder;
+  folder.rows = rows;
+  EXPECT_TRUE(judge(folder, of_papers()).empty());
 }
 
 TEST(Claims, AreNoneWithoutAPublishedSceneAndSayWhichRowsAreMissing) {

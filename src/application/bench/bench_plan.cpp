@@ -214,7 +214,8 @@ double expected_rounds(const BenchPlan& plan) {
 BenchPlan plan_of(const BenchOptions& options) {
   const Comparison& comparison = comparison_of_suite(options.suite);
   BenchPlan plan;
-  plan.backends = BackendChoice(comparison.backends(), options.own_backends, options.scenes);
+  plan.backends =
+      BackendChoice(with_garment_backends(comparison.backends()), options.own_backends, options.scenes);
   plan.settings = settings_of(options, comparison, plan.backends);
   plan.time_budget_s = options.time_budget_s;
   plan.output = options.output;

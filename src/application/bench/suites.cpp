@@ -66,6 +66,9 @@ std::vector<const BackendInfo*> all_methods() {
   return rows;
 }
 
+/// The other backends are rows that say that they cannot dress.
+std::vector<const BackendInfo*> all_that_dress() { return with_garment_backends(table_backends()); }
+
 /// What peers and ranks are held against: the plain list and the fastest of the host's.
 std::vector<const BackendInfo*> baseline_and_best() { return {&baseline_backend(), &best_host_backend()}; }
 
@@ -170,7 +173,7 @@ constexpr auto table = std::to_array<Suite>({
      false,
      true,
      jeans,
-     {table_backends, cheapest_method, garment_tables}},
+     {all_that_dress, cheapest_method, garment_tables}},
     {guide_suite,
      "which integrator, backend and step for cloths and bodies: mssim guide, scene by scene",
      false,
@@ -189,13 +192,14 @@ PaperLegend paper_legend() {
   PaperLegend legend;
   std::set<std::string_view> variants;
   for (const Suite& suite : table) variants.insert(suite.variants.begin(), suite.variants.end());
-  for (const BackendInfo& backend : backends()) {
+  for (const BackendInfo* backend : with_garment_backends(table_backends())) {
     const auto add = [&](std::string_view name) {
-      legend.backends.push_back({std::string(name), std::string(backend.paper_configuration)});
+      legend.backends.push_back({std::string(name), std::string(backend->paper_configuration),
+                                 backend->makes_threads.has_value()});
     };
-    add(backend.name);
+    add(backend->name);
     for (const std::string_view variant : variants)
-      if (is_variant(variant, backend.name)) add(variant);
+      if (is_variant(variant, backend->name)) add(variant);
   }
   for (const Integrator* integrator : all_integrators)
     legend.integrators.push_back({std::string(integrator->name), std::string(integrator->paper_name),

@@ -51,8 +51,10 @@ inline constexpr int stretches = verification_steps / stretch_steps;
 ///   deciding otherwise in every step, would move a node: the speed at which it moves nodes out, times the
 ///   stretch's time, 5,600 to 43,000; they show 400 to 1,900.
 /// tests/garment/bench/garment_bench_test.cpp proves that such mistakes are found.
-GarmentReference run_garment_reference(const System& system, const Integrator& integrator, double dt_s,
-                                       const State& draped);
+///
+/// `backend`: the algorithm in double precision.
+GarmentReference run_garment_reference(Backend& backend, const System& system, const Integrator& integrator,
+                                       double dt_s, const State& draped);
 
 /// Steps the backend, which dresses, and compares. The position error is the larger of those that are held
 /// against the tolerance; the drift that of the sum over all stretches. Leaves the backend in any state.
@@ -64,8 +66,10 @@ Verification verify_garment(Backend& backend, const System& system, const Garmen
 std::optional<State> draped_state(const SceneJob& job, const std::function<bool()>& stop);
 
 /// Dresses the job's garment with the combination's backend and keeps how that went; where an earlier row has
-/// it already, keeps that. The row has failed where a number of the fit is out of bounds or not finite.
-/// Returns false when it was asked to stop.
-bool dress_combination(Combination& combination, const SceneJob& job, const std::function<bool()>& stop);
+/// it already, keeps that. The row has failed where a number of the fit is out of bounds or not finite; one
+/// of a published algorithm is noted instead, because what a paper's method does is a result, too. Returns
+/// false when it was asked to stop.
+bool dress_combination(Combination& combination, const SceneJob& job, const BackendInfo& info,
+                       const std::function<bool()>& stop);
 
 }  // namespace mssim

@@ -72,15 +72,22 @@ class BodyMaps {
   /// frame().rows x frame().columns, row-major (kernels/parameters.h).
   std::span<const BodyPixel> pixels() const { return pixels_; }
 
-  /// How the point (m) stands to the body. Beside the maps the distance is 1e30 m, and for coordinates that
-  /// are not finite it is not less than zero: no contact.
+  /// The pixel that a point (m) lies in; of the border beside the maps and for coordinates that are not
+  /// finite.
   template <class Real>
-  BodyContact<Real> contact(Real x, Real y, Real z) const {
+  const BodyPixel& pixel_at(Real x, Real y) const {
     const auto column = static_cast<std::size_t>(body_column(
         x, Real{frame_.left}, Real{frame_.pixels_per_metre}, static_cast<Real>(frame_.columns - 1)));
     const auto row = static_cast<std::size_t>(body_column(
         y, Real{frame_.bottom}, Real{frame_.pixels_per_metre}, static_cast<Real>(frame_.rows - 1)));
-    const BodyPixel& p = pixels_[row * static_cast<std::size_t>(frame_.columns) + column];
+    return pixels_[row * static_cast<std::size_t>(frame_.columns) + column];
+  }
+
+  /// How the point (m) stands to the body. Beside the maps the distance is 1e30 m, and for coordinates that
+  /// are not finite it is not less than zero: no contact.
+  template <class Real>
+  BodyContact<Real> contact(Real x, Real y, Real z) const {
+    const BodyPixel& p = pixel_at(x, y);
     return body_contact(BodyPlanes<Real>{p.front_x, p.front_y, p.front_z, p.front_at, p.back_x, p.back_y,
                                          p.back_z, p.back_at},
                         x, y, z);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/results/result.h"
@@ -21,8 +22,13 @@ std::string garment_csv(std::span<const ResultRow> rows);
 /// CsvError.
 void read_dressings(const CsvTable& table, std::span<ResultRow> rows);
 
+/// Whether a backend's rows stand for the curves of Figure 6 with parallelisation: those of all but `serial`
+/// and of the published loops that are made for one thread.
+bool is_parallel(std::string_view backend);
+
 /// Makes the table `figure6` of the scenes that are garments, laid out as Figure 6 of Vassilev: milliseconds
-/// an iteration against vertices, without parallelisation (`serial`) and with (the other backends), and what
+/// an iteration against vertices, without parallelisation and with, of Algorithm 1 as printed and of mssim's
+/// own form of it, and what
 /// the figure does not show: the speed-up, the time of an iteration and vertex, and how long the whole
 /// dressing took. None where nothing was dressed.
 TableMaker garment_tables();

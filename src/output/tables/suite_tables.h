@@ -111,7 +111,8 @@ std::vector<PublishedBody> published_bodies(const CsvTable& table);
 struct PaperLegend {
   struct Backend {
     std::string name;
-    std::string configuration;  ///< a name of paper_configurations
+    std::string configuration;  ///< a name of paper_configurations; empty where it has none
+    bool has_threads = false;   ///< it stands for several threads
   };
   struct Integrator {
     std::string name;

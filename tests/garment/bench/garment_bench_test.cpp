@@ -18,6 +18,7 @@
 #include "garment/contact/body_maps.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
+#include "garment/stepping/published_dressing.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -148,6 +149,21 @@ TEST_F(BenchGarment, HasFailedWhereItDoesNotFit) {
   EXPECT_EQ(row.dressing->fit.front().within, false);
 }
 
+TEST_F(BenchGarment, OfAPublishedAlgorithmIsTimedAndNotedWhereItDoesNotFit) {
+  job_.backends = {&garment_backends().front()};
+  EXPECT_EQ(run().front().note, "");
+  job_.garment->bounds.largest_gap = -1;
+  ResultRow row = run().front();
+  EXPECT_EQ(row.status, "ok");
+  EXPECT_TRUE(row.verified);
+  EXPECT_GT(row.ms_per_step, 0);
+  ASSERT_TRUE(row.dressing);
+  EXPECT_EQ(row.dressing->fit.front().within, false);
+  EXPECT_THAT(row.note, HasSubstr("largest_gap_mm"));
+  job_.earlier = {row};
+  EXPECT_EQ(run().front().note, row.note) << "resumed";
+}
+
 TEST_F(BenchGarment, HasRowsForMethodsThatDoNotDress) {
   job_.integrators = {find_integrator("rk4")};
   const std::vector<ResultRow> rows = run();
@@ -179,7 +195,8 @@ struct Jeans {
         dress(*backend, system, dt_s, {}, [](const State&, std::int64_t) { return true; });
     EXPECT_TRUE(result.settled);
     draped = result.state;
-    reference = run_garment_reference(system, semi_euler, dt_s, draped);
+    const auto exact = make_reference_dressing(system, semi_euler, dt_s);
+    reference = run_garment_reference(*exact, system, semi_euler, dt_s, draped);
   }
 };
 
@@ -191,6 +208,25 @@ const Jeans& jeans() {
 Verification verify_stepping(const System& stepped) {
   return verify_garment(*make_serial_dressing(stepped, semi_euler, jeans().dt_s), jeans().system,
                         jeans().reference, jeans().dt_s);
+}
+
+TEST(GarmentVerification, ComparesAPublishedAlgorithmWithItself) {
+  const Jeans& scene = jeans();
+  const auto exact = make_published_reference(scene.system, semi_euler, scene.dt_s);
+  const GarmentReference published =
+      run_garment_reference(*exact, scene.system, semi_euler, scene.dt_s, scene.draped);
+  ASSERT_FALSE(published.failure) << *published.failure;
+  for (const PublishedDressing& dressing : published_dressings()) {
+    const auto backend = dressing.make(scene.system, semi_euler, scene.dt_s, {.threads = 2});
+    const Verification found = verify_garment(*backend, scene.system, published, scene.dt_s);
+    EXPECT_FALSE(found.failure) << dressing.name << ": " << *found.failure;
+    EXPECT_TRUE(verify_garment(*backend, scene.system, scene.reference, scene.dt_s).failure)
+        << dressing.name << " is taken for mssim's own form";
+  }
+  System weaker = scene.system;
+  std::get<Garment>(weaker.topology).dressing.correction_threshold = 0.06;
+  const auto backend = published_dressings().front().make(weaker, semi_euler, scene.dt_s, {.threads = 1});
+  EXPECT_TRUE(verify_garment(*backend, scene.system, published, scene.dt_s).failure);
 }
 
 TEST(GarmentVerification, PassesTheBackendsThatDress) {
@@ -315,8 +351,9 @@ TEST(GarmentVerification, SaysWhereASimulationBlowsUp) {
   const auto backend = make_serial_dressing(scene.system, semi_euler, 40 * scene.dt_s);
   const Verification found = verify_garment(*backend, scene.system, scene.reference, 40 * scene.dt_s);
   ASSERT_TRUE(found.failure);
+  const auto exact = make_reference_dressing(scene.system, semi_euler, 1e6 * scene.dt_s);
   const GarmentReference blown_up =
-      run_garment_reference(scene.system, semi_euler, 1e6 * scene.dt_s, scene.draped);
+      run_garment_reference(*exact, scene.system, semi_euler, 1e6 * scene.dt_s, scene.draped);
   ASSERT_TRUE(blown_up.failure);
   EXPECT_NE(blown_up.failure->find("the double-precision reference blew up at step"), std::string::npos)
       << *blown_up.failure;

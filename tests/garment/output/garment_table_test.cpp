@@ -142,6 +142,23 @@ TEST(GarmentTable, IsLaidOutAsTheFigure) {
   EXPECT_EQ(page.find("cloth2500"), std::string::npos);
 }
 
+TEST(GarmentTable, SetsThePublishedAlgorithmBesideAndNamesWhatDoesNotFit) {
+  std::vector<ResultRow> rows = garment_rows();
+  rows.push_back(dressed_row("large", 4000, "algorithm1-simd", 3, 2.0 / 3));
+  rows.push_back(dressed_row("large", 4000, "algorithm1-threads-simd", 1.5, 4.0 / 3));
+  EXPECT_EQ(markdown(table_of(rows).page).find("not dressed within bounds"), std::string::npos);
+  rows.back().dressing->fit.front().within = false;
+  rows.back().note = "largest_gap_mm is 12";
+  const std::string page = markdown(table_of(rows).page);
+  EXPECT_THAT(page, AllOf(HasSubstr("as printed, without: `algorithm1-simd` | – | **3.00**"),
+                          HasSubstr("as printed, with: `algorithm1-threads-simd` | – | **1.50**"),
+                          HasSubstr("i7-4702MQ"), HasSubstr("Cortex-A17"),
+                          HasSubstr("- `algorithm1-threads-simd` on `large`: largest_gap_mm is 12")));
+  EXPECT_THAT(table_csv(table_of(rows).data),
+              AllOf(HasSubstr("\nalgorithm1-simd,semi-euler,without,ms_per_iteration,,3\n"),
+                    HasSubstr("\nalgorithm1-threads-simd,semi-euler,with,ms_per_iteration,,1.5\n")));
+}
+
 TEST(GarmentTable, AsCsvHasALineAQuantity) {
   EXPECT_THAT(table_csv(table_of(garment_rows()).data),
               AllOf(HasSubstr("\n,,,vertices,1000,4000\n"),

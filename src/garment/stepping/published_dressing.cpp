@@ -1,0 +1,349 @@
+#include "garment/stepping/published_dressing.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "garment/contact/body_maps.h"
+#include "garment/stepping/dressing_rules.h"
+#include "laws/host_laws.h"
+
+namespace mssim {
+namespace {
+
+/// A point or vector in one register of four floats, the last of which is 0: NEON has such registers, and so
+/// has every x86-64. The compiler makes the instructions, as it does of intrinsic functions.
+class Vec3InRegister {
+ public:
+  Vec3InRegister() = default;
+  Vec3InRegister(float x, float y, float z) : lanes_{x, y, z, 0} {}
+  float x() const { return lanes_[0]; }
+  float y() const { return lanes_[1]; }
+  float z() const { return lanes_[2]; }
+
+  friend Vec3InRegister operator+(Vec3InRegister a, Vec3InRegister b) { return of(a.lanes_ + b.lanes_); }
+  friend Vec3InRegister operator-(Vec3InRegister a, Vec3InRegister b) { return of(a.lanes_ - b.lanes_); }
+  friend Vec3InRegister operator*(float s, Vec3InRegister a) { return of(s * a.lanes_); }
+  Vec3InRegister& operator+=(Vec3InRegister a) { return *this = *this + a; }
+  Vec3InRegister& operator-=(Vec3InRegister a) { return *this = *this - a; }
+  /// In the order of dot() of Vec3, so that the bits are the same.
+  friend float dot(Vec3InRegister a, Vec3InRegister b) {
+    const Lanes products = a.lanes_ * b.lanes_;
+    return products[0] + products[1] + products[2];
+  }
+
+ private:
+  using Lanes [[gnu::vector_size(16)]] = float;
+  static Vec3InRegister of(Lanes lanes) {
+    Vec3InRegister result;
+    result.lanes_ = lanes;
+    return result;
+  }
+  Lanes lanes_{};
+};
+
+template <class Vector>
+struct Components {
+  using Real = float;
+  static Vec3<Real> of(Vector a) { return {a.x(), a.y(), a.z()}; }
+};
+template <class Number>
+struct Components<Vec3<Number>> {
+  using Real = Number;
+  static const Vec3<Real>& of(const Vec3<Number>& a) { return a; }
+};
+
+/// An order for threads to take things in that touch nodes: batches, and rounds of batches that have no node
+/// in common. Who takes a round's batches one after the other gets the same result.
+struct ThreadSafeOrder {
+  std::vector<std::uint32_t> things;  ///< batch after batch; within one in their own order
+  std::vector<std::size_t> batches;   ///< [batches + 1] where each begins in `things`
+  std::vector<std::size_t> rounds;    ///< [rounds + 1] where each begins in `batches`
+};
+
+/// `nodes_of`: the nodes that a thing touches.
+template <class NodesOf>
+ThreadSafeOrder thread_safe_order(std::size_t nodes, std::size_t count, std::size_t batch_size,
+                                  const NodesOf& nodes_of) {
+  ThreadSafeOrder order{{}, {0}, {0}};
+  std::vector<std::size_t> begins;
+  for (std::size_t begin = 0; begin < count; begin += batch_size) begins.push_back(begin);
+  while (!begins.empty()) {
+    std::vector<std::uint8_t> taken(nodes);
+    std::vector<std::size_t> later;
+    for (const std::size_t begin : begins) {
+      const std::size_t end = std::min(begin + batch_size, count);
+      const auto for_all = [&](const auto& act) {
+        for (std::size_t thing = begin; thing < end; ++thing)
+          for (const std::uint32_t node : nodes_of(thing)) act(node);
+      };
+      bool free = true;
+      for_all([&](std::uint32_t node) { free = free && taken[node] == 0; });
+      if (!free) {
+        later.push_back(begin);
+        continue;
+      }
+      for_all([&](std::uint32_t node) { taken[node] = 1; });
+      for (std::size_t thing = begin; thing < end; ++thing)
+        order.things.push_back(static_cast<std::uint32_t>(thing));
+      order.batches.push_back(order.things.size());
+    }
+    order.rounds.push_back(order.batches.size() - 1);
+    begins = std::move(later);
+  }
+  return order;
+}
+
+/// Large enough to be worth a turn of a `parallel for`, and so small that many threads get some of small
+/// jeans.
+constexpr std::size_t springs_of_a_batch = 128, joints_of_a_batch = 16;
+
+template <class Vector, bool parallel>
+class PublishedLoops final : public DressingBackend {
+ public:
+  PublishedLoops(const System& system, double dt_s, int threads)
+      : system_(system),
+        garment_(std::get<Garment>(system.topology)),
+        rules_(garment_.dressing),
+        dt_(static_cast<Real>(dt_s)),
+        dt_s_(dt_s),
+        threads_(parallel ? std::max(1, threads) : 1),
+        nodes_(system.nodes()),
+        force_(system.nodes()),
+        spring_order_(thread_safe_order(system.nodes(), system.springs.size(), springs_of_a_batch,
+                                        [&](std::size_t i) {
+                                          const Spring& spring = system.springs[i];
+                                          return std::array{spring.first, spring.second};
+                                        })),
+        joint_order_(thread_safe_order(system.nodes(), garment_.joints.size(), joints_of_a_batch,
+                                       [&](std::size_t i) {
+                                         const Joint& joint = garment_.joints[i];
+                                         return std::array{joint.node, joint.edge_first, joint.edge_second};
+                                       })),
+        sewn_stiffness_(garment_.joints.size()) {
+    for (const double mass : system.node_mass) {
+      mass_.push_back(static_cast<Real>(mass));
+      inverse_mass_.push_back(static_cast<Real>(1 / mass));
+    }
+    for (const std::uint32_t pin : system.pins) inverse_mass_[pin] = 0;
+    const Real limit = 1 + static_cast<Real>(rules_.correction_threshold);
+    for (const std::uint32_t i : spring_order_.things) {
+      const Spring& spring = system.springs[i];
+      const auto rest = static_cast<Real>(spring.rest_length);
+      const auto stiffness = static_cast<Real>(system.materials[spring.kind].stiffness);
+      springs_.push_back(
+          {spring.first, spring.second, linear_spring<Real>({.stiffness = stiffness}, rest), rest * limit});
+    }
+    std::vector<double> stiffest(system.nodes());
+    for (const Spring& spring : system.springs)
+      for (const std::uint32_t node : {spring.first, spring.second})
+        stiffest[node] = std::max(stiffest[node], system.materials[spring.kind].stiffness);
+    for (std::size_t j = 0; j < sewn_stiffness_.size(); ++j) {
+      const Joint& joint = garment_.joints[j];
+      sewn_stiffness_[j] = static_cast<Real>(
+          std::min({stiffest[joint.node], stiffest[joint.edge_first], stiffest[joint.edge_second]}));
+    }
+    for (const GarmentPanel& panel : garment_.panels)
+      bodies_.insert(bodies_.end(), panel.nodes(), garment_.body_met_by(panel));
+    PublishedLoops::set_state(system.start);
+  }
+
+  void set_state(const State& state) override {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const auto x = vec3_cast<Real>(state.position[i]), v = vec3_cast<Real>(state.velocity[i]);
+      nodes_[i] = {{x.x, x.y, x.z}, {v.x, v.y, v.z}};
+    }
+    sewn_.assign(garment_.joints.size(), state.draped ? 1 : 0);
+    progress_ = first_progress(garment_, state);
+    steps_ = 0;
+  }
+
+  State state() const override {
+    State state;
+    for (const Node& node : nodes_) {
+      state.position.push_back(vec3_cast<double>(Components<Vector>::of(node.x)));
+      state.velocity.push_back(vec3_cast<double>(Components<Vector>::of(node.v)));
+    }
+    state.draped = progress_.draping;
+    return state;
+  }
+
+  int threads() const override { return threads_; }
+  DressingProgress progress() const override { return progress_; }
+
+  void step(int count) override {
+    for (int step = 0; step < count; ++step) {
+      const auto phase = phase_rule<Real>(system_, rules_, progress_.draping);
+      const Vector gravity{0, -phase.gravity, 0};
+      const double time_s = static_cast<double>(steps_) * dt_s_;
+      for_each_of(spring_order_, [&](std::size_t i) { add_spring_force(springs_[i]); });
+      for_each(nodes_.size(), [&](std::size_t i) { add_external_forces(i, phase.damping, gravity); });
+      for_each_of(joint_order_, [&](std::size_t i) { add_joint_force(joint_order_.things[i], time_s); });
+      for_each(nodes_.size(), [&](std::size_t i) { update_velocity(i, phase.friction); });
+      for_each_of(spring_order_, [&](std::size_t i) { correct(springs_[i]); });
+      for_each(nodes_.size(), [&](std::size_t i) { move(i); });
+      end_step();
+    }
+  }
+
+ private:
+  using Real = typename Components<Vector>::Real;
+  struct Node {
+    Vector x;  ///< m
+    Vector v;  ///< m/s
+  };
+  struct ListedSpring {
+    std::uint32_t first, second;
+    LinearSpring<Real> law;
+    Real limit;  ///< m, the length from which on it is over-elongated
+  };
+
+  template <class Act>
+  void for_each(std::size_t count, const Act& act) {
+    if constexpr (parallel) {
+#pragma omp parallel for schedule(static) num_threads(threads_)
+      for (std::size_t i = 0; i < count; ++i) act(i);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) act(i);
+    }
+  }
+
+  template <class Act>
+  void for_each_of(const ThreadSafeOrder& order, const Act& act) {
+    for (std::size_t round = 0; round + 1 < order.rounds.size(); ++round) {
+      const std::size_t first = order.rounds[round];
+      for_each(order.rounds[round + 1] - first, [&](std::size_t batch) {
+        for (std::size_t i = order.batches[first + batch]; i < order.batches[first + batch + 1]; ++i) act(i);
+      });
+    }
+  }
+
+  void add_spring_force(const ListedSpring& spring) {  // loop 1
+    const Vector d = nodes_[spring.second].x - nodes_[spring.first].x;
+    const Vector force = spring_pull(dot(d, d), Real{0}, spring.law) * d;
+    force_[spring.first] += force;
+    force_[spring.second] -= force;
+  }
+
+  void add_external_forces(std::size_t i, Real damping, const Vector& gravity) {  // loop 2
+    force_[i] += mass_[i] * (gravity - damping * nodes_[i].v);
+  }
+
+  void add_joint_force(std::size_t j, double time_s) {  // loop 3
+    const Joint& joint = garment_.joints[j];
+    const auto share = static_cast<Real>(joint.edge_share);
+    const Vector& first = nodes_[joint.edge_first].x;
+    const Vector gap = first + share * (nodes_[joint.edge_second].x - first) - nodes_[joint.node].x;
+    const Real distance = square_root(dot(gap, gap));
+    if (distance < static_cast<Real>(rules_.sewn_gap)) sewn_[j] = 1;
+    const Real per_gap =
+        sewn_[j] != 0 ? sewn_stiffness_[j]
+                      : static_cast<Real>(seam_force(rules_.seam_force, time_s / rules_.seam_force_doubling_s,
+                                                     joint.length, joint.strength)) /
+                            distance;
+    const Vector force = per_gap * gap;
+    force_[joint.node] += force;
+    force_[joint.edge_first] -= (1 - share) * force;
+    force_[joint.edge_second] -= share * force;
+  }
+
+  void update_velocity(std::size_t i, Real friction) {  // loop 4
+    Node& node = nodes_[i];
+    if (inverse_mass_[i] != 0) {
+      node.v += dt_ * (inverse_mass_[i] * force_[i]);
+      if (bodies_[i] != nullptr) meet(*bodies_[i], node, friction);
+    }
+    force_[i] = {};
+  }
+
+  /// kernels/body_contact.h without its push, in operations on vectors.
+  void meet(const BodyMaps& body, Node& node, Real friction) const {
+    const Vector at = node.x + dt_ * node.v;
+    const Vec3<Real> point = Components<Vector>::of(at);
+    const BodyPixel& pixel = body.pixel_at(point.x, point.y);
+    const Vector front{pixel.front_x, pixel.front_y, pixel.front_z};
+    const Vector back{pixel.back_x, pixel.back_y, pixel.back_z};
+    const Real from_front = dot(front, at) - pixel.front_at, from_back = dot(back, at) - pixel.back_at;
+    if (!(std::max(from_front, from_back) < 0)) return;
+    const Vector& outwards = from_front < from_back ? back : front;
+    const Real dropped = std::max(-dot(outwards, node.v), Real{0});
+    const Vector along = node.v + dropped * outwards;
+    node.v = floor_grip(dropped, dot(along, along), friction) * along;
+  }
+
+  void correct(const ListedSpring& spring) {  // loop 5
+    Node &first = nodes_[spring.first], &second = nodes_[spring.second];
+    const Vector d = second.x - first.x;
+    const Real squared = dot(d, d);
+    if (!(elongation_excess(squared, spring.limit) > 0)) return;
+    const Real of_first = inverse_mass_[spring.first], of_second = inverse_mass_[spring.second];
+    const Real impulse =
+        elongation_impulse(squared, dot(second.v - first.v, d), spring.limit, Real{0}, of_first + of_second);
+    first.v += (of_first * impulse) * d;
+    second.v -= (of_second * impulse) * d;
+  }
+
+  void move(std::size_t i) {  // loop 6
+    if (inverse_mass_[i] != 0) nodes_[i].x += dt_ * nodes_[i].v;
+  }
+
+  void end_step() {
+    ++steps_;
+    if (progress_.draping) return;
+    progress_.open_joints = static_cast<std::size_t>(std::ranges::count(sewn_, 0));
+    if (!ends_seaming(rules_, progress_, steps_, dt_s_)) return;
+    std::ranges::fill(sewn_, std::uint8_t{1});
+    progress_ = {0, true, steps_};
+  }
+
+  const System& system_;
+  const Garment& garment_;
+  const DressingSettings& rules_;
+  Real dt_;
+  double dt_s_;
+  int threads_;
+  std::vector<Node> nodes_;
+  std::vector<Vector> force_;  ///< [nodes] N
+  ThreadSafeOrder spring_order_, joint_order_;
+  std::vector<ListedSpring> springs_;    ///< in spring_order_
+  std::vector<Real> mass_;               ///< [nodes] kg
+  std::vector<Real> inverse_mass_;       ///< [nodes] 1/kg, 0 for a pin
+  std::vector<const BodyMaps*> bodies_;  ///< [nodes] that they meet
+  std::vector<Real> sewn_stiffness_;     ///< [joints] N/m
+  std::vector<std::uint8_t> sewn_;       ///< [joints]
+  DressingProgress progress_;
+  std::int64_t steps_ = 0;
+};
+
+template <class Vector, bool parallel>
+std::unique_ptr<DressingBackend> make(const System& system, const Integrator& integrator, double dt_s,
+                                      const ExecutionOptions& options) {
+  require_semi_euler(integrator);
+  if (std::get<Garment>(system.topology).touching)
+    throw Unsupported("Algorithm 1 as printed has no layers that touch each other");
+  return std::make_unique<PublishedLoops<Vector, parallel>>(system, dt_s, options.threads);
+}
+
+constexpr auto table = std::to_array<PublishedDressing>({
+    {"algorithm1", "garments, as published: the six loops of Vassilev's Algorithm 1, one after the other",
+     false, make<Vec3<float>, false>},
+    {"algorithm1-simd", "the same with SIMD instructions for vectors of three components", false,
+     make<Vec3InRegister, false>},
+    {"algorithm1-threads", "the same as algorithm1, each loop a `parallel for`", true,
+     make<Vec3<float>, true>},
+    {"algorithm1-threads-simd", "the same with SIMD instructions", true, make<Vec3InRegister, true>},
+});
+
+}  // namespace
+
+std::span<const PublishedDressing> published_dressings() { return table; }
+
+std::unique_ptr<DressingBackend> make_published_reference(const System& system, const Integrator& integrator,
+                                                          double dt_s) {
+  return make<Vec3<double>, false>(system, integrator, dt_s, {});
+}
+
+}  // namespace mssim
