@@ -145,9 +145,10 @@ TEST(Claims, AboutThreadsAreNotDecidedByOne) {
 TEST(Claims, AboutThreadsAreDecidedByAsManyAsProcessors) {
   const ResultRow serial = small("serial", 1);
   const auto with = [&](double times, double times_on_ten) {
-    return outcome_of("threads-before-cpu",
-                      {serial, faster(small("threads-mutex", 1), serial, {times, times}),
-                       faster(small("threads-mutex:10", 1), serial, {times_on_ten, times_on_ten})});
+    return outcome_of(
+        "threads-before-cpu",
+        {serial, faster(small("threads-mutex", 1), serial, {times, times, times}),
+         faster(small("threads-mutex:10", 1), serial, {times_on_ten, times_on_ten, times_on_ten})});
   };
   EXPECT_EQ(with(2, 0.5), ClaimOutcome::held);
   EXPECT_EQ(with(0.5, 2), ClaimOutcome::not_held);

@@ -3,6 +3,7 @@
 #include <barrier>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -20,41 +21,68 @@ namespace {
 /// first-level cache.
 constexpr std::size_t block_springs = 512;
 
+/// Its threads wait, asleep, from one call to the next, and end where it is to rest.
 class ThreadsMutex final : public Backend {
  public:
   ThreadsMutex(const System& system, const Integrator& integrator, double dt_s, int threads)
       : list_(system, integrator, dt_s),
         integrator_(integrator),
-        threads_(static_cast<std::size_t>(threads)) {}
+        threads_(static_cast<std::size_t>(threads)),
+        together_(threads) {}
+  ~ThreadsMutex() override { end_threads(); }
 
   void set_state(const State& state) override { list_.set_state(state); }
   State state() const override { return list_.state(); }
   int threads() const override { return static_cast<int>(threads_); }
+  void rest() override { end_threads(); }
 
   void step(int count) override {
-    std::barrier together(static_cast<std::ptrdiff_t>(threads_));
-    std::promise<bool> complete;  // whether all threads are there: they would wait for those that are not
-    const std::shared_future<bool> all_are_there = complete.get_future();
-    std::vector<std::jthread> group;
-    try {
-      const OnAllProcessCpus inherited;
-      for (std::size_t thread = 1; thread < threads_; ++thread)
-        group.emplace_back([&, thread] {
-          if (all_are_there.get()) run(thread, count, together);
-        });
-    } catch (const std::system_error& error) {
-      complete.set_value(false);
-      throw BackendFailure(fmt::format("the system has made {} of {} threads ({}): ask for fewer with "
-                                       "--threads, or end other programs",
-                                       group.size() + 1, threads_, error.code().message()),
-                           "");
-    }
-    complete.set_value(true);
-    run(0, count, together);
+    if (count == 0) return;  // without a step nothing keeps a thread from the next call's count
+    if (group_.size() + 1 < threads_) make_threads();
+    count_ = count;
+    together_.arrive_and_wait();
+    run(0, count);
   }
 
  private:
-  void run(std::size_t thread, int count, std::barrier<>& together) {
+  void make_threads() {
+    std::promise<bool> complete;  // whether all threads are there: they would wait for those that are not
+    const std::shared_future<bool> all_are_there = complete.get_future();
+    try {
+      const OnAllProcessCpus inherited;
+      for (std::size_t thread = 1; thread < threads_; ++thread)
+        group_.emplace_back([this, thread, all_are_there] {
+          if (all_are_there.get()) serve(thread);
+        });
+    } catch (const std::system_error& error) {
+      complete.set_value(false);
+      const std::size_t made = group_.size() + 1;
+      group_.clear();
+      throw BackendFailure(fmt::format("the system has made {} of {} threads ({}): ask for fewer with "
+                                       "--threads, or end other programs",
+                                       made, threads_, error.code().message()),
+                           "");
+    }
+    complete.set_value(true);
+  }
+
+  void end_threads() {
+    if (group_.empty()) return;
+    count_.reset();
+    together_.arrive_and_wait();
+    group_.clear();
+  }
+
+  /// What a thread but the first does: the steps of each call, until there are no more.
+  void serve(std::size_t thread) {
+    for (;;) {
+      together_.arrive_and_wait();
+      if (!count_) return;
+      run(thread, *count_);
+    }
+  }
+
+  void run(std::size_t thread, int count) {
     const auto bound = [&](std::size_t all, std::size_t part) { return all * part / threads_; };
     const std::size_t first_node = bound(list_.nodes(), thread), last_node = bound(list_.nodes(), thread + 1);
     const auto springs = list_.springs().subspan(
@@ -64,14 +92,14 @@ class ThreadsMutex final : public Backend {
       for (int step = 0; step < count; ++step) {
         for_each_stage<method>([&](auto stage) {
           list_.clear_forces(first_node, last_node);
-          together.arrive_and_wait();
+          together_.arrive_and_wait();
           add_forces(springs, integrators[method].stages[stage].gather);
-          together.arrive_and_wait();
+          together_.arrive_and_wait();
           list_.template update_nodes<method, stage>(first_node, last_node);
         });
-        together.arrive_and_wait();
+        together_.arrive_and_wait();
         if (thread == 0) list_.end_step();
-        together.arrive_and_wait();
+        together_.arrive_and_wait();
       }
     });
   }
@@ -89,6 +117,9 @@ class ThreadsMutex final : public Backend {
   SpringList<float> list_;
   const Integrator& integrator_;
   const std::size_t threads_;
+  std::barrier<> together_;
+  std::optional<int> count_;  ///< steps that a call asks for; none: the threads end
+  std::vector<std::jthread> group_;
   std::mutex accumulation_;
 };
 
