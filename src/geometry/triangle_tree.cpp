@@ -22,8 +22,7 @@ double squared_distance_from_side(const Vec3d& a, const Vec3d& b, const Vec3d& p
   return squared(point - (a + along * side));
 }
 
-/// Squared distance to the plane if the foot of the perpendicular is in the triangle, else to the nearest
-/// side.
+/// Squared distance to the plane if the perpendicular's foot is in the triangle, else to the nearest side.
 double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& point) {
   const auto& [a, b, c] = triangle;
   const Vec3d normal = cross(b - a, c - a);

@@ -83,8 +83,7 @@ class TriangleTree {
   using Triangle = std::array<Vec3d, 3>;
   struct Node {
     Box<double> box;
-    std::uint32_t first =
-        0;  ///< leaf: its first triangle; else the second child (the first child is the next node)
+    std::uint32_t first = 0;  ///< a leaf's first triangle, or the second child (the first is the next node)
     std::uint32_t count = 0;  ///< triangles of a leaf; 0: not a leaf
   };
   void build(std::uint32_t first, std::uint32_t end);

@@ -51,8 +51,7 @@ struct ComparedValues {
 double ranked_value(const ComparedValues& values, std::size_t rank) {
   double low = values.least, high = values.most;
   if (values.count_up_to(low) >= rank) return low;
-  // Bisection until no double lies between: then `high` is the smallest double that reaches the rank, so it
-  // is the value.
+  // Bisection until no double lies between: then `high`, the smallest that reaches the rank, is the value.
   for (double middle = std::midpoint(low, high); low < middle && middle < high;
        middle = std::midpoint(low, high))
     (values.count_up_to(middle) >= rank ? high : low) = middle;

@@ -54,7 +54,7 @@ drivers pocl
 : >vendors/empty.icd
 devices 1 'the OpenCL driver .*/empty.icd names no library$'
 echo "$fakes/changing_layer.so" >vendors/empty.icd
-devices 1 'the OpenCL driver .*/changing_layer.so is no driver that OpenCL.s loader can use (.*/empty.icd registers it)$'
+devices 1 'the OpenCL driver .*/changing_layer.so is not a driver that OpenCL.s loader can use (.*/empty.icd registers it)$'
 drivers deviceless_driver
 devices 0 'the OpenCL driver "A fake driver" offers no device$'
 expect 3 'the OpenCL driver "A fake driver" offers no device$' run --scene cloth2500 --backend opencl
