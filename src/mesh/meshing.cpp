@@ -25,8 +25,7 @@ double six_volumes_of(const TetMesh& mesh, const Tetrahedron& nodes) {
   return six_volumes(mesh.nodes[nodes[0]], mesh.nodes[nodes[1]], mesh.nodes[nodes[2]], mesh.nodes[nodes[3]]);
 }
 
-/// Six times the volume below which a tetrahedron with this longest edge counts as flat: rounding decides its
-/// sign.
+/// Six times the volume below which a tetrahedron of this longest edge is flat: rounding decides its sign.
 double flat_six_volumes(const TetMesh& mesh, const Tetrahedron& nodes) {
   double longest = 0;
   for (std::size_t i = 0; i < 4; ++i)

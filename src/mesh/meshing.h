@@ -84,8 +84,7 @@ struct SphereShape {
 /// Points of the surface: 10 frequency^2 + 2.
 std::uint64_t surface_point_count(const SphereShape& sphere);
 
-/// The surface with surface_point_count points. Throws InputError for a radius or a frequency that is not
-/// positive.
+/// The surface with surface_point_count points. Throws InputError unless radius and frequency are positive.
 Surface surface_of(const SphereShape& sphere);
 
 /// Depth of a point: distance from the sphere, m; not positive outside.

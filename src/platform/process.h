@@ -59,13 +59,11 @@ std::string failed_end(const ChildResult& result, const std::string& doing);
 /// A program to run, its environment and its limits.
 struct ChildProcess {
   std::filesystem::path program;
-  std::vector<std::string> arguments;  ///< without the program's name
-  std::vector<std::string>
-      environment;               ///< NAME=VALUE, added to this process's; replaces variables of that name
-  std::filesystem::path folder;  ///< working directory
-  unsigned cpu_seconds = 0;      ///< CPU time after which the system ends it with SIGXCPU
-  /// Elapsed time after which it is killed with all its descendants and all programs that run together with
-  /// it; 0: no limit.
+  std::vector<std::string> arguments;    ///< without the program's name
+  std::vector<std::string> environment;  ///< NAME=VALUE, added to this process's or replacing it
+  std::filesystem::path folder;          ///< working directory
+  unsigned cpu_seconds = 0;              ///< CPU time after which the system ends it with SIGXCPU
+  /// Elapsed time after which it, its descendants and all programs run together with it are killed; 0: none.
   unsigned elapsed_seconds = 0;
   std::uint64_t memory_bytes = 0;  ///< limit of its address space; 0: that of this process
 };

@@ -21,8 +21,7 @@
 namespace mssim {
 namespace {
 
-/// Time limit for actions of the supervisor that take about a millisecond, and for the end of killed
-/// processes.
+/// Time limit for actions of the supervisor (usually a millisecond) and for the end of killed processes.
 constexpr std::chrono::seconds supervisor_patience{30};
 
 std::string reason(int error) { return fmt::format(" ({})", std::strerror(error)); }

@@ -73,7 +73,7 @@ rm told
 grep -q 'unsupported: 50 columns cannot be cut for 5000 ranks: .* at most --ranks ' many/timings.csv || fail "5000 ranks: $(cat many/timings.csv)"
 "$mssim" bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --rounds 1 --launcher ./hosts --out hostless >/dev/null 2>&1 &&
   fail "a launcher that may not be executed starts ranks"
-grep -q 'unavailable: ./hosts is no file that may be executed' hostless/timings.csv || fail "./hosts: $(cat hostless/timings.csv)"
+grep -q 'unavailable: ./hosts is not an executable file' hostless/timings.csv || fail "./hosts: $(cat hostless/timings.csv)"
 
 # A guide has it, and its larger cloths.
 sed 's/"rows": 50/"rows": 20/; s/"columns": 50/"columns": 20/' "$2/scenes/cloth2500.json" >small.json
