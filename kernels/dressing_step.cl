@@ -1,8 +1,9 @@
 /* The kernels that dress a garment by Vassilev's Algorithm 1. A step takes at least four launches:
- * update_velocities       loops 1, 2 and 4, and the first sweep of loop 5 within the blocks;
- * correct_between_blocks  sweeps of loop 5 over the springs that join two blocks; correct_blocks
- * sweeps within the blocks; after the last of them loop 6; step_joints             closes what is sewn, and
- * is loop 3 of the next step (dressing_joints.cl). Needs dressing.cl.
+ *   update_velocities       loops 1, 2 and 4, and the first sweep of loop 5 within the blocks;
+ *   correct_between_blocks  sweeps of loop 5 over the springs that join two blocks;
+ *   correct_blocks          sweeps within the blocks; after the last of them loop 6;
+ *   step_joints             closes what is sewn, and executes loop 3 of the next step (dressing_joints.cl).
+ * Needs dressing.cl.
  */
 
 __kernel void update_velocities(GARMENT_GRID, Block blocks, __global const float* pixels, int correct) {

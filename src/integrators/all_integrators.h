@@ -8,8 +8,7 @@
 
 namespace mssim {
 
-/// The TABLE of integrators with stages. A new explicit method is one row here, and every backend supports
-/// it.
+/// The TABLE of integrators with stages. A new explicit method is one row here, for every backend.
 ///
 /// Numbering of the equations: Hong et al. 2016. Their published times fit one force evaluation per step for
 /// all three methods (midpoint costs 1.04 and RK4 1.22 Euler steps), so each real method with several stages

@@ -141,8 +141,9 @@ struct Floor {
 using Topology = std::variant<GridPatch, TetrahedralMesh, Garment>;
 
 /// Everything that stays constant while a scene is stepped, and its start state.
-/// The acceleration of a free node is a = (sum of spring forces) / node_mass[node] - viscous_damping v + (0,
-/// -gravity, 0); a pinned node keeps its start position, at rest.
+/// The acceleration of a free node is
+///     a = (sum of spring forces) / node_mass[node] - viscous_damping v + (0, -gravity, 0);
+/// a pinned node keeps its start position, at rest.
 struct System {
   Topology topology;                      ///< all nodes belong to it
   std::vector<Spring> springs;            ///< [springs] each unique spring once

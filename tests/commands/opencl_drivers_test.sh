@@ -131,7 +131,7 @@ HOME=$work/home devices 1 ''
 [ -d home/.cache/mssim/pocl ] || fail "no cache below HOME"
 HOME=/dev/null XDG_CACHE_HOME=$work/xdg devices 1 ''
 [ -d xdg/mssim/pocl ] || fail "no cache below XDG_CACHE_HOME"
-costs="PoCL's cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), so that every run compiles its kernels anew; set POCL_CACHE_DIR to a folder that can be\$"
+costs="PoCL's cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), so every run compiles its kernels again; set POCL_CACHE_DIR to a folder that can be\$"
 HOME=/dev/null devices 1 "$costs"
 HOME=/dev/null TMPDIR=/dev/null devices 0 'the OpenCL driver "Portable Computing Language" offers no device: its cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), and mssim cannot make a temporary folder in /dev/null (Not a directory); set TMPDIR'
 env -u HOME "$mssim" list devices --format csv >out 2>err || fail "list devices without HOME exits with $?"
