@@ -23,7 +23,7 @@ __kernel void correct_between_blocks(GARMENT_GRID, Block blocks, int forwards_an
   if (forwards_and_back) correct_seam_of_blocks(block, 0, &grid);
 }
 
-/* Nodes at joints, and those that are held, are where they belong after step_joints only. */
+/* Nodes at joints and held nodes have their final positions only after step_joints. */
 __kernel void correct_blocks(GARMENT_GRID, Block blocks, __global const int* at_joint, int backwards,
                              int forwards, int move) {
   const GarmentGrid grid = grid_of_arguments;

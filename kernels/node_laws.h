@@ -2,7 +2,7 @@
  * acceleration, and the floor.
  *
  * Text for many number types like spring_law.h; besides that file's names it needs
- *   MSSIM_VECTOR_LAW            what stands before a function that returns a Vector, three Reals x, y and z,
+ *   MSSIM_VECTOR_LAW            prefix of a function that returns a Vector, three Reals x, y and z,
  *   dot_product(a, b)           of two Vectors.
  */
 

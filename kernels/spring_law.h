@@ -87,7 +87,7 @@ MSSIM_LAW spring_step_along(Real dt, MSSIM_OF(SpringConstants) constants) {
 }
 
 #ifdef __OPENCL_VERSION__
-/* The same spring in every lane. */
+/* A spring with equal parameters in every lane. */
 MSSIM_INLINE struct LinearSpring spring_in_every_lane(struct SpringFloats constants, Real stiffness_rest) {
 #define MSSIM_IN_EVERY_LANE(name) (Real)(constants.name),
   struct LinearSpring spring = {{MSSIM_SPRING_CONSTANTS(MSSIM_IN_EVERY_LANE)}, stiffness_rest};

@@ -50,8 +50,7 @@ struct Opening {
 /// points.
 std::size_t join_corners(Surface& surface);
 
-/// Throws InputError if most edges are free: the triangles do not join, and openings between them are no
-/// holes.
+/// Throws InputError if most edges belong to one triangle only: then openings between triangles are no holes.
 void require_joined(const Surface& surface);
 
 /// All openings, the largest first. Openings that touch at a point are separate; none has a point twice.

@@ -87,8 +87,8 @@ static_assert(std::ranges::all_of(integrators, gathers_safely),
 ///
 ///     y = x + dt/2 v,   v+ = v + dt a(y, v),   x+ = y + dt/2 v+,
 ///
-/// which is semi-implicit Euler for the positions y, half a step ahead. Forces of positions alone make it
-/// symplectic and of order 2. Damping is taken at the old velocity, which leaves order 1.
+/// which is semi-implicit Euler for the positions y, half a step ahead. If forces depend only
+/// on positions, it is symplectic and of order 2. Damping uses the old velocity, which leaves order 1.
 inline constexpr Integrator verlet = [] {
   Integrator row = integrators[0];
   row.name = "verlet";

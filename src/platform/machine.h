@@ -42,7 +42,7 @@ inline constexpr std::launch as_the_system_can = std::launch::async | std::launc
 void for_each_at_once(std::size_t count, std::size_t at_once, const std::function<void(std::size_t)>& work);
 
 /// Limits of control groups (cgroups), as containers, Slurm and systemd set them: for each limit, the least
-/// of this process's group and its ancestors. Nothing where there is no limit.
+/// of this process's group and its ancestors. Nothing without a limit.
 struct ContainerLimits {
   std::optional<double> processors;           ///< CPU seconds per second
   std::optional<std::uint64_t> memory_bytes;  ///< the limit

@@ -14,8 +14,8 @@ inline constexpr double usual_error = 0.05;
 /// difference.
 struct RankTest {
   double statistic = 0;
-  double p_less = 1; ///< of a statistic as small or smaller
-  double p_greater = 1; ///< of a statistic as large or larger
+  double p_less = 1;     ///< of a statistic as small or smaller
+  double p_greater = 1;  ///< of a statistic as large or larger
   bool exact = false;    ///< else by the normal approximation, corrected for ties and continuity
 
   double p_two_sided() const { return std::min(1., 2 * std::min(p_less, p_greater)); }
@@ -23,8 +23,8 @@ struct RankTest {
 
 /// An estimate of the shift of values, by the corresponding rank test.
 struct ShiftEstimate {
-  double shift = 0; ///< Hodges and Lehmann's: the median of the values that the test compares
-  double low = 0, high = 0; ///< the interval, 95 % by default
+  double shift = 0;          ///< Hodges and Lehmann's: the median of the values that the test compares
+  double low = 0, high = 0;  ///< the interval, 95 % by default
   /// Whether the samples are large enough for such an interval; if not, low and high are the extreme values.
   bool covers = false;
 };

@@ -63,7 +63,7 @@ devices 1 'the OpenCL driver "A fake driver" offers no device$'
 
 # One that ends whoever asks it.
 drivers aborting_driver
-end='the OpenCL driver .*/aborting_driver.so ended with signal 6 when asked for devices: Not enough memory to run on this device\.'
+end='the OpenCL driver .*/aborting_driver.so ended with signal 6 when queried for devices: Not enough memory to run on this device\.'
 devices 0 "$end\$"
 expect 3 "$end\$" run --scene cloth2500 --backend opencl --duration 0.01
 ends 0 list backends --format csv
@@ -72,7 +72,7 @@ ends 0 bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1 --
 [ "$(column_of results/timings.csv verified | grep -c true)" -eq 3 ] || fail "not three rows: $(cat results/timings.csv)"
 [ "$(grep -c "unavailable: $end" results/timings.csv)" -eq 2 ] || fail "not two rows without a device: $(cat results/timings.csv)"
 drivers aborting_device_driver
-devices 0 'the OpenCL driver .*/aborting_device_driver.so ended with signal 6 when asked for devices$'
+devices 0 'the OpenCL driver .*/aborting_device_driver.so ended with signal 6 when queried for devices$'
 drivers aborting_driver pocl
 devices 1 "$end\$"
 OCL_ICD_VENDORS=$work/vendors/aborting_driver.icd devices 0 "$end\$"

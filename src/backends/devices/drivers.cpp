@@ -57,9 +57,9 @@ Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
   for (const RegisteredDriver& driver : drivers) libraries.push_back(driver.shared_library);
   const ChildResult asked =
       run({helper_program("ask-opencl"), libraries, environment, ".", cpu_s, elapsed_s});
-  Answer answer{failed_end(asked, "asked for devices"), {}};
+  Answer answer{failed_end(asked, "queried for devices"), {}};
   if (asked.out_of_time)
-    answer.end = fmt::format("did not answer within {} s of CPU time or {} s in all when asked for devices",
+    answer.end = fmt::format("did not answer within {} s of CPU time or {} s in all when queried for devices",
                              cpu_s, elapsed_s);
   std::istringstream lines(asked.output);
   for (std::string line; std::getline(lines, line);) {

@@ -94,7 +94,7 @@ constexpr std::array<Row, 4> table{{{Solver::newton_step, newton},
 const SolverSteps& steps_of(const Integrator& integrator) {
   const auto row = std::ranges::find(table, integrator.solver, &Row::solver);
   if (row == table.end())
-    throw std::invalid_argument(std::string(integrator.name) + " is no implicit integrator");
+    throw std::invalid_argument(std::string(integrator.name) + " is not an implicit integrator");
   return row->steps;
 }
 

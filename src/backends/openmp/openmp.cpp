@@ -7,7 +7,7 @@
 
 namespace mssim {
 
-// The same for all integrators, and for cloths and bodies.
+// Identical for all integrators, and for cloths and bodies.
 std::vector<std::string_view> openmp_instruction_sets() {
   return instruction_sets_of(step_kernels<SlicedBodies>(integrators.front()));
 }

@@ -454,7 +454,7 @@ struct Simulation {
     } else if (request == "get") {
       get();
     } else {
-      throw std::runtime_error("mssim asked for \"" + request + "\", which mssim_backend.h does not support");
+      throw std::runtime_error("mssim requested \"" + request + "\", which mssim_backend.h does not support");
     }
     return "done";
   }

@@ -235,7 +235,7 @@ class _Conversation:
                 x.tofile(file)
                 v.tofile(file)
         else:
-            raise RuntimeError(f"mssim asked for {request[0]}, which this mssim_backend.py does not support")
+            raise RuntimeError(f"mssim requested {request[0]}, which this mssim_backend.py does not support")
         return "done"
 
     def _checked(self, array):

@@ -109,7 +109,7 @@ class SerialConstraints final : public Backend {
 
   PlainNodes<Real> nodes_;
   std::vector<Vec3<Real>> rest_;          // [nodes] m, rounding errors of their x
-  std::vector<Real> mobility_;            // [nodes] 1/kg, 0 where pinned
+  std::vector<Real> mobility_;            // [nodes] 1/kg, 0 if pinned
   std::vector<CompliantSpring> springs_;  // in the order of the method
   const std::uint32_t substeps_;
   const Real h_;  // s, the substep

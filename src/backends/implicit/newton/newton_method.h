@@ -37,8 +37,7 @@ inline constexpr double roundings_of_force = 4;
 /// eigenvalue of its part of A, its square in the norm of M^-1  is at most
 ///     (m_j + dt viscous_damping m_j + sum of a)^2 / m_j + sum of a^2 / m_i
 /// over the springs from j to i, times u^2 |w_j|^2; the largest of it over m_j |w_j|^2 is taken for all
-/// nodes. That is an upper bound: it is no goal, but says whether a norm that does not fall is that of
-/// roundings.
+/// nodes. That is an upper bound: not a goal, but a test whether a norm no longer falls because of rounding.
 template <class Real>
 SolverGoal solver_goal(const System& system, double dt_s, double tolerance) {
   constexpr double unit_roundoff = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
