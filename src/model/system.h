@@ -116,7 +116,7 @@ struct TetrahedralMesh {
 
 /// Settings of the solvers of implicit integrators.
 struct SolverSettings {
-  /// Conjugate gradients and Newton's method stop when the norm of the residual has decreased by this factor.
+  /// Relative tolerance of conjugate gradients and of Newton's method (implicit/newton/newton_method.h).
   double tolerance = 1e-5;
   std::uint32_t iterations = 10;  ///< of fast-springs: local and global steps
   std::uint32_t substeps = 10;    ///< of xpbd: substeps per step
@@ -154,8 +154,7 @@ struct System {
   double viscous_damping = 0;             ///< 1/s
   Floor floor;                            ///< its height in single precision, like the start
   SolverSettings solver;                  ///< of implicit integrators
-  /// Pinned nodes are at rest. The numbers are rounded to single precision, for the reason given at
-  /// Spring::rest_length.
+  /// Pinned nodes are at rest. The numbers are rounded to single precision; see Spring::rest_length.
   State start;
 
   std::size_t nodes() const { return start.position.size(); }

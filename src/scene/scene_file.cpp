@@ -67,12 +67,12 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
       Presence::optional, [&solver = spec.solver](FieldVisitor& section) {
         section.number(
             {"tolerance",
-             "For implicit-euler's conjugate gradients and newton-euler: they stop when the residual norm "
-             "has decreased to this fraction."},
+             "Relative tolerance of implicit-euler's linear system and of newton-euler's change of "
+             "velocities."},
             solver.tolerance, above(0, 0.1));
-        section.integer({"fast_springs_iterations", "Local and global steps of fast-springs in each step."},
+        section.integer({"fast_springs_iterations", "Local and global steps of fast-springs per step."},
                         solver.iterations, 1, 10000);
-        section.integer({"xpbd_substeps", "Small steps of xpbd in each step."}, solver.substeps, 1, 1000);
+        section.integer({"xpbd_substeps", "Substeps of xpbd per step."}, solver.substeps, 1, 1000);
       });
 }
 

@@ -265,7 +265,7 @@ std::span<const AccumulationMethod> accumulation_methods() {
       of_list("thread-private", "an array of forces for each thread, summed afterwards",
               make_list_method<ThreadPrivate>, with_private_arrays, "12 bytes a node and thread", "once",
               Repeatable::at_same_threads),
-      of_list("colouring", "springs of one colour share no node; a barrier follows each colour",
+      of_list("colouring", "springs of one colour share no node; the threads meet after each colour",
               make_list_method<Colouring>, with_coloured_copy, "16 bytes a spring", "once",
               Repeatable::always),
       of_list("gather", "each node sums its own springs", make_list_method<Gather>, with_both_ends,

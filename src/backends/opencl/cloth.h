@@ -48,8 +48,7 @@ struct BandShape {
   std::size_t ghost_floats() const { return partitions * 2 * ghosts * bands.column_floats(); }
 
  private:
-  /// The shape with `steps_in_a_launch` steps, and with at most most_partitions partitions, as the columns
-  /// allow.
+  /// The shape with these steps per launch, and up to most_partitions partitions, as the columns allow.
   BandShape with(std::size_t steps_in_a_launch, std::size_t most_partitions,
                  const Integrator& integrator) const;
   /// Cost of a step, in the time of a compute unit for one stage of a node.

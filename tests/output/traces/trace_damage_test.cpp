@@ -202,7 +202,8 @@ TEST_F(TraceDamage, IsSaidOfIndicesThatAreOutOfRange) {
   EXPECT_THAT(with(garment, "/connectivity/joints", 22), HasSubstr("joints between nodes"));
   EXPECT_THAT(with(garment, "/parameters/joints/seam", 2), HasSubstr("of seams that there are"));
   EXPECT_THAT(with(garment, "/body/triangles", 4), HasSubstr("triangles between its points"));
-  EXPECT_THAT(with(garment, "/parameters/panels/first_node", 1), HasSubstr("panels of rows and columns, in order"));
+  EXPECT_THAT(with(garment, "/parameters/panels/first_node", 1),
+              HasSubstr("panels of rows and columns, in order"));
   for (const std::string path : {"/parameters/panels/rows", "/parameters/panels/columns"})
     for (const std::uint32_t number : {0U, 1U, 5U, 0x40000000U, 0xffffffffU})
       EXPECT_THAT(with(garment, path, number), HasSubstr("needs panels of")) << number;

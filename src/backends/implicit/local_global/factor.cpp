@@ -330,8 +330,7 @@ void BlockFactor::eliminate_all(const StepMatrix& matrix) {
     couplings[part_of[low]].push_back({low, high, coupling.weight});
   }
 
-  std::vector<std::vector<double>> left(
-      blocks.size());  // remaining for the border: lower triangle, by columns
+  std::vector<std::vector<double>> left(blocks.size());  // for the border: lower triangle, by columns
   std::vector<double> front, panel;
   for (std::size_t part = 0; part < blocks.size(); ++part) {
     const std::size_t rows = fronts.rows(part), pivots = fronts.pivots(part), border = rows - pivots;

@@ -11,8 +11,7 @@ namespace mssim {
 
 /// Distribution of parts over threads and phases. Phase 0 has whole subtrees of the tree of parts; each later
 /// phase has parts whose children are done. Upwards the phases follow each other, and each thread processes
-/// its items in order; downwards everything is reversed. It does not affect the result, because each part
-/// computes its own sums.
+/// its items in order; downwards everything is reversed. It does not affect the result.
 struct FrontSchedule {
   /// [phases][threads] items: parts, children before parents.
   std::vector<std::vector<std::vector<IndexRange>>> phases;

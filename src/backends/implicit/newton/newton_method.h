@@ -18,8 +18,8 @@ namespace mssim {
 
 /// Goals at which the methods below stop.
 struct SolverGoal {
-  double tolerance = 0;           ///< for newton_step and newtons_method: relative to the initial norm
-  double rounding = 0;            ///< kg^1/2 m/s; the norm of r stays above it because of rounded forces
+  double tolerance = 0;  ///< relative: of newton_step to the initial norm, of newtons_method to that of w - v
+  double rounding = 0;   ///< kg^1/2 m/s; the norm of r stays above it because of rounded forces
   double rounding_of_motion = 0;  ///< contribution of rounded velocities, relative to sqrt(w . M w)
 };
 

@@ -56,8 +56,7 @@ HWY_INLINE void for_each_float(const Nodes& nodes, IndexRange chunk, Act&& act) 
   for (std::size_t i = floats.begin; i < floats.end; i += lane_count()) act(i);
 }
 
-/// Computes e, A and P. Returns e . M^-1 e, without the mass factor. at_state: at x and w = v, and e is that
-/// of the first Newton step.
+/// Computes e, A and P. Returns e . M^-1 e over mass. at_state: at x and w = v, e of the first Newton step.
 template <bool at_state, class Nodes>
 HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Lanes dt(equation.dt), viscous_damping(equation.nodes.surroundings.viscous_damping),
@@ -212,7 +211,7 @@ HWY_NOINLINE void add_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, f
   });
 }
 
-/// a . M b, without the mass factor, for fields a and b that are zero at fixed nodes.
+/// a . M b over mass, for fields a and b that are zero at fixed nodes.
 template <class Nodes>
 HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, IndexRange chunk, const float* a,
                                   const float* b) {
@@ -223,7 +222,7 @@ HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, IndexRa
   return sum.total();
 }
 
-/// (w - v) . M (w - v), without the mass factor.
+/// (w - v) . M (w - v) over mass.
 template <class Nodes>
 HWY_NOINLINE double change_chunk(const VectorEquation<Nodes>& equation, IndexRange chunk) {
   const float *const w = equation.w.data(), *const v = equation.v.data();
