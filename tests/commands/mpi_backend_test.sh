@@ -162,7 +162,7 @@ for process in "$killed" "$stopped" "$silent" "$orphaned"; do
 done
 echo "failures took $((SECONDS - seconds)) s"
 fails_with 'rank 1 .*exited on signal 9' killed
-fails_with "has heard nothing for 20 seconds from rank 1 on $(uname -n)" stopped
+fails_with "has received nothing for 20 seconds from rank 1 on $(uname -n)" stopped
 fails_with 'mpirun was ended by signal 9' orphaned
 fails_with 'mpirun --host node9 has not started 2 ranks within 25 s' silent
 

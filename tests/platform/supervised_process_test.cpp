@@ -161,7 +161,7 @@ TEST_F(SupervisedProcesses, SayInOneSentenceThatTheyCannotBeStarted) {
                                   " cannot be entered (No such file or directory)");
   program = shell("");
   program.cpus = {CPU_SETSIZE};
-  EXPECT_EQ(failure(program), "cannot run /bin/sh: it cannot be bound to its processors (Invalid argument)");
+  EXPECT_EQ(failure(program), "cannot run /bin/sh: it cannot be bound to its CPUs (Invalid argument)");
   EXPECT_TRUE(processes().empty());
 }
 
