@@ -369,7 +369,7 @@ void require_meshable(std::uint64_t points, std::string_view remedy) {
 
 void require_meshing_memory(std::uint64_t points) {
   if (const auto shortage = memory_shortage(points * bytes_a_point))
-    throw InputError("TetGen makes its mesh of " + std::to_string(points) + " or more points, which " +
+    throw InputError("TetGen makes its mesh of " + std::to_string(points) + " points or more, which " +
                      *shortage + "; close other programs, or give fewer cells, triangles or points");
 }
 

@@ -175,7 +175,7 @@ void require_regular_file(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::not_found) throw ReadError(Cause::missing, "there is no such file");
-  if (error) fail("cannot be found", error, "check the path and its permissions");
+  if (error) fail("cannot be accessed", error, "check the path and its permissions");
   if (!fs::is_regular_file(status)) throw ReadError(Cause::not_regular, "is not a regular file");
 }
 
