@@ -1,15 +1,15 @@
-/* One acceleration per spring of alike bodies, as packed_springs.cl computes one force per spring: the
- * device's share of hybrid where a scene has enough alike bodies.
+/* Computes one acceleration per spring of alike bodies, as packed_springs.cl computes one force per spring.
+ * This is the device's share of hybrid if a scene has enough alike bodies.
  *
- * The ends of a spring are two slices (alike_slices.h; AlikeSprings in src/backends/layouts): nothing is
- * gathered.
+ * The ends of a spring are two slices (alike_slices.h; AlikeSprings in src/backends/layouts), so no gather is
+ * needed.
  */
 #define spring_parts (MSSIM_SLICE / MSSIM_LANES)
 
-/* nodes: slices (alike_slices.h). forces: [springs][x y z][16], accelerations (m/s^2) of the first ends; on
- * the second ends they are the opposite. springs: first slice, second slice, stiffness times rest length /
- * mass (the bits of a float, m/s^2), and an index into shapes: constants divided by a mass. A work-item takes
- * `count` parts of springs, MSSIM_LANES lanes each, up to parts_end. */
+/* nodes: slices (alike_slices.h). forces: [springs][x y z][16], accelerations (m/s^2) of the first ends;
+ * those of the second ends are the opposite. springs: first slice, second slice, stiffness times rest length
+ * / mass (the bits of a float, m/s^2), and an index into shapes: constants divided by a mass. A work-item
+ * handles `count` parts of springs, MSSIM_LANES lanes each, up to parts_end. */
 __kernel void alike_spring_forces(__global const float* restrict nodes, __global float* restrict forces,
                                   __global const uint4* restrict springs,
                                   __global const struct SpringFloats* restrict shapes, uint parts_end,

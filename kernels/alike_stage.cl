@@ -1,18 +1,18 @@
-/* What the stage kernels of alike bodies have in common, in place of mesh_stage.cl. A work-item takes tiles
- * of a node of MSSIM_LANES bodies, one after the other, and every node gathers the forces of all its springs:
- * whole vectors, as the neighbours of one body's node are the same as those of all others.
+/* Code shared by the stage kernels of alike bodies; it replaces mesh_stage.cl. A work-item takes tiles one
+ * after the other. A tile is one node of MSSIM_LANES bodies, and each node gathers the forces of all its
+ * springs: whole vectors, because the neighbours of a node are the same in every body.
  *
  * A pair is an array of slices (alike_slices.h). Constants are per unit of node mass.
  */
 typedef struct {
-  __global const uint4* slices;  /* where its springs begin and end, its bodies' first slice, 1: pinned */
-  __global const uint2* springs; /* the neighbour's slice, from the bodies' first one on; stiffness times
-                                    rest length, m/s^2, the bits of a float */
-  __global const struct SpringFloats* constants; /* of a slice */
+  __global const uint4* slices;  /* begin and end of its springs, its bodies' first slice, 1: pinned */
+  __global const uint2* springs; /* the neighbour's slice, relative to the bodies' first; stiffness times rest
+                                    length, m/s^2, the bits of a float */
+  __global const struct SpringFloats* constants; /* [slices] */
 } Mesh;
 typedef const Mesh* Shape;
 
-/* Where the nodes of MSSIM_LANES bodies are. */
+/* Location of the nodes of MSSIM_LANES bodies. */
 typedef struct {
   size_t slice, lane;
   Mask free;
@@ -40,7 +40,7 @@ MSSIM_INLINE void store_part(Vector value, __global float* pair, int part, Tile 
   store_vector(value, own_floats(pair, tile) + 3 * part * MSSIM_SLICE, MSSIM_SLICE);
 }
 
-/* The forces of all springs on the tile's nodes, m/s^2. */
+/* Sum of the forces of all springs on the tile's nodes, m/s^2. */
 static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node,
                                     const Mesh* mesh) {
   const uint4 own = mesh->slices[tile.slice];

@@ -1,36 +1,36 @@
-/* How a body that maps describe (parameters.h) meets a point of cloth, in the common subset of C++ and OpenCL
- * C: the test of one point against the tangent planes of its pixel, and the response.
+/* Contact of a point of cloth with a body that is described by maps (parameters.h), in the common subset of
+ * C++ and OpenCL C: the test of one point against the tangent planes of its pixel, and the response.
  *
- * The body within a pixel is what lies behind both planes. A plane that is tangent to the front or the back
- * face bounds it far better than the face's depth, which is a flight of stairs: the signed distance from it
- * is continuous within a pixel and nearly so across its edge.
+ * Within a pixel, the body is the set of points behind both planes. A plane tangent to the front or back face
+ * is a far better bound than the face's depth, which is a staircase: the signed distance from the plane is
+ * continuous within a pixel and nearly so across its edge.
  *
- * Text for many number types like spring_law.h; it stands after node_laws.h (for floor_grip, Coulomb's law).
+ * Text for many number types like spring_law.h; include it after node_laws.h (for floor_grip, Coulomb's law).
  */
 
-/* The record of a pixel: of each plane the unit normal, which points out of the body, and n . P (m). */
+/* The record of a pixel: for each plane, the unit normal n, which points out of the body, and n . P (m). */
 MSSIM_STRUCT(BodyPlanes) {
   Real front_x, front_y, front_z, front_at;
   Real back_x, back_y, back_z, back_at;
 };
 
-/* How a point stands to the body: the signed distance from the nearer plane (m, negative inside, 1e30 where
+/* Contact of a point with the body: the signed distance from the nearer plane (m, negative inside, 1e30 if
  * there is no body) and that plane's normal. The body lies behind both planes, so the larger distance is the
  * nearer plane's. */
 MSSIM_STRUCT(BodyContact) { Real distance, x, y, z; };
 
-/* A point of cloth before a step: its position (m) and the velocity (m/s) with which it would be moved. */
+/* A point of cloth before a step: its position (m) and the velocity (m/s) that would move it. */
 MSSIM_STRUCT(ClothPoint) { Real x, y, z, u, v, w; };
 
-/* The same after the response. stuck: 1 where friction takes all of the velocity along the body, else 0. */
+/* The point after the response. stuck: 1 if friction removes all of the velocity along the body, else 0. */
 MSSIM_STRUCT(ClothResponse) { Real x, y, z, u, v, w, stuck; };
 
 /* Column (or row) of a coordinate, not yet truncated to a whole number; last: the number of the last column.
- * Beside the maps, and where the coordinate is not a number, it is a column of the border. */
+ * Outside the maps, and for NaN, it is a column of the border. */
 MSSIM_LAW body_column(Real coordinate, Real first, Real pixels_per_metre, Real last) {
   Real column = (coordinate - first) * pixels_per_metre;
   Real none = last - last;
-  /* This order: NaN is not less than `last`. */
+  /* Keep this order: NaN is not less than `last`. */
   column = where_less(column, last, column, last);
   return where_less(column, none, none, column);
 }
@@ -48,11 +48,11 @@ MSSIM_GIVES(BodyContact) body_contact(MSSIM_OF(BodyPlanes) planes, Real x, Real 
   return contact;
 }
 
-/* What the body does to a point. `contact` is that of the position after the step, x + dt v. Where that is
- * inside, the velocity into the body is dropped, and the velocity along it loses at most friction times what
- * was dropped (floor_grip). What of the depth is left then goes out of the position, by at most
- * push_speed * dt: a push by velocity would be motion in the next step, and the point would jitter for ever.
- * A point that leaves the body keeps its velocity. */
+/* Response of a point to the body. `contact` is the contact of the position after the step, x + dt v. If that
+ * is inside, the velocity into the body is removed, and the velocity along it loses at most friction times
+ * what was removed (floor_grip). The remaining depth is then taken out of the position, by at most push_speed
+ * times dt: a push by velocity would be motion in the next step, and the point would jitter for ever. A point
+ * that leaves the body keeps its velocity. */
 MSSIM_GIVES(ClothResponse)
 body_response(MSSIM_OF(ClothPoint) point, MSSIM_OF(BodyContact) contact, Real friction, Real push_speed,
               Real dt) {
@@ -65,7 +65,7 @@ body_response(MSSIM_OF(ClothPoint) point, MSSIM_OF(BodyContact) contact, Real fr
   Real v = mul_add(dropped, contact.y, point.v);
   Real w = mul_add(dropped, contact.z, point.w);
   Real kept = floor_grip(dropped, mul_add(u, u, mul_add(v, v, w * w)), friction);
-  /* Where nothing was dropped the velocity may point out of the body, and is kept whole: floor_grip is 1. */
+  /* If nothing was removed, the velocity may point out of the body and is kept whole: floor_grip is 1. */
   Real depth = -mul_add(dropped, dt, contact.distance);
   Real most = push_speed * dt;
   depth = where_less(most, depth, most, depth);

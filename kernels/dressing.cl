@@ -1,9 +1,9 @@
-/* What the kernels that dress a garment (dressing_step.cl, dressing_joints.cl) do with its nodes, which lie
- * in rows (GarmentGrid in src/garment/stepping/garment_grid.h). An array of vectors is three planes, x, y and
- * z.
+/* Code shared by the kernels that dress a garment (dressing_step.cl, dressing_joints.cl). The garment's nodes
+ * lie in rows (GarmentGrid in src/garment/stepping/garment_grid.h). An array of vectors is three planes, x, y
+ * and z.
  *
- * A work-group takes a block of rows. On a GPU its work-items share the nodes, one a Real, and meet at
- * barriers; on a CPU it is one work-item, which takes MSSIM_LANES neighbours of a row at a time. Every sum
+ * A work-group takes a block of rows. On a GPU its work-items share the nodes, one per Real, and synchronise
+ * at barriers; on a CPU it is one work-item, which takes MSSIM_LANES neighbours of a row at a time. Every sum
  * and every correction has the same order either way. The springs of a row are those that its nodes own:
  * stencil_rows and stencil_columns are panel_stencil, generated from it.
  */
@@ -11,12 +11,12 @@ typedef __constant struct DressingParameters* Rules;
 typedef __global const struct DressingBlock* Block;
 
 typedef struct {
-  __global float* position;           /* m, at the beginning of a step */
-  __global float* moved;              /* m, where contact has moved it to within the step */
+  __global float* position;           /* m, at the start of a step */
+  __global float* moved;              /* m, after contact within the step */
   __global float* velocity;           /* m/s */
-  __global float* pull;               /* m/s^2, by joints */
-  __global const float* inverse_mass; /* 1/kg, 0 for pins and for what is no node */
-  __global float* free;               /* the same, 0 for what friction holds, too */
+  __global float* pull;               /* m/s^2, from joints */
+  __global const float* inverse_mass; /* 1/kg, 0 for pins and padding */
+  __global float* free;               /* inverse_mass, but 0 also for nodes that friction holds */
   __global const float* rest;         /* [direction] m, 0: no spring */
   __global const float* stiffness;    /* [direction][row] N/m */
   Rules rules;
@@ -24,7 +24,7 @@ typedef struct {
 } GarmentGrid;
 
 #if MSSIM_LANES == 1
-/* What the items of the group have written so far is there for all of them. */
+/* Makes everything that the items of the group have written so far visible to all of them. */
 #define block_barrier() barrier(CLK_GLOBAL_MEM_FENCE)
 #define first_lane(a) (a)
 #define to_index(a) convert_int(a)
@@ -45,7 +45,7 @@ MSSIM_INLINE void store_vector_anywhere(Vector value, __global float* to, int pl
   store_lanes(value.y, to + plane);
   store_lanes(value.z, to + 2 * plane);
 }
-/* One node's, the same in every lane. */
+/* One node's vector, the same in every lane. */
 MSSIM_INLINE Vector load_one(__global const float* from, int plane) {
   Vector value = {(Real)(from[0]), (Real)(from[plane]), (Real)(from[2 * plane])};
   return value;
@@ -58,8 +58,8 @@ MSSIM_INLINE void store_one(Vector value, __global float* to, int plane) {
 
 /* MSSIM_LANES neighbours of a row of a block. */
 typedef struct {
-  int row; /* of the block */
-  int at;  /* float of the first */
+  int row; /* within the block */
+  int at;  /* offset of the first, in floats */
 } Tile;
 MSSIM_INLINE int tiles_of_row(Block block) { return (block->columns + MSSIM_LANES - 1) / MSSIM_LANES; }
 MSSIM_INLINE Tile tile_at(int number, Block block) {
@@ -69,14 +69,14 @@ MSSIM_INLINE Tile tile_at(int number, Block block) {
   return tile;
 }
 
-/* What a spring to nodes at `away` does, N. */
+/* Force of springs to nodes at `away`, N. */
 MSSIM_INLINE Vector spring_force(Vector away, Real rest, float stiffness) {
   const struct SpringConstants undamped = {(Real)(stiffness)}; /* the others are zero */
   Real pull = spring_pull(dot_product(away, away), (Real)(0.0f), linear_spring(undamped, rest));
   return times(select(pull, (Real)(0.0f), rest <= 0.0f), away);
 }
 
-/* Loop 1: of each direction the spring that a node owns, and the one that ends at it. */
+/* Loop 1: for each direction, the spring that a node owns and the one that ends at it. */
 MSSIM_INLINE Vector spring_forces(Tile tile, Block block, const GarmentGrid* grid) {
   const Vector own = load_vector(grid->position + tile.at, grid->plane);
   Vector sum = no_vector();
@@ -92,7 +92,7 @@ MSSIM_INLINE Vector spring_forces(Tile tile, Block block, const GarmentGrid* gri
   return sum;
 }
 
-/* Loop 4's second half: what the body does to nodes. Returns those that friction holds. */
+/* Loop 4, second half: contact of nodes with the body. Returns the mask of nodes that friction holds. */
 #define pixel_record(lane) pixel_numbers[lane]
 MSSIM_INLINE Mask touch_body(Block block, __global const float* pixels, float friction, Mask real, Vector* x,
                              Vector* v, Rules rules) {
@@ -139,10 +139,9 @@ MSSIM_INLINE void update_tile(Tile tile, Block block, __global const float* pixe
   store_vector(x, grid->moved + tile.at, plane);
 }
 
-/* Loop 5, as src/garment/stepping/step_panels.cpp has it in C++, which also says what holds the two
- * together.
+/* Loop 5, as in C++ in src/garment/stepping/step_panels.cpp, which also names the test that compares the two.
  *
- * Springs of a direction, from a tile to rows below, which have no node in common. */
+ * Corrects springs of a direction, from a tile to rows below, which have no node in common. */
 MSSIM_INLINE void correct_springs(int at, int direction, Block block, const GarmentGrid* grid) {
   const int plane = grid->plane, far_at = at + block->stride + stencil_columns[direction];
   const Vector d =
@@ -156,15 +155,15 @@ MSSIM_INLINE void correct_springs(int at, int direction, Block block, const Garm
   const Real own_free = load_aligned(grid->free + at), far_free = load_lanes(grid->free + far_at);
   const Real impulse = elongation_impulse(squared, dot_product(minus(far, own), d), limit,
                                           (Real)(grid->rules->correction_rate), own_free + far_free);
-  /* Springs that do not act change nothing, not even by adding 0, which would make 0 of -0 in some shapes of
-   * tiles and not in others. */
+  /* Inactive springs change nothing, not even by adding 0: that would turn -0 into 0 for some tile shapes and
+   * not for others. */
   const Vector own_after = times_plus(own_free * impulse, d, own);
   const Vector far_after = times_plus(-(far_free * impulse), d, far);
   store_vector(where(acts, own_after, own), grid->velocity + at, plane);
   store_vector_anywhere(where(acts, far_after, far), grid->velocity + far_at, plane);
 }
 
-/* One spring along a row that is longer than its limit. */
+/* Corrects one spring along a row if it is longer than its limit. */
 MSSIM_INLINE void correct_along_row(int at, const GarmentGrid* grid) {
   const int plane = grid->plane;
   const Vector d = minus(load_one(grid->moved + at + 1, plane), load_one(grid->moved + at, plane));
@@ -177,8 +176,8 @@ MSSIM_INLINE void correct_along_row(int at, const GarmentGrid* grid) {
   store_one(times_plus(-(far_free * impulse), d, far), grid->velocity + at + 1, plane);
 }
 
-/* The springs along rows, of a row one after the other: MSSIM_LANES of them are looked at together, and those
- * that are too long, few mostly, are corrected in order. */
+/* Corrects the springs along rows, one after the other within a row: MSSIM_LANES of them are tested together,
+ * and those that are too long, usually few, are corrected in order. */
 MSSIM_INLINE void correct_rows(Block block, int forwards, const GarmentGrid* grid) {
   const int plane = grid->plane, tiles = tiles_of_row(block);
   for (int row = item; row < block->rows; row += items)
@@ -199,15 +198,16 @@ MSSIM_INLINE void correct_rows(Block block, int forwards, const GarmentGrid* gri
     }
 }
 
-/* The springs of a direction between two rows, the upper of which is a block's, or stands before it (-1). */
+/* Corrects the springs of a direction between two rows. The upper one is row `row` of a block, or the row
+ * before the block (-1). */
 MSSIM_INLINE void correct_between_rows(Block block, int row, int direction, const GarmentGrid* grid) {
   const int start = block->first + row * block->stride;
   for (int column = item * MSSIM_LANES; column < block->columns; column += items * MSSIM_LANES)
     correct_springs(start + column, direction, block, grid);
 }
 
-/* The springs of a direction between all rows of a block. On a GPU an item takes a line of them, from the
- * first row to the last, which has no node in common with another line. */
+/* Corrects the springs of a direction between all rows of a block. On a GPU an item takes a line of them,
+ * from the first row to the last; different lines have no node in common. */
 MSSIM_INLINE void correct_diagonals(Block block, int direction, int forwards, const GarmentGrid* grid) {
   const int rows = block->rows - 1;
 #if MSSIM_LANES == 1
@@ -235,7 +235,7 @@ MSSIM_INLINE void correct_block(Block block, int forwards, const GarmentGrid* gr
   }
 }
 
-/* The same over the springs between a block and the one before it. */
+/* A sweep of loop 5 over the springs between a block and the one before it. */
 MSSIM_INLINE void correct_seam_of_blocks(Block block, int forwards, const GarmentGrid* grid) {
   for (int i = 1; i < limited_directions; ++i) {
     correct_between_rows(block, -1, forwards ? i : limited_directions - i, grid);
@@ -243,14 +243,14 @@ MSSIM_INLINE void correct_seam_of_blocks(Block block, int forwards, const Garmen
   }
 }
 
-/* Loop 6: where nodes at x are after the step. What the floor does changes v. */
+/* Loop 6: the positions of nodes at x after the step. The floor changes v. */
 MSSIM_INLINE Vector moved_on(Vector x, Vector* v, Mask is_free, Rules rules) {
   x = times_plus((Real)(rules->dt), *v, x);
   touch_floor(&x, v, is_free, &rules->surroundings);
   return x;
 }
 
-/* What every kernel takes first. */
+/* The first parameters of every kernel. */
 #define GARMENT_GRID                                                                            \
   __constant struct DressingParameters *rules, __global float *position, __global float *moved, \
       __global float *velocity, __global float *pull, __global const float *inverse_mass,       \

@@ -1,17 +1,17 @@
-/* The joints of a garment (garment_laws.h), which one work-group takes level by level, one joint a work-item:
- * those of a level have no node in common, and those that have stand in the levels in the garment's order.
- * Needs dressing.cl for one lane.
+/* The joints of a garment (garment_laws.h). One work-group handles them level by level, one joint per
+ * work-item: joints of a level have no node in common, and joints that share a node are in levels in the
+ * garment's order. Needs dressing.cl with one lane.
  */
 typedef __global const struct DressingJoint* Joint;
 
 typedef struct {
   Joint all;
   __global const int* level_ends; /* [level] the number of the joint after its last one */
-  __global const int* nodes;      /* those that are held, then the others of joints, as floats */
+  __global const int* nodes;      /* the held ones, then the others of joints, as offsets in floats */
   __global int* sewn;             /* [joint] */
 } Joints;
 
-/* What the three nodes of a joint have of an array. */
+/* Values of an array at the three nodes of a joint. */
 typedef struct {
   Vector node, first, second;
 } AtJoint;
@@ -21,7 +21,7 @@ MSSIM_INLINE AtJoint load_at_joint(__global const float* array, Joint joint, int
   return at;
 }
 
-/* The way from the joint's node to the point that it is sewn to. */
+/* Vector from the joint's node to the point that it is sewn to. */
 MSSIM_INLINE Vector gap_of(AtJoint at, Joint joint) {
   const Real fraction = (joint->fraction);
   const Vector gap = {joint_gap(at.node.x, at.first.x, at.second.x, fraction),
@@ -34,8 +34,8 @@ MSSIM_INLINE struct JointEnds ends_of(Joint joint, const GarmentGrid* grid) {
                     (grid->inverse_mass[joint->second]));
 }
 
-/* Adds to an array what an impulse gives the nodes of a joint, one after the other: the ends of an edge may
- * be one node. */
+/* Adds to an array what an impulse gives the nodes of a joint, one node after the other, because both ends of
+ * an edge may be the same node. */
 MSSIM_INLINE void add_one(Real s, Vector a, __global float* to, int plane) {
   store_one(plus(load_one(to, plane), times(s, a)), to, plane);
 }
@@ -46,8 +46,7 @@ MSSIM_INLINE void add_at_joint(struct JointEnds ends, Vector impulse, __global f
   add_one(ends.second, impulse, array + joint->second, plane);
 }
 
-/* After loop 5, which would open it again: the ends of a sewn joint move as one but for what closes its gap.
- */
+/* After loop 5, which would open it again: moves the ends of a sewn joint as one, but closes its gap. */
 MSSIM_INLINE void close_joint(Joint joint, const GarmentGrid* grid) {
   const struct JointEnds ends = ends_of(joint, grid);
   const Real mobility = joint_mobility(ends, (joint->fraction));
@@ -62,7 +61,7 @@ MSSIM_INLINE void close_joint(Joint joint, const GarmentGrid* grid) {
   add_at_joint(ends, impulse, grid->velocity, joint, grid->plane);
 }
 
-/* Loop 3 for an open joint: draws it together, or sews it where it is near enough; returns whether it has. */
+/* Loop 3 for an open joint: pulls it together, or sews it if its gap is small; returns whether it sewed. */
 MSSIM_INLINE int pull_joint(Joint joint, int steps, const GarmentGrid* grid) {
   Rules rules = grid->rules;
   const Vector gap = gap_of(load_at_joint(grid->position, joint, grid->plane), joint);
@@ -74,7 +73,7 @@ MSSIM_INLINE int pull_joint(Joint joint, int steps, const GarmentGrid* grid) {
   return 0;
 }
 
-/* Loop 3 of the step that comes: sews the joints that are near enough, and sets what the others do. */
+/* Loop 3 of the next step: sews the joints whose gap is small enough, and sets the pull of the others. */
 MSSIM_INLINE void pull_joints(const Joints* joints, int steps, __global struct DressingState* state,
                               const GarmentGrid* grid) {
   Rules rules = grid->rules;

@@ -1,8 +1,8 @@
-/* The kernels that dress a garment by Vassilev's Algorithm 1. A step is four launches or more:
+/* The kernels that dress a garment by Vassilev's Algorithm 1. A step takes at least four launches:
  *   update_velocities       loops 1, 2 and 4, and the first sweep of loop 5 within the blocks;
  *   correct_between_blocks  sweeps of loop 5 over the springs that join two blocks;
  *   correct_blocks          sweeps within the blocks; after the last of them loop 6;
- *   step_joints             closes what is sewn, and is loop 3 of the next step (dressing_joints.cl).
+ *   step_joints             closes what is sewn, and executes loop 3 of the next step (dressing_joints.cl).
  * Needs dressing.cl.
  */
 
@@ -23,7 +23,7 @@ __kernel void correct_between_blocks(GARMENT_GRID, Block blocks, int forwards_an
   if (forwards_and_back) correct_seam_of_blocks(block, 0, &grid);
 }
 
-/* Nodes at joints, and those that are held, are where they belong after step_joints only. */
+/* Nodes at joints and held nodes have their final positions only after step_joints. */
 __kernel void correct_blocks(GARMENT_GRID, Block blocks, __global const int* at_joint, int backwards,
                              int forwards, int move) {
   const GarmentGrid grid = grid_of_arguments;

@@ -1,33 +1,33 @@
-/* The walk over a grid where a work-item has several lanes: the shape that suits a CPU. What a stage does in
- * a column, and the kernel that takes steps, are generated from the table of integrators
+/* The walk over a grid if a work-item has several lanes, which suits a CPU. The code of a stage in a column
+ * and the kernel that takes steps are generated from the table of integrators
  * (src/backends/opencl/programs.cpp) and follow this text.
  *
  * The layout is that of BandLayout (src/backends/layouts/band_grid.h) with MSSIM_LANES bands, whose halo rows
  * repeat rows of the neighbouring bands.
  *
  * A work-item walks over its columns from the left, down the rows in each, and computes every spring once, at
- * its left or upper end. What a spring does to the other end waits: in registers for the rows below, in
- * `sums` for the next two columns. The two columns left of its own it walks over too, for what they do to
- * them.
+ * its left or upper end. The force on the other end is kept: in registers for the rows below, in `sums` for
+ * the next two columns. The walk includes the two columns left of the work-item's own, because of their
+ * forces on its columns.
  *
- * No spring points back, so that a stage may write over what it gathers from. The stages of a launch follow
- * each other at a distance of two columns: what a stage gathers has just been written, and what lives between
- * stages, the trial pairs, is kept in rings of a few columns. One pass over the state takes all steps of a
- * launch.
+ * No spring points to an earlier column, so a stage may overwrite what it gathers from. The stages of a
+ * launch follow each other at a distance of two columns: a stage gathers what has just been written, and the
+ * trial pairs, which live between stages, are kept in rings of a few columns. One pass over the state takes
+ * all steps of a launch.
  *
- * Work-items do not wait for each other. What a stage needs of the neighbours' columns is computed twice: two
- * columns for every stage behind it, from ghosts that repeat the neighbours' state before the launch. Each
- * work-item leaves its columns as ghosts for its neighbours' next launch, in other memory than they still
- * read in this one.
+ * Work-items do not wait for each other. The columns of neighbours that a stage needs are computed twice: two
+ * columns for every later stage, from ghosts that repeat the neighbours' state before the launch. Each
+ * work-item writes its columns as ghosts for its neighbours' next launch, to other memory than the ghosts
+ * that they read in this one.
  */
 #define row_floats (6 * MSSIM_LANES)
 
 typedef MSSIM_PASTE(uint, MSSIM_LANES) Rows;
 
-/* Where MSSIM_LANES nodes are, one in each band. */
+/* Location of MSSIM_LANES nodes, one in each band. */
 typedef struct {
   size_t first; /* offset from row 0 of the column */
-  Mask free;    /* is a node of the cloth and not pinned */
+  Mask free;    /* nodes of the cloth that are not pinned */
 } Tile;
 
 static inline size_t column_floats(Shape grid) { return (size_t)(grid->height + 4) * row_floats; }
@@ -35,7 +35,7 @@ static inline size_t column_floats(Shape grid) { return (size_t)(grid->height + 
 
 /* The columns of a work-item. */
 typedef struct {
-  int number, count; /* of this partition, and of all */
+  int number, count; /* this partition's number, and the number of partitions */
   int first, end;    /* columns; at least two */
 } Partition;
 static inline Partition partition_of(int number, int count, Shape grid) {
@@ -50,7 +50,7 @@ static inline __global float* ghost(__global float* ghosts, int partition, int n
   return ghosts + (size_t)(2 * grid->ghosts * partition + number) * column_floats(grid);
 }
 
-/* What a work-item works on. */
+/* Memory of a work-item. */
 typedef struct {
   Partition partition;
   __global float* state;
@@ -73,7 +73,7 @@ static inline Walk walk_of(int number, int count, int swapped, int ring_pairs, _
   return walk;
 }
 
-/* Row 0 of a column of the state, wherever the partition has it. */
+/* Row 0 of a column of the state, wherever the partition stores it. */
 static inline __global float* state_column(int column, const Walk* walk, Shape grid) {
   const Partition* partition = &walk->partition;
   __global float* start;
@@ -100,22 +100,22 @@ MSSIM_INLINE void store_part(Vector value, __global float* pair, int part, Tile 
   store_vector(value, pair + tile.first + 3 * part * MSSIM_LANES, MSSIM_LANES);
 }
 
-/* The nodes of a row. column: where its row 0 begins. */
+/* The nodes of a row. column: begin of its row 0. */
 static inline Node load_node(__global const float* column, int row) {
   return load_components(column + row * row_floats, MSSIM_LANES);
 }
 
-/* A column under way. */
+/* A column being processed. */
 typedef struct {
-  /* Row 0 in the gathered pair, and of the two columns to the right. */
+  /* Row 0 in the gathered pair, of this column and of the two to its right. */
   __global const float *here, *next, *next_2;
-  /* What acts on the rows of these columns so far, three vectors each. */
+  /* Forces on the rows of these columns so far, three vectors each. */
   __global float *on_here, *on_next, *on_next_2;
   /* Rows of the cloth that have a spring of each kind in this column. */
   uint down_rows, down_2_rows, right_rows, diagonal_rows, right_2_rows;
 } Column;
 
-/* The column that the stage of this number in the launch is at. here, next, next_2: see Column. */
+/* The column that stage number `stage` of the launch is at. here, next, next_2: see Column. */
 static inline Column column_at(int column, int stage, __global const float* here, __global const float* next,
                                __global const float* next_2, const Walk* walk, Shape grid) {
   const bool has_next = column + 1 < grid->columns, has_next_2 = column + 2 < grid->columns;
@@ -136,7 +136,7 @@ static inline Column column_at(int column, int stage, __global const float* here
   return at;
 }
 
-/* What the first column of a walk starts from. */
+/* Clears the sums that the first column of a walk starts from. */
 static inline void clear_sums(const Column* at, Shape grid) {
   for (size_t i = 0; i < sums_floats(grid); i += MSSIM_LANES) {
     store_aligned((Real)(0.0f), at->on_here + i);
@@ -144,21 +144,20 @@ static inline void clear_sums(const Column* at, Shape grid) {
   }
 }
 
-/* What waits for the rows below: forces on them in this column, and on the rows above and below in the next
- * one. */
+/* Forces on the rows below: in this column, and in the next one on the rows above and below. */
 typedef struct {
   Vector below, below_2, right_above, right_below;
 } Carry;
 
-/* Number of each lane's row in the cloth; a halo row above the cloth wraps to a huge number, which is below
- * no limit. */
+/* Number of each lane's row in the cloth; a halo row above the cloth wraps to a huge number, which exceeds
+ * every limit. */
 static inline Rows cloth_rows(int row, Shape grid) {
   return MSSIM_PASTE(convert_uint, MSSIM_LANES)(lane_number) * (uint)grid->height + (uint)row;
 }
 
-/* Asks for the row of a column of states that the walk comes to next but so many: behind a column's end lies
- * the next one, and no address is wrong. Only where the kernel is compiled for the processor itself: other
- * compilers need not have the built-in function. */
+/* Prefetches the row that the walk reaches a fixed number of rows later: columns are contiguous, so every
+ * address is valid. Only if the kernel is compiled for the CPU itself: other compilers may lack the built-in
+ * function. */
 static inline void prefetch_row(__global const float* row) {
 #if defined(__x86_64__) || defined(__aarch64__)
   for (int component = 0; component < 6; ++component)
@@ -166,7 +165,7 @@ static inline void prefetch_row(__global const float* row) {
 #endif
 }
 
-/* Computes the springs that a row owns, and returns what acts on its nodes. `prefetch`: not 0 where the state
+/* Computes the springs that a row owns, and returns the forces on its nodes. `prefetch`: not 0 if the state
  * is gathered; other pairs are in a cache. */
 MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry, int prefetch, Shape grid) {
   const Rows number = cloth_rows(row, grid);
@@ -192,7 +191,7 @@ MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry,
   return force;
 }
 
-/* What the halo rows above a band do to it. */
+/* Forces of the halo rows above a band on it. */
 MSSIM_INLINE Carry begin_column(const Column* at, Shape grid) {
   Carry carry = {no_vector(), no_vector(), no_vector(), no_vector()};
   Vector on_halo = no_vector();
@@ -207,7 +206,7 @@ MSSIM_INLINE Carry begin_column(const Column* at, Shape grid) {
   return carry;
 }
 
-/* What the halo row below a band does to the next column. */
+/* Forces of the halo row below a band on the next column. */
 MSSIM_INLINE void end_column(const Column* at, Carry* carry, Shape grid) {
   Vector on_halo = no_vector();
   const int row = grid->height;
@@ -216,8 +215,8 @@ MSSIM_INLINE void end_column(const Column* at, Carry* carry, Shape grid) {
   store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES, MSSIM_LANES);
 }
 
-/* Repeats the rows at the ends of the bands of a column that is written in the halo rows of their neighbours.
- * column: its row 0. */
+/* Copies the rows at the ends of the bands of a written column to the halo rows of their neighbours. column:
+ * its row 0. */
 static inline void fill_halo_rows(__global float* column, Shape grid) {
   const int height = grid->height * row_floats;
   for (int i = 0; i < halo * row_floats; i += MSSIM_LANES) {
@@ -231,7 +230,7 @@ static inline void copy_column(__global const float* from, __global float* to, S
   for (size_t i = 0; i < column_floats(grid); i += MSSIM_LANES) store_aligned(load_aligned(from + i), to + i);
 }
 
-/* Repeats a column of the state as it is after the launch in the ghosts of the partitions beside this one. */
+/* Copies a column of the state after the launch to the ghosts of the neighbouring partitions. */
 static inline void leave_ghosts(int column, const Walk* walk, Shape grid) {
   const Partition* partition = &walk->partition;
   __global const float* start = state_column(column, walk, grid) - halo * row_floats;

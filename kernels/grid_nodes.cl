@@ -1,20 +1,19 @@
-/* What the stage kernels of a grid have in common where a work-item owns one node, gathers the forces of all
- * its springs and runs the stage's assignments on it: the shape that suits a GPU. The kernels themselves are
- * generated from the tables of integrators and of the stencil (src/backends/opencl/programs.cpp) and
- * follow this text.
+/* Code shared by the stage kernels of a grid if a work-item owns one node, gathers the forces of all its
+ * springs and runs the stage's assignments on it, which suits a GPU. The kernels themselves are generated
+ * from the tables of integrators and of the stencil (src/backends/opencl/programs.cpp) and follow this text.
  *
- * Memory of a pair: six planes (x, y, z, u, v, w) of `plane` floats. Node (row, column) lies at
+ * Memory of a pair: six planes (x, y, z, u, v, w) of `plane` floats. Node (row, column) is at
  *     (row + 2) * stride + 16 + column
- * of its plane, so that two rows above and below, and sixteen floats left of every row (which are also what
- * is right of the row before), can be read without asking whether there is a node.
+ * of its plane, so two rows above and below, and sixteen floats left of every row (which are also those right
+ * of the row before), can be read without a test whether there is a node.
  */
 typedef struct {
   int row, column;
   int first; /* offset of the node in a plane */
-  Mask free; /* is a node of the cloth and not pinned */
+  Mask free; /* nodes of the cloth that are not pinned */
 } Tile;
 
-/* pin_masks[row] is the mask of `pins` that belongs to the row, or negative where the row has no pinned node.
+/* pin_masks[row] is the mask of `pins` that belongs to the row, or negative if the row has no pinned node.
  * pins[mask][column] is -1 for a pinned node, 0 for a free one. */
 static inline Tile tile_at(int row, int column, Shape grid, __global const int* restrict pin_masks,
                            __global const int* restrict pins) {

@@ -1,4 +1,4 @@
-/* A spring of a cloth, whatever the shape of its kernels. Needs lanes.h, spring_law.h and parameters.h.
+/* A spring of a cloth, used by the kernels of both shapes. Needs lanes.h, spring_law.h and parameters.h.
  */
 #if MSSIM_LANES == 1
 typedef __constant struct GridParameters* Shape;
@@ -6,8 +6,8 @@ typedef __constant struct GridParameters* Shape;
 typedef const struct GridParameters* Shape; /* a copy: stores to the cloth cannot change it */
 #endif
 
-/* Adds the force of one spring in every lane to what acts on its ends, m/s^2. Where there is no spring,
- * because the cloth ends, whatever the padding holds is computed with and then left out. */
+/* Adds the force of one spring in every lane to the forces on its ends, m/s^2. If there is no spring, because
+ * the cloth ends, the result computed from the padding is masked out. */
 MSSIM_INLINE void add_spring(Vector* on_first, Vector* on_second, Node first, Node second, Mask there,
                              int kind, Shape grid) {
   Vector d = minus(second.x, first.x);

@@ -1,8 +1,7 @@
-/* The number type of the OpenCL programs: one Real holds MSSIM_LANES neighbouring nodes (1, 4, 8 or 16).
- * CPU drivers do not turn work-items into vector lanes by themselves, so they get wide Reals and few
- * work-items; a GPU does, and gets one node per work-item. The text over Real is the same.
- * Needs MSSIM_LANES; gives the names that the laws (spring_law.h, node_laws.h, garment_laws.h,
- * body_contact.h) ask for.
+/* The number type of the OpenCL programs: one Real holds MSSIM_LANES neighbouring nodes (1, 4, 8 or 16). CPU
+ * drivers do not map work-items to vector lanes by themselves, so they get wide Reals and few work-items; a
+ * GPU does, and gets one node per work-item. The text over Real is the same. Needs MSSIM_LANES; defines the
+ * names that the laws need (spring_law.h, node_laws.h, garment_laws.h, body_contact.h).
  */
 #define MSSIM_PASTE_(a, b) a##b
 #define MSSIM_PASTE(a, b) MSSIM_PASTE_(a, b)
@@ -18,15 +17,15 @@ typedef MSSIM_PASTE(int, MSSIM_LANES) Mask; /* sign bit set: true */
 #define load_lanes(from) MSSIM_PASTE(vload, MSSIM_LANES)(0, from)
 #define store_lanes(value, to) MSSIM_PASTE(vstore, MSSIM_LANES)(value, 0, to)
 #endif
-/* At addresses that are multiples of a Real's size. vload and vstore work there too, but PoCL 3.1 takes them
- * apart into scalar pairs where other writes are near. */
+/* Access at addresses that are multiples of a Real's size. vload and vstore work there too, but PoCL 3.1
+ * splits them into scalar pairs if other writes are near. */
 #define load_aligned(from) (*(__global const Real*)(from))
 #define load_aligned_mask(from) (*(__global const Mask*)(from))
 #define store_aligned(value, to) (*(__global Real*)(to) = (value))
 
-/* any_lane is not any(): PoCL 3.1 makes a branch per lane of that. lane_number: the number of each lane.
- * from_lane_before, from_lane_after: what the neighbouring lane holds; the first, and the last, keep their
- * own.
+/* any_lane replaces any(), of which PoCL 3.1 makes a branch per lane. lane_number: the number of each lane.
+ * from_lane_before, from_lane_after: the value of the neighbouring lane; the first and the last lane keep
+ * their own.
  */
 #define any_of_four(four) (((four).s0 | (four).s1 | (four).s2 | (four).s3) < 0)
 #if MSSIM_LANES == 1
@@ -105,7 +104,7 @@ static inline Vector where(Mask condition, Vector yes, Vector no) {
   return chosen;
 }
 
-/* At components that lie `step` floats apart, and begin where a Real may (load_aligned). */
+/* Loads components `step` floats apart, the first at an address fit for load_aligned. */
 MSSIM_INLINE Vector load_vector(__global const float* from, int step) {
   const Vector value = {load_aligned(from), load_aligned(from + step), load_aligned(from + 2 * step)};
   return value;
@@ -115,7 +114,7 @@ MSSIM_INLINE void store_vector(Vector value, __global float* to, int step) {
   store_aligned(value.y, to + step);
   store_aligned(value.z, to + 2 * step);
 }
-/* x y z u v w. */
+/* Loads x y z u v w, `step` floats apart. */
 MSSIM_INLINE Node load_components(__global const float* from, int step) {
   const Node node = {load_vector(from, step), load_vector(from + 3 * step, step)};
   return node;

@@ -1,23 +1,23 @@
-/* What the stage kernels of a tetrahedral body have in common. The kernels themselves are generated from the
- * table of integrators (src/backends/opencl/programs.cpp) and follow this text: a work-item takes tiles
- * of MSSIM_LANES nodes, one after the other, and every node gathers the forces of all its springs.
+/* Code shared by the stage kernels of a tetrahedral body. The kernels themselves are generated from the table
+ * of integrators (src/backends/opencl/programs.cpp) and follow this text: a work-item takes tiles of
+ * MSSIM_LANES nodes, one after the other, and every node gathers the forces of all its springs.
  *
  * A pair is an array of records (records.h). The springs are those of a sliced graph (SlicedGraph in
- * src/backends/layouts/sliced_graph.h), in slices of MSSIM_SLICE nodes: of MSSIM_LANES where a tile has
- * several nodes, of some multiple where it has one. Their constants are per unit of node mass.
+ * src/backends/layouts/sliced_graph.h), in slices of MSSIM_SLICE nodes: MSSIM_LANES of them if a tile has
+ * several nodes, a multiple if it has one. Their constants are per unit of node mass.
  */
 typedef struct {
-  __global const uint* first_entry;     /* of a slice */
+  __global const uint* first_entry;     /* [slices + 1] */
   __global const uint* neighbour;       /* [entries][MSSIM_SLICE] */
   __global const float* stiffness_rest; /* [entries][MSSIM_SLICE] m/s^2, negative: no spring */
-  __global const float* constants;      /* [slices][spring_constant_count][MSSIM_SLICE] of a node's springs */
-  __global const int* held;             /* 1: pinned, or no node at all */
+  __global const float* constants; /* [slices][spring_constant_count][MSSIM_SLICE] of the node's springs */
+  __global const int* held;        /* 1: pinned, or padding */
 } Mesh;
 typedef const Mesh* Shape;
 
-/* Where MSSIM_LANES nodes are. */
+/* Location of MSSIM_LANES nodes. */
 typedef struct {
-  size_t first; /* the first one's number */
+  size_t first; /* number of the first node */
   Mask free;
 } Tile;
 
@@ -42,8 +42,8 @@ MSSIM_INLINE void store_part(Vector value, __global float* pair, int part, Tile 
   store_quads(value, pair + record_floats * tile.first + 4 * part, record_floats);
 }
 
-/* The forces of all springs on the tile's nodes, m/s^2. Where a lane has fewer springs than its slice has
- * entries, the node is its own neighbour, at no distance, and whatever comes of it is left out. */
+/* Sum of the forces of all springs on the tile's nodes, m/s^2. If a lane has fewer springs than its slice has
+ * entries, the node is its own neighbour, at distance 0, and the result is masked out. */
 #define neighbour_record(lane) neighbour[lane]
 static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node,
                                     const Mesh* mesh) {

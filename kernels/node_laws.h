@@ -1,8 +1,8 @@
-/* What moves a node besides its springs, written once in the common subset of C++ and OpenCL C: its
+/* The motion of a node apart from its springs, written once in the common subset of C++ and OpenCL C: its
  * acceleration, and the floor.
  *
- * Text for many number types like spring_law.h; beyond that file's names it needs
- *   MSSIM_VECTOR_LAW            what stands before a function that returns a Vector, three Reals x, y and z,
+ * Text for many number types like spring_law.h; besides that file's names it needs
+ *   MSSIM_VECTOR_LAW            prefix of a function that returns a Vector, three Reals x, y and z,
  *   dot_product(a, b)           of two Vectors.
  */
 
@@ -18,17 +18,17 @@ MSSIM_VECTOR_LAW node_acceleration(Vector pull, Vector velocity, Real damping, R
   return a;
 }
 
-/* The same, the product rounded before it is subtracted also where mul_add is one operation: dressings take
- * this one. They decide by thresholds, which the last bit may turn into another run. */
+/* The acceleration with the product rounded before it is subtracted, even if mul_add is one operation.
+ * Dressings use this one: they decide by thresholds, where the last bit can change the whole run. */
 MSSIM_VECTOR_LAW node_acceleration_unfused(Vector pull, Vector velocity, Real damping, Real gravity) {
   Vector drag = {damping * velocity.x, damping * velocity.y, damping * velocity.z};
   Vector a = {pull.x - drag.x, pull.y - drag.y - gravity, pull.z - drag.z};
   return a;
 }
 
-/* The floor puts a node that a step has carried below it back onto itself; the falling speed comes back times
- * the restitution; the sliding speed loses at most friction times the change of the normal speed (Coulomb's
- * law for an impulse).
+/* The floor puts a node that a step has moved below it back on its surface. The falling speed is multiplied
+ * by the restitution and reversed; the sliding speed loses at most friction times the change of the normal
+ * speed (Coulomb's law for an impulse).
  */
 
 /* Vertical speed after the contact (m/s). */
@@ -43,7 +43,7 @@ MSSIM_LAW floor_rebound(Real vertical, Real restitution) {
 MSSIM_LAW floor_grip(Real normal_change, Real slide_squared, Real friction) {
   Real none = normal_change - normal_change;
   Real one = none + 1.0f;
-  /* 1e-30 keeps the reciprocal finite for a node that does not slide at all. */
+  /* 1e-30 keeps the reciprocal finite for a node that does not slide. */
   Real kept = one - friction * normal_change * inverse_sqrt(slide_squared + 1e-30f);
   return where_less(kept, none, none, kept);
 }

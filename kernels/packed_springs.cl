@@ -1,13 +1,13 @@
-/* One force per spring, as Hong et al. share the work between GPU and CPU: the device computes the forces of
- * the packed spring units, the host sums them at the nodes and integrates.
+/* Computes one force per spring, as Hong et al. share the work between GPU and CPU: the device computes the
+ * forces of the packed spring units, the host sums them at the nodes and integrates.
  *
  * A unit is what Hong et al., Figure 6, pack for each spring: its two nodes and its rest length (m). Sixteen
- * units of one kind are an entry; their first nodes follow each other and are those of a slice, so that the
- * number of the slice stands for them (PackedSprings in src/backends/layouts/packed_springs.h).
+ * units of one kind are an entry; their first nodes are consecutive and form a slice, so the number of the
+ * slice is enough (PackedSprings in src/backends/layouts/packed_springs.h).
  */
 #define slice_nodes 16
 
-/* Lanes share a work-item where there are several; it then takes whole entries, else one unit at a time. */
+/* If there are several lanes, a work-item takes whole entries, else one unit at a time. */
 #if MSSIM_LANES == 1
 #define parts_at_a_time 1
 #else
@@ -15,9 +15,9 @@
 #endif
 #define units_at_a_time (parts_at_a_time * MSSIM_LANES)
 
-/* Forces on the first nodes of MSSIM_LANES units, N, as (x, y, z, 0) each; on the second node it is the
- * opposite. second, rest_length: those of the first of the units; material: their constants;
- * forces: where the entry's forces begin, lane: the first unit's number in the entry. */
+/* Forces on the first nodes of MSSIM_LANES units, N, as (x, y, z, 0) each; those on the second nodes are the
+ * opposite. second, rest_length: those of the first unit; material: the units' constants; forces: begin of
+ * the entry's forces; lane: the first unit's number in the entry. */
 #define second_node(lane) second[lane]
 static inline void forces_of_units(Node first, __global const uint* restrict second,
                                    __global const float* restrict rest_lengths,
@@ -28,7 +28,7 @@ static inline void forces_of_units(Node first, __global const uint* restrict sec
   const Vector d = minus(other.x, first.x);
   Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, first.v), d),
                           spring_in_every_lane(material, material.stiffness * rest_length));
-  pull = select(pull, (Real)(0.0f), rest_length < 0.0f); /* no unit there, and a distance of 0 */
+  pull = select(pull, (Real)(0.0f), rest_length < 0.0f); /* padding, at distance 0 */
   const Vector force = times(pull, d);
 #if MSSIM_LANES == 1
   store_quads(force, forces + 4 * (lane % 4 * 4 + lane / 4), 4);
@@ -43,8 +43,8 @@ static inline void forces_of_units(Node first, __global const uint* restrict sec
 
 /* nodes: records (records.h). entries: the slice of each entry, and an index into `materials`. units:
  * [entries][second node, rest length][16]. forces: [entries][16] of four floats, those of nodes 0, 4, 8 and
- * 12 first, then of 1, 5 and so on.
- * A work-item takes `count` parts of units_at_a_time units, up to parts_end. */
+ * 12 first, then of 1, 5 and so on. A work-item handles `count` parts of units_at_a_time units, up to
+ * parts_end. */
 #define first_node(lane) first_number + (lane)
 __kernel void packed_spring_forces(__global const float* restrict nodes, __global float* restrict forces,
                                    __global const uint* restrict units,

@@ -1,6 +1,5 @@
-/* Records of eight floats. A record is one load of 32 bytes wherever it lies, so that gathering MSSIM_LANES
- * of them is that many loads and a transposition in registers. Those of nodes are x y z and a float that is
- * zero, u v w and another. Needs lanes.h.
+/* Records of eight floats. A record is one load of 32 bytes, so gathering MSSIM_LANES of them takes that many
+ * loads and a transposition in registers. A node's record is x y z 0 u v w 0. Needs lanes.h.
  */
 #define record_floats 8
 
@@ -16,7 +15,7 @@ static inline Node node_of_records(Records a) {
 
 #if MSSIM_LANES == 1
 
-/* of(lane): the number of the lane's record. */
+/* of(lane): number of the lane's record. */
 #define load_whole_records(records, of) load_record(records, of(0))
 static inline Records load_record(__global const float* records, size_t number) {
   float4 a = *(__global const float4*)(records + record_floats * number);
@@ -25,15 +24,15 @@ static inline Records load_record(__global const float* records, size_t number) 
   return all;
 }
 
-/* The lane's vector as x y z 0. */
+/* Stores the lane's vector as x y z 0. */
 static inline void store_quads(Vector value, __global float* to, size_t distance) {
   *(__global float4*)to = (float4)(value.x, value.y, value.z, 0.0f);
 }
 
 #else
 
-/* Within each four elements of a and b: a0 b0 a1 b1, a2 b2 a3 b3, a0 a1 b0 b1, a2 a3 b2 b3. Choices between
- * two constant permutations, which compilers make one instruction of. */
+/* Shuffles within each four elements of a and b: a0 b0 a1 b1, a2 b2 a3 b3, a0 a1 b0 b1, a2 a3 b2 b3. Each
+ * selects between two constant permutations, which compilers turn into one instruction. */
 #define odd_4 ((int4)(0, -1, 0, -1))
 #define odd_8 ((int8)(odd_4, odd_4))
 #define odd_16 ((int16)(odd_8, odd_8))
@@ -53,7 +52,7 @@ static inline void store_quads(Vector value, __global float* to, size_t distance
 #define low_halves_16(a, b) (late_16 ? (b).s010145458989cdcd : (a).s010145458989cdcd)
 #define high_halves_16(a, b) (late_16 ? (b).s23236767ababefef : (a).s23236767ababefef)
 
-/* The records' numbers are of(0) to of(MSSIM_LANES - 1). */
+/* Loads the records of(0) to of(MSSIM_LANES - 1). */
 #define record_at(records, number) (*(__global const float8*)((records) + record_floats * (size_t)(number)))
 
 #if MSSIM_LANES == 4
@@ -69,12 +68,12 @@ static inline Records transposed_4(float8 a, float8 b, float8 c, float8 d) {
   return all;
 }
 #else
-/* Eight records: two and two share a register; their first halves are then in the even, their second in the
- * odd quarters. */
+/* Eight records, two per register; first halves in the even, second in the odd quarters. */
 typedef struct {
   float16 xu, yv, zw, last;
 } EightRecords;
-/* As wider integers, because PoCL 3.1 would move the shuffles that follow to the halves, which doubles them.
+/* Joins wider integers, because PoCL 3.1 would move the following shuffles to the halves, which doubles their
+ * number.
  */
 #define beside(a, b) as_float16((ulong8)(as_ulong4(a), as_ulong4(b)))
 static inline EightRecords transposed_8(float8 a, float8 b, float8 c, float8 d, float8 e, float8 f, float8 g,
@@ -114,7 +113,7 @@ static inline Records records_of_sixteen(EightRecords low, EightRecords high) {
 #endif
 #endif
 
-/* The vectors of every fourth lane, as x y z 0 each: of lanes 0, 4, 8 .., of lanes 1, 5, 9 .. and so on. */
+/* The vectors of every fourth lane, as x y z 0 each: lanes 0, 4, 8 .., lanes 1, 5, 9 .. and so on. */
 typedef struct {
   Real from_0, from_1, from_2, from_3;
 } Quads;
@@ -131,7 +130,7 @@ static inline Quads quads_of(Vector value) {
   return quads;
 }
 
-/* The quads of every fourth lane, `distance` floats from one lane's to the next one's. */
+/* Stores the quads of every fourth lane, `distance` floats apart from lane to lane. */
 static inline void store_every_fourth(Real quads, __global float* to, size_t distance) {
 #if MSSIM_LANES == 4
   *(__global float4*)to = quads;
@@ -145,7 +144,7 @@ static inline void store_every_fourth(Real quads, __global float* to, size_t dis
 #endif
 }
 
-/* Every lane's vector as x y z 0, `distance` floats from one lane's to the next one's. */
+/* Stores every lane's vector as x y z 0, `distance` floats apart from lane to lane. */
 static inline void store_quads(Vector value, __global float* to, size_t distance) {
   const Quads quads = quads_of(value);
   store_every_fourth(quads.from_0, to, distance);

@@ -1,11 +1,11 @@
-/* The constants of the law of a spring (spring_law.h), in the common subset of C++ and OpenCL C. They are
- * those of springs of one kind, and lie beside each other in this order wherever they are stored. The force
- * is linear in each of them, so that constants divided by a mass give accelerations. `spring_constants` in
- * src/model/system.h says what files call them.
+/* The constants of the law of a spring (spring_law.h), in the common subset of C++ and OpenCL C. All springs
+ * of a kind share them, and they are always stored next to each other in this order. The force is linear in
+ * each of them, so constants divided by a mass give accelerations. `spring_constants` in src/model/system.h
+ * lists their names in files.
  */
 #ifndef MSSIM_SPRING_CONSTANTS
 
-/* ROW(name) of each. */
+/* Applies ROW(name) to each. */
 #define MSSIM_SPRING_CONSTANTS(ROW) \
   ROW(stiffness) /* k, N/m */       \
   ROW(damping)   /* c, N s/m, along the spring */
@@ -13,7 +13,7 @@
 #define MSSIM_NUMBER(name) spring_constant_##name,
 enum { MSSIM_SPRING_CONSTANTS(MSSIM_NUMBER) spring_constant_count };
 
-/* As the host gives them to kernels. */
+/* The constants in single precision, as the host passes them to kernels. */
 #define MSSIM_FLOAT(name) float name;
 struct SpringFloats {
   MSSIM_SPRING_CONSTANTS(MSSIM_FLOAT)

@@ -4,7 +4,7 @@
  * Text for many number types like node_laws.h.
  */
 
-/* A symmetric matrix of 3 x 3: what stands on the diagonal of a stiffness matrix for a node, and its inverse.
+/* A symmetric 3 x 3 matrix: the diagonal block of a node in a stiffness matrix, or its inverse.
  */
 MSSIM_STRUCT(SymmetricBlock) { Real xx, xy, xz, yy, yz, zz; };
 
@@ -26,8 +26,8 @@ MSSIM_VECTOR_LAW block_times(MSSIM_OF(SymmetricBlock) block, Vector p) {
   return product;
 }
 
-/* By cofactors. The block must be positive definite; in single precision its eigenvalues may differ by a
- * factor of 1e5. */
+/* Inverts by cofactors. The block must be positive definite; in single precision its eigenvalues may differ
+ * by a factor of 1e5. */
 MSSIM_GIVES(SymmetricBlock) block_inverse(MSSIM_OF(SymmetricBlock) block) {
   MSSIM_OF(SymmetricBlock) inverse;
   Real one = block.xx - block.xx + 1.0f;
@@ -52,7 +52,7 @@ MSSIM_VECTOR_LAW spring_jacobian_times(Vector n, Real along, Real across, Vector
   return product;
 }
 
-/* The matrix itself. */
+/* The matrix along n n^T + across (I - n n^T) itself. */
 MSSIM_GIVES(SymmetricBlock) spring_jacobian(Real nx, Real ny, Real nz, Real along, Real across) {
   MSSIM_OF(SymmetricBlock) block;
   Real difference = along - across;

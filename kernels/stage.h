@@ -1,4 +1,4 @@
-/* What acts on the nodes of every lane besides springs. Needs lanes.h, node_laws.h and parameters.h. */
+/* Gravity, damping and the floor for the nodes of every lane. Needs lanes.h, node_laws.h and parameters.h. */
 
 /* Acceleration of the nodes at the velocities v. A node that is not free has none: with its speed of zero it
  * then stays where it is under every integrator. */

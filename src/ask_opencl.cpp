@@ -1,7 +1,7 @@
-// Asks all OpenCL drivers for their devices. A driver that ends the process that asks it ends this one, and
-// not mssim, which runs it before it asks itself (backends/devices/drivers.h). The arguments are the
-// libraries of the registered drivers. Of each that offers no platform stdout says why: a line of
-// obstacle_mark, its number and what it does not do.
+// Queries all OpenCL drivers for their devices. A driver that crashes ends this process instead of mssim,
+// which runs it before its own query (backends/devices/drivers.h). The arguments are the libraries of the
+// registered drivers. For each driver without a platform, stdout has the reason: a line of obstacle_mark, its
+// number and the problem.
 
 #include <CL/cl_icd.h>
 #include <dlfcn.h>
@@ -32,8 +32,7 @@ void ask_for_devices() {
   }
 }
 
-/// What keeps the loader from having a platform of that library; empty where it has one. Loads it as the
-/// loader does.
+/// Why the loader gets no platform from that library; empty if it does. Loads it as the loader does.
 std::string obstacle_of(const char* library) {
   if (*library == '\0') return "names no library";
   void* const driver = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
@@ -41,7 +40,7 @@ std::string obstacle_of(const char* library) {
   using FindFunction = void* (*)(const char*);
   const auto find = reinterpret_cast<FindFunction>(dlsym(driver, "clGetExtensionFunctionAddress"));
   void* const function = find == nullptr ? nullptr : find("clIcdGetPlatformIDsKHR");
-  if (function == nullptr) return "is no driver that OpenCL's loader can use";
+  if (function == nullptr) return "is not a driver that OpenCL's loader can use";
   cl_uint count = 0;
   const cl_int error = reinterpret_cast<clIcdGetPlatformIDsKHR_fn>(function)(0, nullptr, &count);
   return error == CL_SUCCESS && count > 0 ? "" : "offers no platform";
@@ -55,6 +54,6 @@ int main(int argc, char** argv) {
     if (const std::string obstacle = obstacle_of(argv[i]); !obstacle.empty())
       std::printf("\n%s%d %s\n", mssim::obstacle_mark, i - 1, obstacle.c_str());
   std::fflush(stdout);
-  // What drivers do at the end of a process is neither waited for nor told.
+  // Do not wait for what drivers do at the end of a process.
   _exit(0);
 }

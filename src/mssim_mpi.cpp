@@ -1,5 +1,5 @@
-// Steps cloths on several processes, over one machine or several: a backend of mssim's that is a program of
-// its own, so that mssim needs no MPI.
+// Steps cloths on several processes, on one or several machines: a backend that is a program of its own, so
+// mssim does not depend on MPI.
 
 #include <cstring>
 

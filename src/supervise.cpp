@@ -1,7 +1,7 @@
-// Runs one program for mssim (platform/supervised_process.h), in a small process of its own: takes what the
-// program writes, stops and continues it, and ends all that it started, when the program ends and when mssim
-// does, be it by SIGKILL. As a subreaper it becomes the parent of all orphans of the program: none gets away.
-// It needs nothing but the C library, and so starts quickly.
+// Runs one program for mssim (platform/supervised_process.h), in a small process of its own: collects its
+// output, stops and continues it, and kills all its descendants when the program ends and when mssim exits,
+// even by SIGKILL. As a subreaper it becomes the parent of all orphans of the program, so no process escapes.
+// It uses only the C library and therefore starts quickly.
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -32,16 +32,16 @@ using mssim::SupervisorWord;
 
 constexpr int channel = 3;
 
-/// What the program writes, of which the last bytes are kept.
+/// The program's output, of which the last bytes are kept.
 class Output {
  public:
   explicit Output(int descriptor) : descriptor_(descriptor) {}
   int descriptor() const { return descriptor_; }
-  /// Takes some of what there is; false where there is nothing now.
+  /// Reads some of the available output; false if there is none now.
   bool take() {
     if (end_ == sizeof text_) std::memcpy(text_, text_ + (end_ -= most), most);
     const ssize_t bytes = ::read(descriptor_, text_ + end_, sizeof text_ - end_);
-    if (bytes == 0) descriptor_ = -1;  // nobody writes any more; poll() skips it
+    if (bytes == 0) descriptor_ = -1;  // all writers have closed it; poll() skips it
     if (bytes > 0) end_ += static_cast<std::size_t>(bytes);
     return bytes > 0;
   }
@@ -55,7 +55,7 @@ class Output {
   std::size_t end_ = 0;
 };
 
-/// False where mssim is gone: nobody hears it.
+/// False if mssim is gone.
 bool say(const void* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t sent = ::send(channel, bytes, count, MSG_NOSIGNAL);
@@ -68,7 +68,7 @@ bool say(const void* bytes, std::size_t count) {
 
 bool say(const SupervisorAnswer& answer) { return say(&answer, sizeof answer); }
 
-/// Numbers of processes. More than fit here are looked at in parts.
+/// Process ids. If there are more than fit, they are handled in parts.
 struct Processes {
   std::size_t count = 0;
   pid_t all[32 * 1024];
@@ -77,7 +77,7 @@ struct Processes {
   }
 };
 
-/// Calls `use` with each entry of a folder of /proc that is a number.
+/// Calls `use` with each numeric entry of a folder of /proc.
 template <class Use>
 void for_each_number(const char* folder, Use use) {
   DIR* entries = ::opendir(folder);
@@ -87,9 +87,9 @@ void for_each_number(const char* folder, Use use) {
   ::closedir(entries);
 }
 
-/// What /proc/PROCESS/stat says of a process, or /proc/PROCESS/task/THREAD/stat of a thread.
+/// Fields of /proc/PROCESS/stat, or of /proc/PROCESS/task/THREAD/stat for a thread.
 struct Stat {
-  char state = 'X';  ///< X: there is no such process
+  char state = 'X';  ///< X: no such process
   int parent = 0;
   unsigned long waited_user = 0, waited_system = 0;  // of children that it has waited for, in ticks
 
@@ -103,7 +103,7 @@ struct Stat {
     std::snprintf(path, sizeof path, "/proc/%d/task/%d/stat", process, thread);
     read(path);
   }
-  /// It takes no processor time until it is continued, or never again.
+  /// It uses no CPU time until it is continued, or it has ended.
   bool rests() const { return std::strchr("TtZXx", state) != nullptr; }
 
  private:
@@ -113,16 +113,16 @@ struct Stat {
     if (file == nullptr) return;
     text[std::fread(text, 1, sizeof text - 1, file)] = 0;
     std::fclose(file);
-    // The name, in parentheses, may have any characters. The state is the word behind it, the times come 14
-    // later.
+    // The name, in parentheses, may contain any characters. The state is the next word; the times come 14
+    // words later.
     if (const char* rest = std::strrchr(text, ')'))
       std::sscanf(rest, ") %c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %lu %lu", &state, &parent,
                   &waited_user, &waited_system);
   }
 };
 
-/// Adds the children of a process: as its threads list them, or by a look at all processes where the kernel
-/// was built without those lists.
+/// Adds the children of a process: from the lists of its threads, or from a scan of all processes if the
+/// kernel was built without those lists.
 void add_children(pid_t process, Processes& all) {
   bool listed = false;
   char path[64];
@@ -141,7 +141,7 @@ void add_children(pid_t process, Processes& all) {
   });
 }
 
-/// All that the program started, parents before their children.
+/// All descendants of this process, parents before their children.
 const Processes& descendants() {
   static Processes found;
   found.count = 0;
@@ -150,8 +150,8 @@ const Processes& descendants() {
   return found;
 }
 
-/// Sends SIGSTOP or SIGCONT to all that the program started. Its group gets it at once, whatever it forks.
-/// Those that left the group are looked for until no more appear.
+/// Sends SIGSTOP or SIGCONT to the program and all its descendants: to its group at once, even while it
+/// forks, then to those that left the group, until no more are found.
 void signal_all(pid_t program, int signal) {
   ::kill(-program, signal);
   std::size_t before = 0;
@@ -163,7 +163,7 @@ void signal_all(pid_t program, int signal) {
   }
 }
 
-/// Whether no thread of all that the program started would take processor time.
+/// Whether no thread of the program and its descendants can use CPU time.
 bool all_rest() {
   const Processes& found = descendants();
   bool rest = true;
@@ -175,17 +175,17 @@ bool all_rest() {
   return rest;
 }
 
-/// Stops all that the program started, and waits until it has stopped: a thread gets its SIGSTOP when it is
-/// next on a processor, which may be while another program is timed. One that waits for a disk or a driver
-/// may not stop for long, and is left to it.
+/// Stops the program and its descendants, and waits until they have stopped: a thread handles SIGSTOP when it
+/// is next scheduled, which could otherwise be while another program is timed. It gives up after 0.1 s,
+/// because a thread that waits for a disk or a driver may take long.
 void pause_all(pid_t program) {
   signal_all(program, SIGSTOP);
   constexpr timespec look{0, 200'000};
   for (int looks = 0; looks < 500 && !all_rest(); ++looks) ::nanosleep(&look, nullptr);
 }
 
-/// Processor time of all that the program started: of those that live by their clocks, and of those that were
-/// waited for.
+/// CPU time of the program and its descendants: of living ones by their clocks, and of those that were waited
+/// for.
 double processor_seconds() {
   rusage waited{};
   ::getrusage(RUSAGE_CHILDREN, &waited);
@@ -204,8 +204,8 @@ double processor_seconds() {
   return sum;
 }
 
-/// Whether the program has ended. It is not waited for yet, so that the number of its group stays its own;
-/// its orphans that have ended are.
+/// Whether the program has ended. It is not reaped yet, so that its group's number is not reused; its ended
+/// orphans are.
 bool has_ended(pid_t program) {
   while (true) {
     siginfo_t info{};
@@ -215,9 +215,9 @@ bool has_ended(pid_t program) {
   }
 }
 
-/// Kills all that the program started, until none is left. Returns how the program ended. When a child
-/// dies, its children become ours, and another look finds them: there is one after each death, and one a
-/// second where a look missed any.
+/// Kills all descendants until none is left. Returns how the program ended. When a child dies, its children
+/// become ours and the next scan finds them: one scan after each death, and one per second in case a scan
+/// missed some.
 int end_all(pid_t program, int deaths) {
   static Processes children;
   int ending = 0;
@@ -238,19 +238,19 @@ int end_all(pid_t program, int deaths) {
   }
 }
 
-/// For nftw: goes on whatever cannot be removed.
+/// For nftw: continues if an entry cannot be removed.
 int remove_entry(const char* path, const struct stat*, int, FTW*) {
   std::remove(path);
   return 0;
 }
 
-/// In the child: becomes the program, or returns why not.
+/// In the child: executes the program, or returns why it cannot.
 SupervisorAnswer become(char** arguments, int output, const char* folder, const char* cpus,
                         pid_t supervisor) {
   if (::setpgid(0, 0) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::dup2(output, STDOUT_FILENO) < 0 ||
       ::dup2(output, STDERR_FILENO) < 0)
     return {SupervisorWord::no_process, errno};
-  if (::getppid() != supervisor) ::_exit(127);  // it ended before it would have been noticed
+  if (::getppid() != supervisor) ::_exit(127);  // it ended before PR_SET_PDEATHSIG took effect
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   if (*cpus != 0) {
@@ -268,9 +268,9 @@ SupervisorAnswer become(char** arguments, int output, const char* folder, const 
   return {SupervisorWord::no_program, errno};
 }
 
-/// Starts the program and tells mssim. Returns its process; a negative number where it cannot be started.
+/// Starts the program and notifies mssim. Returns its process id; a negative number if it cannot be started.
 pid_t start(char** arguments, int output, const char* folder, const char* cpus) {
-  int trouble[2] = {-1, -1};  // nothing comes through it when the program starts: exec closes it
+  int trouble[2] = {-1, -1};  // stays empty if the program starts: exec closes it
   const pid_t self = ::getpid();
   const pid_t program = ::pipe2(trouble, O_CLOEXEC) == 0 ? ::fork() : -1;
   SupervisorAnswer answer{SupervisorWord::no_process, errno};
@@ -289,7 +289,7 @@ pid_t start(char** arguments, int output, const char* folder, const char* cpus) 
   return started ? program : -1;
 }
 
-/// Until the program has ended, mssim wants it to, or somebody wants the supervisor to.
+/// Runs until the program has ended, mssim ends it, or a signal ends the supervisor.
 void attend(pid_t program, Output& output, int signals) {
   while (true) {
     pollfd events[] = {{channel, POLLIN, 0}, {signals, POLLIN, 0}, {output.descriptor(), POLLIN, 0}};
@@ -328,7 +328,7 @@ int main(int count, char** arguments) {
   ::sigprocmask(SIG_BLOCK, &heard, nullptr);
   const int signals = ::signalfd(-1, &heard, SFD_CLOEXEC | SFD_NONBLOCK);
   int pipe[2] = {-1, -1};
-  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // qemu-user 7 does not know it: there, orphans get away
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // qemu-user 7 lacks it: there, orphans escape
   if (signals < 0 || ::pipe2(pipe, O_CLOEXEC) != 0) {
     say({SupervisorWord::no_process, errno});
     return 1;
@@ -343,7 +343,7 @@ int main(int count, char** arguments) {
   while (output.take()) {
   }
   const SupervisorAnswer last{SupervisorWord::ended, ending, processor_seconds(), output.size()};
-  if (!say(last))  // mssim was killed, and removes nothing any more
+  if (!say(last))  // mssim was killed and cannot remove them
     for (int i = 0; i < paths; ++i) ::nftw(removed[i], remove_entry, 16, FTW_DEPTH | FTW_PHYS);
   say(output.last(), output.size());
   return 0;

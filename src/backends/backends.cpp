@@ -17,16 +17,16 @@
 namespace mssim {
 namespace {
 
-// On a cloth a band's or plane's padding is nothing to speak of; bodies are cut into slices, whose making
-// takes about as much again as what is made. Those with a device read a state back into arrays that grow,
-// which takes some 40 bytes a node beside the state. tests/bench/bench_memory_test.cpp holds these against
-// what is really taken.
-constexpr MemoryUse bands{.node = 24};  // all pairs but the state are a few columns
+// Memory per node and spring. On a cloth, padding of bands and planes is negligible; bodies are cut into
+// slices, whose construction takes about as much memory again. Backends with a device read a state back into
+// growing arrays, which takes about 40 bytes per node besides the state. tests/bench/bench_memory_test.cpp
+// compares these numbers with the memory actually used.
+constexpr MemoryUse bands{.node = 24};  // all pairs except the state are a few columns
 constexpr MemoryUse slices{.node = 130, .pair_node = 32, .storage = Storage::separate, .spring = 38};
 constexpr MemoryUse planes{.node = 56, .pair_node = 24, .storage = Storage::separate};
 constexpr MemoryUse device_slices{.node = 130, .pair_node = 32, .storage = Storage::separate, .spring = 38};
 constexpr MemoryUse packed{.node = 64, .pair_node = 32, .spring = 50};
-// What a program holds is its own affair: that of a plain list in double precision, and the state's file.
+// A program's own memory is unknown: assume a plain list in double precision and the state's file.
 constexpr MemoryUse own_program{.node = 64, .pair_node = 24, .spring = 40};
 
 std::unique_ptr<DressingBackend> dress_serially(const System& system, const Integrator& integrator,
@@ -69,7 +69,7 @@ std::unique_ptr<Backend> steps_garments_only(const System& /*system*/, const Int
   throw Unsupported("it steps garments only");
 }
 
-/// The names of the rows that have something, in words.
+/// The names of the backends that have a feature, in words.
 std::string names_of(bool (*has)(const BackendInfo& row)) {
   std::vector<std::string_view> names;
   for (const BackendInfo& row : table)
@@ -83,8 +83,8 @@ constexpr const BackendInfo& only_row(BackendRole role) {
 static_assert(std::ranges::count(table, BackendRole::baseline, &BackendInfo::role) == 1 &&
               std::ranges::count(table, BackendRole::best_of_host, &BackendInfo::role) == 1);
 
-/// Throws Unavailable where the system does not make the threads that the backend would, or where those that
-/// its row says are more than make sense here.
+/// Throws Unavailable if the system cannot create the threads that the backend would, or if the row fixes
+/// more than make sense here.
 void require_threads(const BackendInfo& backend, const ExecutionOptions& options) {
   if (backend.threads > 0)
     if (const auto excess = thread_excess(backend.threads))
@@ -214,7 +214,7 @@ std::unique_ptr<Backend> make_reference(const System& system, const Integrator& 
 
 MemoryUse reference_memory(const Integrator& integrator, bool grid) {
   if (is_implicit(integrator)) return implicit_reference_memory(integrator, grid);
-  // A spring list of twice the bytes, but for a byte that says what is pinned.
+  // A spring list of twice the bytes, except for the byte per node that marks pins.
   return {.node = 2 * spring_list_memory.node - 1, .pair_node = 2 * spring_list_memory.pair_node};
 }
 

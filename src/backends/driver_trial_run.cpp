@@ -76,7 +76,7 @@ void run_driver_trial(std::span<char*> arguments) {
       make_backend(*backend, small_system(trial.kind), *integrator, dt_s, trial.execution);
   } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
   }
-  // What drivers do at the end of a process is neither waited for nor told.
+  // Do not wait for what drivers do at the end of a process.
   ::_exit(0);
 }
 

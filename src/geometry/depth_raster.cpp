@@ -22,13 +22,13 @@ struct FixedPoint {
   std::int64_t x = 0, y = 0;
 };
 
-/// The pixels whose centres may lie in a triangle.
+/// Range of pixels whose centres may lie in a triangle.
 struct PixelRange {
   std::int64_t first_column = 0, end_column = 0;
   std::int64_t first_row = 0, end_row = 0;
 };
 
-/// Twice the area of the triangle, positive where its corners go round counter-clockwise.
+/// Twice the area of the triangle, positive if its corners are counter-clockwise.
 std::int64_t area(const FixedPoint& a, const FixedPoint& b, const FixedPoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -69,7 +69,7 @@ class Raster {
 
   void draw(int threads, const TakeBand& take) const {
     const int team = openmp_team(threads);
-    // One band for each thread, made here, where it may throw.
+    // One band per thread, allocated here, where it may throw.
     std::vector<std::vector<Fragment>> drawn(static_cast<std::size_t>(team),
                                              std::vector<Fragment>(std::size_t{band_rows} * grid_.columns));
 #pragma omp parallel for num_threads(team) schedule(dynamic)
@@ -106,17 +106,17 @@ class Raster {
     take(static_cast<std::uint32_t>(first_row), fragments);
   }
 
-  /// Draws what of a triangle lies in `range` into the band that begins at `first_row`.
+  /// Draws the part of a triangle within `range` into the band that begins at `first_row`.
   void draw_triangle(std::uint32_t number, const PixelRange& range, std::int64_t first_row,
                      std::span<Fragment> fragments) const {
     const auto& [ia, ib, ic] = surface_.triangles[number];
     const FixedPoint &a = points_[ia], &b = points_[ib], &c = points_[ic];
     const std::int64_t whole = area(a, b, c);
-    if (whole == 0) return;  // edge-on: its neighbours cover what it covers
+    if (whole == 0) return;  // edge-on: its neighbours cover these pixels
     const std::int64_t turn = whole > 0 ? 1 : -1;
     const double per_area = 1 / static_cast<double>(turn * whole);
     const double za = surface_.points[ia].z, zb = surface_.points[ib].z, zc = surface_.points[ic].z;
-    // From a pixel to the next of its row, the area opposite to each corner grows by:
+    // Increment of the area opposite to each corner from one pixel to the next in its row:
     const std::int64_t step_a = turn * (b.y - c.y) * subpixels, step_b = turn * (c.y - a.y) * subpixels,
                        step_c = turn * (a.y - b.y) * subpixels;
     for (std::int64_t row = range.first_row; row < range.end_row; ++row) {
@@ -128,7 +128,7 @@ class Raster {
                         static_cast<std::size_t>(range.first_column);
       for (std::int64_t column = range.first_column; column < range.end_column;
            ++column, ++shown, at_a += step_a, at_b += step_b, at_c += step_c) {
-        if ((at_a | at_b | at_c) < 0) continue;  // one of them is
+        if ((at_a | at_b | at_c) < 0) continue;  // outside: one of them is negative
         const double wa = static_cast<double>(at_a) * per_area, wb = static_cast<double>(at_b) * per_area,
                      wc = static_cast<double>(at_c) * per_area;
         const double z = wa * za + wb * zb + wc * zc;
@@ -142,8 +142,8 @@ class Raster {
   const PixelGrid& grid_;
   double sign_;
   std::vector<FixedPoint> points_;
-  std::vector<PixelRange> ranges_;                 // by triangle
-  std::vector<std::vector<std::uint32_t>> bands_;  // the triangles that reach into each, in their order
+  std::vector<PixelRange> ranges_;                 // [triangles]
+  std::vector<std::vector<std::uint32_t>> bands_;  // [bands] the triangles that reach into each, in order
 };
 
 }  // namespace

@@ -21,16 +21,16 @@ struct PixelGrid {
   double centre_y(std::uint32_t row) const { return bottom + (row + 0.5) * pixel; }
 };
 
-/// Most columns and rows of a picture: the rasteriser computes in whole numbers, which must not overflow.
+/// Maximum columns and rows of a picture: the rasteriser's integers must not overflow.
 constexpr std::uint32_t most_pixels_a_side = 8192;
 
-/// From where a picture is taken.
+/// The direction of view.
 enum class ViewFrom : std::uint8_t {
-  front,  ///< from z = +infinity towards -z: the largest z is seen
-  back    ///< from z = -infinity towards +z: the smallest z is seen
+  front,  ///< from z = +infinity towards -z: the largest z is visible
+  back    ///< from z = -infinity towards +z: the smallest z is visible
 };
 
-/// What the centre of a pixel shows.
+/// The nearest surface point at the centre of a pixel.
 struct Fragment {
   static constexpr std::uint32_t nothing = UINT32_MAX;
 
@@ -39,24 +39,24 @@ struct Fragment {
   std::uint32_t triangle = nothing;  ///< index into Surface::triangles
 };
 
-/// Rows of a band, the last of a picture excepted: what one thread draws at a time.
+/// Rows of a band, which one thread draws at a time; a picture's last band may have fewer.
 constexpr std::uint32_t band_rows = 16;
 
-/// What is done with a band: its first row, and its fragments row by row. Called by several threads at once,
-/// each time for another band. Must not throw.
+/// Receives a band: its first row, and its fragments row by row. Several threads call it concurrently, each
+/// for another band. Must not throw.
 using TakeBand = std::function<void(std::uint32_t first_row, std::span<const Fragment> fragments)>;
 
-/// Finds the nearest triangle at the centre of every pixel. Triangles count from both sides; the picture cuts
-/// off what lies beside it (a corner more than 32768 pixels away from its own is drawn that far away). x and
-/// y are rounded to 1/16384 of a pixel and coverage is decided in whole numbers, edges belonging to the
-/// triangles on both sides: a closed surface shows no gaps, and the same pixels from the front as from the
-/// back. Of triangles equally near, the first is shown. Points are finite. Works by `threads` threads (0: as
-/// many as OpenMP takes); the result does not depend on their number. Throws std::invalid_argument for a grid
+/// Finds the nearest triangle at the centre of every pixel. Both sides of triangles are visible. Triangles
+/// are clipped to the picture, except that corners more than 32768 pixels outside are moved to that distance.
+/// x and y are rounded to 1/16384 of a pixel and coverage is decided in integers, with edges belonging to the
+/// triangles on both sides: a closed surface shows no gaps, and covers the same pixels from the front as from
+/// the back. Of equally near triangles, the first is shown. Points must be finite. Uses `threads` threads (0:
+/// OpenMP's default); the result does not depend on their number. Throws std::invalid_argument for a grid
 /// that is empty, too large, or not finite.
 void rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view, int threads,
                const TakeBand& take);
 
-/// Gives all pixels as one array, row by row.
+/// The fragments of all pixels as one array, row by row.
 std::vector<Fragment> rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view,
                                 int threads = 0);
 

@@ -15,7 +15,7 @@ std::string place(const Vec3d& point) {
 
 namespace {
 
-/// The length of the hull's side that is met first when going along the sorted points.
+/// Length of the chain of hull edges on one side, along the sorted points.
 template <class Iterator>
 double half_perimeter(Iterator begin, Iterator end) {
   std::vector<PlanPoint> chain;
@@ -51,7 +51,7 @@ MonotoneCurve::MonotoneCurve(std::vector<double> positions, std::vector<double> 
   for (std::size_t i = 1; i < last; ++i) {
     const double before = secant(i - 1);
     const double behind = secant(i);
-    if (before * behind <= 0) continue;  // a local extreme, where the curve is level
+    if (before * behind <= 0) continue;  // local extremum: the curve is level there
     const double w_before = 2 * width(i) + width(i - 1);
     const double w_behind = width(i) + 2 * width(i - 1);
     slopes_[i] = (w_before + w_behind) / (w_before / before + w_behind / behind);

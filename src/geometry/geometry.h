@@ -26,27 +26,27 @@ struct Box {
   }
 };
 
-/// The smallest box that holds both.
+/// The smallest box that contains both.
 template <class Real>
 Box<Real> united(const Box<Real>& a, const Box<Real>& b) {
   return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
           {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 
-/// Makes the box hold the point, too.
+/// Extends the box to contain the point.
 template <class Real>
 void extend(Box<Real>& box, const Vec3<Real>& point) {
   box = united(box, {point, point});
 }
 
-/// Are two boxes, along each axis, less than `reach` (m) apart?
+/// Is the distance of two boxes along each axis less than `reach` (m)?
 template <class Real>
 bool near(const Box<Real>& a, const Box<Real>& b, Real reach) {
   return a.low.x - b.high.x < reach && b.low.x - a.high.x < reach && a.low.y - b.high.y < reach &&
          b.low.y - a.high.y < reach && a.low.z - b.high.z < reach && b.low.z - a.high.z < reach;
 }
 
-/// From a point to a box, m^2; 0 inside.
+/// Squared distance from a point to a box, m^2; 0 inside.
 template <class Real>
 Real distance_squared(const Box<Real>& box, const Vec3<Real>& point) {
   const auto outside = [](Real low, Real high, Real at) {
@@ -62,34 +62,34 @@ constexpr double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, con
   return dot(b - a, cross(c - a, d - a));
 }
 
-/// The point rounded to whole micrometres: what libm's last bit says about a sine then changes no mesh.
+/// The point rounded to whole micrometres, so that the last bit of libm's sines changes no mesh.
 inline Vec3d rounded(const Vec3d& point) {
   constexpr double per_metre = 1e6;
-  // Adding zero turns -0 into 0, which would be another text for the same place.
+  // Adding zero turns -0, whose text differs, into 0.
   const auto round_one = [](double x) { return std::round(x * per_metre) / per_metre + 0.0; };
   return {round_one(point.x), round_one(point.y), round_one(point.z)};
 }
 
-/// The farthest that a mesh file may place a node, in the file's unit: volumes, and what is computed from
-/// them in single precision, stay finite then, whatever the unit.
+/// Largest magnitude of a coordinate in a mesh file, in the file's unit: volumes, and single-precision values
+/// derived from them, then stay finite in every unit.
 constexpr double farthest_coordinate = 1e9;
 inline constexpr std::string_view coordinate_wanted = "give a number from -1e9 to 1e9";
 
-/// Is it a number, and not too large?
+/// Is it a number of at most farthest_coordinate?
 inline bool is_coordinate(double x) { return std::abs(x) <= farthest_coordinate; }
 
-/// A number for messages that has been computed, without the last digits, which rounding has made.
+/// A computed number for messages, without the last digits, which are rounding errors.
 std::string shown(double computed);
 
 /// "(x, y, z)" for messages.
 std::string place(const Vec3d& point);
 
-/// The numbers from 0 on, each in a set of its own until two are united.
+/// Disjoint sets of the numbers from 0 on (union-find); at first each number is its own set.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
 
-  /// The smallest number of the set that `i` is in.
+  /// The smallest number in the set of `i`.
   std::uint32_t root(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
@@ -110,25 +110,24 @@ struct PlanPoint {
   bool operator==(const PlanPoint&) const = default;
 };
 
-/// On which side of the line from `a` to `b` a point lies: twice the area of the triangle.
+/// Twice the signed area of the triangle a, b, point: its sign is the point's side of the line from a to b.
 inline double side_of(const PlanPoint& a, const PlanPoint& b, const PlanPoint& point) {
   return (b.x - a.x) * (point.z - a.z) - (b.z - a.z) * (point.x - a.x);
 }
 
-/// The length of a string around the points, m: the perimeter of their convex hull (Andrew, "Another
-/// efficient algorithm for convex hulls in two dimensions", 1979). 0 for a single point or none, twice the
-/// distance for points on a line.
+/// The perimeter of the points' convex hull, m (Andrew, "Another efficient algorithm for convex hulls in two
+/// dimensions", 1979). 0 for at most one point, twice the distance for points on a line.
 double hull_perimeter(std::vector<PlanPoint> points);
 
-/// A smooth curve through given values that is monotone between each two of them: it never overshoots.
-/// Piecewise cubic with the slopes of Fritsch and Butland ("A method for constructing local monotone
-/// piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 5, 1984).
+/// A smooth interpolating curve, monotone between neighbouring values: it never overshoots. Piecewise cubic
+/// with the slopes of Fritsch and Butland ("A method for constructing local monotone piecewise cubic
+/// interpolants", SIAM J. Sci. Stat. Comput. 5, 1984).
 class MonotoneCurve {
  public:
-  /// `positions` ascend strictly; there are as many `values`, two or more.
+  /// `positions` must ascend strictly; there must be as many `values`, at least two.
   MonotoneCurve(std::vector<double> positions, std::vector<double> values);
 
-  /// The value at a position; beyond the ends it is that of the end.
+  /// The value at a position; beyond an end it is the end's value.
   double operator()(double position) const;
 
  private:

@@ -18,7 +18,7 @@
 namespace mssim {
 namespace {
 
-/// One side of a triangle, in the triangle's direction of travel.
+/// One side of a triangle, in the triangle's orientation.
 struct SurfaceSide {
   std::uint32_t low = 0, high = 0;  ///< its points
   bool upwards = false;             ///< from low to high
@@ -28,7 +28,7 @@ struct SurfaceSide {
   std::uint32_t to() const { return upwards ? high : low; }
 };
 
-/// The sides of all triangles, those of one edge next to each other in the order of their triangles.
+/// The sides of all triangles, grouped by edge, in the order of their triangles.
 std::vector<SurfaceSide> sides_by_edge(const Surface& surface) {
   std::vector<SurfaceSide> sides;
   sides.reserve(3 * surface.triangles.size());
@@ -62,13 +62,13 @@ class Check {
     sides();
     if (!(volume_of(surface_) > 0))
       fail("it encloses a volume of " + shown(volume_of(surface_)) +
-           " m^3; turn its triangles round so that they run counter-clockwise seen from outside");
+           " m^3; reverse its triangles so that they are counter-clockwise seen from outside");
   }
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw InputError("{}: {}", name_, what); }
 
-  /// Files number points and triangles in their own ways, so messages give coordinates.
+  /// Files number points and triangles in different ways, so messages give coordinates.
   std::string at(std::uint32_t point) const { return place(surface_.points[point]); }
   std::string corners(std::size_t triangle) const {
     const auto& [a, b, c] = surface_.triangles[triangle];
@@ -126,7 +126,7 @@ class Check {
     }
   }
 
-  /// Twice the area over the square of a side below which a triangle counts as a line.
+  /// Twice the area over the square of a side; a triangle below this counts as a line.
   static constexpr double flat = 1e-9;
 
   const Surface& surface_;
@@ -135,7 +135,7 @@ class Check {
 
 constexpr std::uint32_t unknown = UINT32_MAX;
 
-/// The edges that belong to one triangle only, as that triangle runs, by the point where they begin.
+/// The edges of one triangle only, in that triangle's orientation, by their first points.
 class FreeEdges {
  public:
   explicit FreeEdges(const Surface& surface) : ends_(surface.points.size()) {
@@ -153,7 +153,7 @@ class FreeEdges {
     for (const auto& ends : ends_) sum += ends.size();
     return sum;
   }
-  /// Is the point at the begin or the end of one?
+  /// Is the point the first or last point of such an edge?
   std::vector<bool> touched() const {
     std::vector<bool> is_touched(ends_.size());
     for (std::size_t from = 0; from < ends_.size(); ++from)
@@ -161,7 +161,7 @@ class FreeEdges {
     return is_touched;
   }
   bool any_from(std::uint32_t point) const { return !ends_[point].empty(); }
-  /// The end of one of them, which is taken away.
+  /// Removes one of the edges that begin at a point and returns its end.
   std::uint32_t take_from(std::uint32_t point) {
     const std::uint32_t end = ends_[point].back();
     ends_[point].pop_back();
@@ -172,7 +172,7 @@ class FreeEdges {
   std::vector<std::vector<std::uint32_t>> ends_;
 };
 
-/// Merges points within that distance, each with the nearest of those before it.
+/// Merges points within a distance of each other, each with the nearest earlier one.
 class Joiner {
  public:
   Joiner(Surface& surface, double reach)
@@ -186,7 +186,7 @@ class Joiner {
       if (is_open[point]) place(point);
   }
 
-  /// Leaves the merged points out of the surface; how many.
+  /// Removes the merged points from the surface; returns their number.
   std::size_t finish() {
     std::vector<std::uint32_t> number(into_.size());
     std::uint32_t kept = 0;
@@ -223,7 +223,7 @@ class Joiner {
     if (into_[point] == point) kept_[cell].push_back(point);
   }
 
-  /// Or what has been merged into the other and the point.
+  /// Includes points that have been merged into the other and the point.
   bool share_a_triangle(std::uint32_t point, std::uint32_t other) const {
     return std::ranges::any_of(triangles_[point], [&](std::size_t t) {
       return std::ranges::any_of(surface_.triangles[t], [&](std::uint32_t corner) {
@@ -249,7 +249,7 @@ void measure(const Surface& surface, Opening& opening) {
     sum += 0.5 * weight * (from + to);
     total += weight;
   }
-  // Points of two numbers at one place make edges without length.
+  // Two numbers for one location make edges of length zero.
   opening.centre = total > 0 ? 1 / total * sum : surface.points[opening.points.front()];
   for (const std::uint32_t point : opening.points)
     opening.size = std::max(opening.size, 2 * length(surface.points[point] - opening.centre));
@@ -270,8 +270,8 @@ void fill(Surface& surface, const Opening& opening) {
 /// Edges between two points, the lower number first.
 using Edges = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// As `fill` does, but without a middle as long as a corner of the ring may be cut off: where the surface has
-/// no such edge yet, and the triangle looks the way the opening does.
+/// Like `fill`, but without a middle point as long as a corner of the ring can be cut off: if the surface
+/// does not yet have that edge, and the triangle faces the same way as the opening.
 void span(Surface& surface, Opening opening, Edges& edges) {
   std::vector<std::uint32_t>& ring = opening.points;
   const auto point = [&](std::size_t i) { return ring[i % ring.size()]; };
@@ -310,7 +310,7 @@ void validate_surface(const Surface& surface, std::string_view name) { Check(sur
 
 double volume_of(const Surface& surface) {
   if (surface.points.empty()) return 0;
-  // Measured from a point of the surface rather than the origin, so that a body far away loses no digits.
+  // Relative to a point of the surface instead of the origin, so a distant body loses no digits.
   const Vec3d& apex = surface.points.front();
   double six_times = 0;
   for (const auto& [a, b, c] : surface.triangles)
@@ -335,7 +335,7 @@ std::vector<Surface> closed_parts(const Surface& surface) {
   std::vector<std::uint32_t> number(surface.points.size(), unknown);
   for (std::uint32_t point = 0; point < surface.points.size(); ++point) {
     const std::uint32_t part = part_of[joined.root(point)];
-    if (part == unknown) continue;  // of no triangle
+    if (part == unknown) continue;  // no triangle has it
     number[point] = static_cast<std::uint32_t>(parts[part].points.size());
     parts[part].points.push_back(surface.points[point]);
   }
@@ -395,7 +395,7 @@ std::size_t join_corners(Surface& surface) {
   const Vec3d size = box.size();
   const double extent = std::max({size.x, size.y, size.z});
   std::size_t merged = 0;
-  // The two sides of something thin find their own corners before they are within reach of each other.
+  // On a thin sheet, matching corners are found before the distance reaches the other side.
   if (extent > 0)
     for (const double share : {1e-7, 1e-6, 1e-5}) merged += Joiner(surface, share * extent).finish();
   return merged;
@@ -407,7 +407,7 @@ void require_joined(const Surface& surface) {
   if (surface.triangles.size() > 1 && 2 * free > edges)
     throw InputError(
         "its triangles do not join: {} of {} edges belong to one triangle only; merge the points of corners "
-        "that lie beside each other where the surface was made",
+        "that lie next to each other where the surface was made",
         free, edges);
 }
 
@@ -420,7 +420,7 @@ std::vector<Opening> close_openings(Surface& surface, double largest) {
                           " m are closed; close it where the surface was made");
     if (!opening.is_ring)
       refuse(opening,
-             " does not enclose a hole, because triangles beside it have different orientations; give them "
+             " does not enclose a hole, because adjacent triangles have different orientations; give them "
              "one orientation where the surface was made");
   }
   for (const Opening& opening : openings) fill(surface, opening);
@@ -446,7 +446,7 @@ std::vector<Vec3d> vertex_normals(const Surface& surface) {
       const Vec3d to_next = surface.points[triangle[(corner + 1) % 3]] - at;
       const Vec3d to_last = surface.points[triangle[(corner + 2) % 3]] - at;
       const Vec3d normal = cross(to_next, to_last);
-      const double sine = length(normal);  // times both lengths, like the cosine
+      const double sine = length(normal);  // both are times both lengths
       if (sine > 0) normals[triangle[corner]] += (std::atan2(sine, dot(to_next, to_last)) / sine) * normal;
     }
   for (Vec3d& normal : normals)

@@ -11,7 +11,7 @@ namespace mssim {
 namespace {
 
 constexpr std::uint32_t leaf_triangles = 4;
-/// Halving puts a leaf of a tree of 2^32 triangles 30 levels deep.
+/// Halving puts a leaf of a tree of 2^32 triangles about 30 levels deep.
 constexpr std::size_t deepest = 64;
 
 double squared(const Vec3d& a) { return dot(a, a); }
@@ -22,7 +22,7 @@ double squared_distance_from_side(const Vec3d& a, const Vec3d& b, const Vec3d& p
   return squared(point - (a + along * side));
 }
 
-/// From the plane where the foot of the perpendicular lies in the triangle, else from the nearest side.
+/// Squared distance to the plane if the perpendicular's foot is in the triangle, else to the nearest side.
 double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& point) {
   const auto& [a, b, c] = triangle;
   const Vec3d normal = cross(b - a, c - a);
@@ -37,7 +37,7 @@ double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& point
                    squared_distance_from_side(c, a, point)});
 }
 
-/// A sum of products with the most that rounding can have changed it: its sign is certain beyond that.
+/// A sum of products with a bound on its rounding error: beyond the bound its sign is certain.
 struct Determinant {
   double value = 0, error = 0;
 
@@ -45,15 +45,15 @@ struct Determinant {
   bool negative() const { return value < -error; }
 };
 
-/// Twice the area of the triangle o, a, b seen against x, where o is the origin. Each product has three
-/// roundings (its factors are rounded differences), their difference one more: 4 units of half an epsilon.
+/// Twice the area of the triangle o, a, b seen against x, with the origin o. Each product has three roundings
+/// (its factors are rounded differences), and their difference has one more: 4 units of half an epsilon.
 Determinant area_of(const Vec3d& a, const Vec3d& b) {
   constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
   const double plus = a.y * b.z, minus = a.z * b.y;
   return {plus - minus, rounding * (std::abs(plus) + std::abs(minus))};
 }
 
-/// What the triangle (relative to the ray's start) adds to the winding number.
+/// Contribution of the triangle (relative to the ray's start) to the winding number.
 std::optional<int> crossing(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   if (std::max({a.x, b.x, c.x}) < 0) return 0;
   const std::array<Determinant, 3> sides{area_of(b, c), area_of(c, a), area_of(a, b)};
@@ -63,11 +63,11 @@ std::optional<int> crossing(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     one_negative = one_negative || side.negative();
     all_certain = all_certain && (side.positive() || side.negative());
   }
-  if (one_positive && one_negative) return 0;  // the line passes beside it
+  if (one_positive && one_negative) return 0;  // the line misses it
   if (!all_certain) return std::nullopt;
   const int facing = one_positive ? 1 : -1;
   if (std::min({a.x, b.x, c.x}) > 0) return facing;
-  // Six times the volume under the triangle: where the plane meets the line, times twice the area.
+  // Six times the volume under the triangle: intersection of plane and line, times twice the area.
   Determinant volume;
   const std::array<double, 3> heights{a.x, b.x, c.x};
   for (std::size_t k = 0; k < 3; ++k) {

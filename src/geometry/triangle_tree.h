@@ -12,7 +12,7 @@
 
 namespace mssim {
 
-/// The point of a triangle that is nearest to a given one.
+/// The point of a triangle nearest to a given point.
 struct NearestPoint {
   std::array<float, 3> weight{};  ///< barycentric, none negative; their sum is 1
   Vec3<float> offset;             ///< m, from the nearest point to the given one
@@ -21,14 +21,14 @@ struct NearestPoint {
 };
 
 /// The point of the triangle a, b, c nearest to p (Ericson, "Real-Time Collision Detection", 2005, 5.1.5). On
-/// an edge the third weight is exactly 0, at a corner the two others are. Where the triangle has no area, the
+/// an edge the third weight is exactly 0, at a corner the two others are. If the triangle has no area, the
 /// result is a point of its edges.
 inline NearestPoint nearest_point(const Vec3<float>& p, const Vec3<float>& a, const Vec3<float>& b,
                                   const Vec3<float>& c) {
   const Vec3<float> ab = b - a, ac = c - a, ap = p - a;
-  // An edge without length is its first point.
+  // For an edge without length, its first point.
   const auto fraction = [](float part, float whole) { return whole > 0 ? part / whole : 0; };
-  // Relative to a: differences of neighbours are small numbers, and their roundings too.
+  // Relative to a: differences of neighbours are small, and so are their rounding errors.
   const auto at = [&](float of_b, float of_c) {
     const float of_a = std::max(1 - of_b - of_c, 0.0F);
     return NearestPoint{{of_a, of_b, of_c}, ap - (of_b * ab + of_c * ac)};
@@ -50,40 +50,40 @@ inline NearestPoint nearest_point(const Vec3<float>& p, const Vec3<float>& a, co
   if (area_a <= 0 && along_b >= 0 && along_c >= 0) {
     const float of_c = fraction(along_b, along_b + along_c);
     NearestPoint nearest = at(1 - of_c, of_c);
-    nearest.weight[0] = 0;  // 1 - (1 - c) - c need not be
+    nearest.weight[0] = 0;  // 1 - (1 - c) - c may not be 0
     return nearest;
   }
   const float whole = area_a + area_b + area_c;
   return at(fraction(area_b, whole), fraction(area_c, whole));
 }
 
-/// The triangles of a closed surface in a tree of boxes, which finds the nearest of them and those on a line
-/// without visiting them all. Immutable: threads may ask it at the same time.
+/// The triangles of a closed surface in a tree of boxes, for searching the nearest triangle and those on a
+/// line without visiting all. Immutable: threads may share it.
 class TriangleTree {
  public:
-  /// `surface` has at least one triangle, and none without area.
+  /// `surface` must have at least one triangle, and none without area.
   explicit TriangleTree(const Surface& surface);
 
   const Box<double>& box() const { return nodes_.front().box; }
 
-  /// Distance from the nearest point of the nearest triangle, m, when it is less than `limit`, else `limit`.
+  /// Distance from the nearest point of the surface, m, or `limit` if it is not less than that.
   double distance(const Vec3d& point, double limit) const;
 
-  /// How often the surface goes round the point: +1 for a triangle that faces +x and that the ray from the
-  /// point to +x meets, -1 for one that faces -x. Nothing when rounding may have changed the sign of a
-  /// determinant that decides: the ray, or the point, is as near an edge, a vertex or a plane as that.
+  /// Winding number of the surface around the point: +1 for a triangle that faces +x and intersects the ray
+  /// from the point towards +x, -1 for one that faces -x. Nothing if rounding may have changed the sign of a
+  /// determinant: the ray or the point is too near an edge, a vertex or a plane.
   std::optional<int> winding_by_ray(const Vec3d& point) const;
 
   /// The winding number from the sum of the solid angles of all triangles (Van Oosterom and Strackee, "The
-  /// solid angle of a plane triangle", 1983), which knows no special positions but is slow. The point lies on
-  /// no triangle.
+  /// solid angle of a plane triangle", 1983). It has no special cases but is slow. The point must not lie on
+  /// a triangle.
   int winding_by_angles(const Vec3d& point) const;
 
  private:
   using Triangle = std::array<Vec3d, 3>;
   struct Node {
     Box<double> box;
-    std::uint32_t first = 0;  ///< a leaf: its first triangle; else the second child, the first stands behind
+    std::uint32_t first = 0;  ///< a leaf's first triangle, or the second child (the first is the next node)
     std::uint32_t count = 0;  ///< triangles of a leaf; 0: not a leaf
   };
   void build(std::uint32_t first, std::uint32_t end);

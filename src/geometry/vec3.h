@@ -4,7 +4,7 @@
 
 namespace mssim {
 
-/// A vector in space; y points up. Units stand where a Vec3 is declared.
+/// A vector in space; y points up. Units are given where a Vec3 is declared.
 template <class Real>
 struct Vec3 {
   Real x{}, y{}, z{};

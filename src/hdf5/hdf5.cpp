@@ -19,8 +19,8 @@ struct Reason {
   int error_number = 0;
 };
 
-/// Keeps the innermost entry of the error stack. Where a system call failed, its text reads
-/// "...: ..., errno = 28, error message = 'No space left on device', ...".
+/// Keeps the innermost entry of the error stack. If a system call failed, its text is "...: ..., errno = 28,
+/// error message = 'No space left on device', ...".
 herr_t note_innermost(unsigned depth, const H5E_error2_t* entry, void* reason_) {
   if (depth > 0) return 0;
   Reason& reason = *static_cast<Reason*>(reason_);
@@ -37,7 +37,7 @@ herr_t note_innermost(unsigned depth, const H5E_error2_t* entry, void* reason_) 
 
 constexpr int max_rank = 3;
 
-/// Fixed-length strings of `length` bytes; HDF5 knows none of length 0.
+/// Fixed-length strings of `length` bytes; HDF5 does not allow length 0.
 Hdf5Type string_type(std::size_t length) {
   Hdf5Type type(H5Tcopy(H5T_C_S1), "making a string type");
   checked(H5Tset_size(type.get(), std::max<std::size_t>(length, 1)), "setting a string's length");
@@ -62,7 +62,7 @@ void write(hid_t object, const std::string& name, hid_t file_type, hid_t memory_
   attribute.close(action);
 }
 
-/// Strings as HDF5 stores them: of one length, one behind the other.
+/// Strings as HDF5 stores them: of one length, contiguous.
 struct PackedStrings {
   Hdf5Type type;
   std::string bytes;
@@ -94,39 +94,39 @@ void write_string_dataset(hid_t parent, const std::string& name, std::span<const
   dataset.close(action);
 }
 
-/// Throws unless a dataset's bytes lie in its file, stored in a way that mssim writes. A virtual or
-/// external one would read other files, and a filter from elsewhere run its code.
+/// Throws unless a dataset's bytes are in its own file, stored in a way that mssim writes. A virtual or
+/// external dataset would read other files, and a third-party filter would run its code.
 void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) {
   const std::string action = fmt::format("looking up how {} is stored", path);
   const Hdf5Properties properties(H5Dget_create_plist(dataset.get()), action);
   if (checked(H5Pget_layout(properties.get()), action) == H5D_VIRTUAL ||
       checked(H5Pget_external_count(properties.get()), action) != 0)
-    throw Hdf5ContentError(path + " has its numbers elsewhere");
+    throw Hdf5ContentError(path + " stores its numbers in another file");
   const Hdf5Type type(H5Dget_type(dataset.get()), action);
   for (const Hdf5Filter& filter : filters_of(dataset)) {
     constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
     if (std::ranges::find(known, filter.number) == known.end())
       throw Hdf5ContentError(fmt::format(
-          "{} is packed by filter {}, which mssim does not read: shuffle, deflate and Fletcher32 it does",
+          "{} is packed by filter {}, which mssim does not read; it reads shuffle, deflate and Fletcher32",
           path, filter.number));
     if (filter.number == H5Z_FILTER_SHUFFLE && filter.option != H5Tget_size(type.get()))
-      throw Hdf5ContentError(path + " is said to hold shuffled bytes of other numbers than it does");
+      throw Hdf5ContentError(path + " has a shuffle filter for numbers of another size");
   }
 }
 
-/// What HDF5 calls a string, cut where it ends.
+/// An HDF5 string without its padding.
 std::string text_of(const char* bytes, std::size_t length, H5T_str_t padding) {
   std::string text(bytes, ::strnlen(bytes, length));
   if (padding == H5T_STR_SPACEPAD) text.erase(text.find_last_not_of(' ') + 1);
   return text;
 }
 
-/// The strings of a dataset or an attribute; `read` fills memory of the file's own type.
+/// The strings of a dataset or an attribute; `read` fills memory in the file's own type.
 template <class Read>
 std::vector<std::string> texts_in(hid_t file, const std::string& path, const Hdf5Type& type,
                                   const Hdf5Space& space, const Read& read) {
   const std::string action = "reading " + path;
-  if (checked(H5Tget_class(type.get()), action) != H5T_STRING) throw Hdf5ContentError(path + " is no text");
+  if (checked(H5Tget_class(type.get()), action) != H5T_STRING) throw Hdf5ContentError(path + " is not text");
   const H5T_str_t padding = checked(H5Tget_strpad(type.get()), action);
   const auto count = static_cast<hsize_t>(checked(H5Sget_simple_extent_npoints(space.get()), action));
   const std::size_t length = H5Tget_size(type.get());
@@ -164,7 +164,7 @@ Number read_number(hid_t file, const std::string& path, const std::string& name,
   const Hdf5Space space(H5Aget_space(attribute.get()), action);
   if (!is_known(type) || H5Sget_simple_extent_npoints(space.get()) != 1)
     throw Hdf5ContentError(
-        fmt::format("attribute {} of {} is no single number of a type that mssim reads", name, path));
+        fmt::format("attribute {} of {} is not a single number of a type that mssim reads", name, path));
   Number number{};
   checked(H5Aread(attribute.get(), memory_type, &number), action);
   return number;
@@ -175,12 +175,12 @@ Number read_number(hid_t file, const std::string& path, const std::string& name,
 void prepare_hdf5() {
   static std::once_flag once;
   std::call_once(once, [] {
-    // HDF5 reads it once, before anything else. A file under way is locked by its AtomicFile, which HDF5's
-    // own locks would take for another program's.
+    // HDF5 reads the variable once, at its first use. A file being written is locked by its AtomicFile;
+    // HDF5's own locks would mistake that for another program's lock.
     ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
     H5dont_atexit();
   });
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // of this thread
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread
 }
 
 void throw_hdf5_error(const std::string& action) {
@@ -252,7 +252,7 @@ void write_numbers(hid_t parent, const std::string& path, std::span<const double
 
 Hdf5Properties chunked(std::span<const hsize_t> chunk, Packing packing) {
   const std::string action = "setting how a dataset is stored";
-  // The first level already finds what there is in floating-point numbers after shuffling.
+  // Level 1 already achieves what is possible for floating-point numbers after shuffling.
   constexpr unsigned deflate_level = 1;
   Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), action);
   checked(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), action);
@@ -294,8 +294,8 @@ void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t fir
 
 Hdf5File open_for_reading(const std::filesystem::path& file) {
   prepare_hdf5();
-  checked(H5PLset_loading_state(0), "turning off filters from elsewhere");
-  if (H5Fis_hdf5(file.c_str()) == 0) throw Hdf5ContentError("it is no HDF5 file");
+  checked(H5PLset_loading_state(0), "turning off filter plugins");
+  if (H5Fis_hdf5(file.c_str()) == 0) throw Hdf5ContentError("it is not an HDF5 file");
   return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening"};
 }
 
@@ -305,7 +305,7 @@ bool exists(hid_t file, const std::string& path) {
     if (checked(H5Lexists(file, part.c_str(), H5P_DEFAULT), action) == 0) return false;
     H5L_info_t link{};
     checked(H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT), action);
-    if (link.type != H5L_TYPE_HARD) throw Hdf5ContentError(part + " is a link to elsewhere");
+    if (link.type != H5L_TYPE_HARD) throw Hdf5ContentError(part + " is a soft or external link");
     if (end == std::string::npos) return true;
     H5O_info_t object{};
     checked(H5Oget_info_by_name(file, part.c_str(), &object, H5P_DEFAULT), action);
@@ -318,7 +318,7 @@ Hdf5Dataset open_dataset(hid_t file, const std::string& path) {
   const std::string action = "opening " + path;
   H5O_info_t object{};
   checked(H5Oget_info_by_name(file, path.c_str(), &object, H5P_DEFAULT), action);
-  if (object.type != H5O_TYPE_DATASET) throw Hdf5ContentError(path + " is no dataset");
+  if (object.type != H5O_TYPE_DATASET) throw Hdf5ContentError(path + " is not a dataset");
   Hdf5Dataset dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), action);
   require_known_storage(dataset, path);
   return dataset;
@@ -356,7 +356,7 @@ void require_room(hid_t file, const std::string& path, hsize_t items, hsize_t by
   hsize_t bytes = 0;
   checked(H5Fget_filesize(file, &bytes), "asking for the length of the file");
   if (items > bytes * ratio / bytes_per_item)
-    throw Hdf5ContentError(path + " says that it is larger than the file can hold");
+    throw Hdf5ContentError(path + " claims to be larger than the file can hold");
 }
 
 std::vector<std::string> read_texts(hid_t file, const std::string& path) {
@@ -370,7 +370,7 @@ std::vector<std::string> read_texts(hid_t file, const std::string& path) {
 
 std::string read_text(hid_t file, const std::string& path) {
   std::vector<std::string> texts = read_texts(file, path);
-  if (texts.size() != 1) throw Hdf5ContentError(path + " is no single text");
+  if (texts.size() != 1) throw Hdf5ContentError(path + " is not a single text");
   return texts.front();
 }
 
@@ -386,7 +386,7 @@ std::string read_text_attribute(hid_t file, const std::string& path, const std::
   const Hdf5Space space(H5Aget_space(attribute.get()), "reading " + place);
   std::vector<std::string> texts = texts_in(
       file, place, type, space, [&](void* data) { return H5Aread(attribute.get(), type.get(), data); });
-  if (texts.size() != 1) throw Hdf5ContentError(place + " is no single text");
+  if (texts.size() != 1) throw Hdf5ContentError(place + " is not a single text");
   return texts.front();
 }
 

@@ -10,11 +10,11 @@
 namespace mssim {
 namespace {
 
-/// What deflation makes of a byte at most: two bits of its stream stand for 258 bytes.
+/// Maximum expansion of a deflated byte: two bits of its stream can encode 258 bytes.
 constexpr hsize_t most_deflated = 1032;
 constexpr hsize_t fletcher32_bytes = 4;
 
-/// The largest number of all where the product is larger.
+/// Saturates at the largest hsize_t.
 hsize_t product_of(const std::vector<hsize_t>& extents) {
   hsize_t product = 1;
   for (const hsize_t extent : extents)
@@ -22,7 +22,7 @@ hsize_t product_of(const std::vector<hsize_t>& extents) {
   return product;
 }
 
-/// How many bytes a text of zlib's stands for, or some number above `most`; none where it is damaged.
+/// Inflated size of a zlib stream, or some number above `most`; nothing if the stream is damaged.
 std::optional<hsize_t> inflated_bytes(std::vector<unsigned char>& deflated, hsize_t most) {
   z_stream stream{};
   if (::inflateInit(&stream) != Z_OK) return std::nullopt;
@@ -113,7 +113,7 @@ std::vector<Number> Hdf5Table::read(hsize_t first_row, hsize_t rows, hid_t memor
 void Hdf5Table::require_stored(hsize_t first_row, hsize_t rows) const {
   if (chunk_.empty()) {
     if (H5Dget_storage_size(dataset_.get()) / bytes_per_number_ < product_of(extents_))
-      throw Hdf5ContentError(path_ + " is not in the file as a whole");
+      throw Hdf5ContentError(path_ + " is incomplete in the file");
     return;
   }
   require_room(file_, path_, product_of(chunk_), bytes_per_number_, is_deflated() ? most_deflated : 1);
@@ -126,7 +126,7 @@ void Hdf5Table::each_chunk(hsize_t first_row, hsize_t rows,
   start.front() = first_row / chunk_.front() * chunk_.front();
   while (true) {
     visit(start);
-    std::size_t axis = start.size() - 1;  // to the next one, along the last axis first
+    std::size_t axis = start.size() - 1;  // advances to the next chunk, along the last axis first
     while ((start[axis] += chunk_[axis]) >= (axis == 0 ? first_row + rows : extents_[axis])) {
       if (axis == 0) return;
       start[axis--] = 0;
@@ -137,13 +137,13 @@ void Hdf5Table::each_chunk(hsize_t first_row, hsize_t rows,
 hsize_t Hdf5Table::stored_bytes(const std::vector<hsize_t>& start) const {
   hsize_t stored = 0;
   checked(H5Dget_chunk_storage_size(dataset_.get(), start.data(), &stored), "reading " + path_);
-  if (stored == 0) throw Hdf5ContentError(path_ + " is not in the file as a whole");
+  if (stored == 0) throw Hdf5ContentError(path_ + " is incomplete in the file");
   require_room(file_, path_, stored, 1);
   return stored;
 }
 
-/// HDF5 trusts what the file says of how long a chunk is, and of filters that were left out of it. It does
-/// not compare what it inflates with the chunk that it should be, and would read on behind it.
+/// HDF5 trusts the file about the length of a chunk and about skipped filters. It does not compare an
+/// inflated chunk with its expected length, and would read beyond its end.
 void Hdf5Table::require_whole_chunk(const std::vector<hsize_t>& start) const {
   std::vector<unsigned char> raw(stored_bytes(start));
   std::uint32_t left_out = 0;
@@ -152,11 +152,11 @@ void Hdf5Table::require_whole_chunk(const std::vector<hsize_t>& start) const {
   const hsize_t whole = product_of(chunk_) * bytes_per_number_;
   std::optional<hsize_t> bytes = raw.size();
   bool inflated = false;
-  // Undone from the last filter to the first.
+  // Undo the filters from the last to the first.
   for (std::size_t i = filters_.size(); i-- > 0 && bytes;) {
     const bool applied = (left_out >> i & 1U) == 0;
     if (filters_[i].number == H5Z_FILTER_FLETCHER32) {
-      if (!applied) throw Hdf5ContentError(path_ + " has a part without its checksum");
+      if (!applied) throw Hdf5ContentError(path_ + " has a chunk without its checksum");
       *bytes -= std::min(*bytes, fletcher32_bytes);
       if (!inflated) raw.resize(*bytes);
     } else if (filters_[i].number == H5Z_FILTER_DEFLATE && applied) {
@@ -164,8 +164,8 @@ void Hdf5Table::require_whole_chunk(const std::vector<hsize_t>& start) const {
       bytes = inflated_bytes(raw, whole + fletcher32_bytes);
     }
   }
-  if (!bytes) return;  // HDF5 fails on it, too, and says why
-  if (*bytes != whole) throw Hdf5ContentError(path_ + " has a part of another length than it should be");
+  if (!bytes) return;  // HDF5 fails on it, too, and reports why
+  if (*bytes != whole) throw Hdf5ContentError(path_ + " has a chunk of the wrong length");
 }
 
 std::vector<double> read_doubles(hid_t file, const std::string& path, const std::vector<hsize_t>& extents) {
@@ -179,7 +179,7 @@ std::vector<std::uint32_t> read_numbers(hid_t file, const std::string& path,
   std::vector<std::uint32_t> numbers;
   for (const std::int64_t number : table.integers(0, table.rows())) {
     if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
-      throw Hdf5ContentError(fmt::format("{} has the number {}, which it cannot be", path, number));
+      throw Hdf5ContentError(fmt::format("{} has the number {}, which is out of range", path, number));
     numbers.push_back(static_cast<std::uint32_t>(number));
   }
   return numbers;

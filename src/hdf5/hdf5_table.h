@@ -13,8 +13,8 @@
 
 namespace mssim {
 
-/// Writes tuples of particles, as H5MD's /connectivity holds them, with a reference to their group. An empty
-/// list has no dataset. Throws Hdf5Error.
+/// Writes tuples of particles as H5MD's /connectivity stores them, with a reference to their group. An empty
+/// list gets no dataset. Throws Hdf5Error.
 template <std::size_t size>
 void write_tuples(hid_t file, const std::string& path, const std::string& particles,
                   std::span<const std::array<std::uint32_t, size>> tuples) {
@@ -23,7 +23,7 @@ void write_tuples(hid_t file, const std::string& path, const std::string& partic
   const std::array<hsize_t, 2> shape{tuples.size(), size};
   const std::array<hsize_t, 2> chunk{std::min(shape[0], tuples_per_chunk), size};
   const Hdf5Properties properties = chunked(chunk, Packing::deflated);
-  // Readers of H5MD pass over tuples that hold the fill value. HDF5's own is 0, a real node.
+  // Readers of H5MD skip tuples with the fill value. HDF5's default is 0, a real node.
   constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
   checked(H5Pset_fill_value(properties.get(), H5T_NATIVE_UINT32, &no_node), "setting a fill value");
   Hdf5Dataset dataset = create_dataset(file, path, H5T_STD_U32LE, shape, false, properties);
@@ -32,14 +32,13 @@ void write_tuples(hid_t file, const std::string& path, const std::string& partic
   dataset.close(action);
 }
 
-/// Numbers in an HDF5 file that anybody may have written or repacked: rows of one shape, of a type that
-/// is_real() or is_integer() knows, in chunks of any extents or none. What is read has its checksums compared
-/// and is stored in the file as a whole: HDF5 itself gives zeros for chunks that are not there. All functions
-/// throw Hdf5Error and Hdf5ContentError.
+/// Numbers in an HDF5 file from any source, possibly repacked: rows of one shape, of a type that is_real() or
+/// is_integer() accepts, in chunks of any extents or none. Checksums are verified, and every chunk must be in
+/// the file: HDF5 itself gives zeros for missing chunks. All functions throw Hdf5Error and Hdf5ContentError.
 class Hdf5Table {
  public:
   static constexpr hsize_t any = H5S_UNLIMITED;  ///< an extent that may be any number
-  /// A dataset with these extents, of which the first is how many rows there are.
+  /// A dataset with these extents; the first is the number of rows.
   Hdf5Table(hid_t file, std::string path, const std::vector<hsize_t>& extents);
 
   hsize_t rows() const { return extents_.front(); }
@@ -49,8 +48,7 @@ class Hdf5Table {
   /// Throws unless these rows are in the file.
   void require_stored(hsize_t first_row, hsize_t rows) const;
 
-  /// The numbers of some rows, one row behind the other; `doubles` of floating-point numbers, `integers` of
-  /// the others.
+  /// The numbers of some rows, row by row; `doubles` for floating-point numbers, `integers` for integers.
   std::vector<double> doubles(hsize_t first_row, hsize_t rows) const;
   std::vector<std::int64_t> integers(hsize_t first_row, hsize_t rows) const;
 
@@ -61,7 +59,7 @@ class Hdf5Table {
   /// Calls `visit` with the first corner of each chunk of these rows.
   void each_chunk(hsize_t first_row, hsize_t rows,
                   const std::function<void(const std::vector<hsize_t>&)>& visit) const;
-  /// The bytes that a chunk takes in the file.
+  /// The size of a chunk in the file, bytes.
   hsize_t stored_bytes(const std::vector<hsize_t>& start) const;
   void require_whole_chunk(const std::vector<hsize_t>& start) const;
 
@@ -71,7 +69,7 @@ class Hdf5Table {
   std::vector<hsize_t> extents_;
   hsize_t bytes_per_number_ = 0;
   std::vector<Hdf5Filter> filters_;
-  std::vector<hsize_t> chunk_;  ///< extents of a chunk; none where there are no chunks
+  std::vector<hsize_t> chunk_;  ///< extents of a chunk; empty if the dataset is not chunked
 };
 
 /// All numbers of a dataset.

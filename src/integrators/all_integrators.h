@@ -8,11 +8,11 @@
 
 namespace mssim {
 
-/// The TABLE of integrators that are stages. A new explicit method is one row here, and every backend has it.
+/// The TABLE of integrators with stages. A new explicit method is one row here, for every backend.
 ///
-/// Numbering of the equations: Hong et al. 2016. Their published times fit one force evaluation a step for
-/// all three methods (midpoint costs 1.04 and RK4 1.22 Euler steps), so beside the real methods stand
-/// `-frozen` ones, which hold the acceleration over the step and take the trial steps with it.
+/// Numbering of the equations: Hong et al. 2016. Their published times fit one force evaluation per step for
+/// all three methods (midpoint costs 1.04 and RK4 1.22 Euler steps), so each real method with several stages
+/// has a `-frozen` row that holds the acceleration over the step and takes the trial steps with it.
 inline constexpr auto integrators = std::to_array<Integrator>({
     // Eq. (2): v+ = v + dt a(x, v), x+ = x + dt v+.
     of_stages("semi-euler", 1, "semi-implicit Euler", "semi-euler",
@@ -71,7 +71,7 @@ inline constexpr auto integrators = std::to_array<Integrator>({
                       {1. / 6, 1, Slot::temporary_2}}}},
                    {Slot::v_next, {{{1, 0, Slot::v}, {1, 1, Slot::a}}}}}}}}}),
 
-    // Euler's method: x+ = x + dt v, v+ = v + dt a(x, v). It feeds energy into every undamped oscillation, at
+    // Euler's method: x+ = x + dt v, v+ = v + dt a(x, v). It adds energy to every undamped oscillation, at
     // every dt: Hong et al. name it as what Eq. (2) improves on.
     of_stages("explicit-euler", 1, "explicit Euler: unstable at every dt without damping", {},
               {{{Pair::state,
@@ -87,8 +87,8 @@ static_assert(std::ranges::all_of(integrators, gathers_safely),
 ///
 ///     y = x + dt/2 v,   v+ = v + dt a(y, v),   x+ = y + dt/2 v+,
 ///
-/// which is semi-implicit Euler for the positions y, half a step ahead. Forces of positions alone make it
-/// symplectic and of order 2. Damping is taken at the old velocity, which leaves order 1.
+/// which is semi-implicit Euler for the positions y, half a step ahead. If forces depend only
+/// on positions, it is symplectic and of order 2. Damping uses the old velocity, which leaves order 1.
 inline constexpr Integrator verlet = [] {
   Integrator row = integrators[0];
   row.name = "verlet";
@@ -102,7 +102,7 @@ inline constexpr Integrator verlet = [] {
 }();
 static_assert(integrators[0].name == "semi-euler");
 
-/// The TABLE of implicit integrators. A backend has them where its row has a make_implicit
+/// The TABLE of implicit integrators. A backend supports them if its row has a make_implicit
 /// (backends/backends.h). All but xpbd step towards backward Euler,
 ///
 ///     v+ = v + dt a(x+, v+),   x+ = x + dt v+.

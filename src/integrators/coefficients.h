@@ -10,8 +10,8 @@
 
 namespace mssim {
 
-/// coefficient * dt^dt_power of every term, evaluated once in double and rounded once to Real:
-/// [stage][assignment][term], so that the loops multiply by one number.
+/// [stage][assignment][term] coefficient * dt^dt_power of every term, evaluated once in double and rounded
+/// once to Real, so the loops multiply by one number.
 template <class Real>
 using Coefficients = std::array<std::array<std::array<Real, max_terms>, max_assignments>, max_stages>;
 
@@ -27,8 +27,8 @@ Coefficients<Real> coefficients_of(const Integrator& integrator, double dt_s) {
   return result;
 }
 
-/// Calls `visit(std::integral_constant<std::size_t, I>)` with the row of the table of stages that
-/// `integrator` takes, so that loops can be instantiated from the row. It must be explicit.
+/// Calls `visit(std::integral_constant<std::size_t, I>)`, where I is the row of `integrator` in the table of
+/// stages, so loops can be instantiated from the row. `integrator` must be explicit.
 template <class Visit>
 void with_integrator(const Integrator& integrator, Visit&& visit) {
   const Integrator* const taken = integrator.row != nullptr ? integrator.row : &integrator;

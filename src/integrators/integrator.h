@@ -10,15 +10,15 @@ namespace mssim {
 
 /// Explicit integrators are data: a list of stages, each of which evaluates the acceleration at one pair of
 /// slots and then writes pointwise linear combinations. The host backends unroll the table at compile time,
-/// the OpenCL backends generate their program text from it; the mathematics stands here and nowhere else.
-/// Implicit integrators have no stages: a Solver finds their new state.
+/// and the OpenCL backends generate their program text from it, so the mathematics is written only here.
+/// Implicit integrators have no stages: a Solver computes their new state.
 
 /// A pair holds one position-like and one velocity-like vector for every node.
 enum class Pair : std::uint8_t { state, next, trial_a, trial_b };
 inline constexpr std::size_t pair_kinds = 4;
 
-/// What a line may read or write. The first eight are memory, pair by pair; the rest live in registers within
-/// a stage.
+/// Vectors that an assignment may read or write. The first eight are in memory, pair by pair; the rest are in
+/// registers within a stage.
 enum class Slot : std::uint8_t { x, v, x_next, v_next, x_a, v_a, x_b, v_b, a, temporary_1, temporary_2 };
 inline constexpr std::size_t memory_slots = 2 * pair_kinds;
 inline constexpr std::size_t slot_kinds = memory_slots + 3;
@@ -31,45 +31,45 @@ struct Term {
 };
 inline constexpr std::size_t max_terms = 5;
 
-/// out = sum of the terms. Lines run in order, later ones see earlier results.
-/// The first term is the large one; it is added last, so that a position is rounded once.
+/// out = sum of the terms. Assignments are executed in order; later ones see earlier results. The first term
+/// is the large one; it is added last, so a position is rounded once.
 struct Assignment {
   Slot out = Slot::a;
   std::array<Term, max_terms> terms{};
 };
 inline constexpr std::size_t max_assignments = 4;
 
-/// Acceleration at `gather`, then the assignments.
+/// Evaluates the acceleration at `gather`, then executes the assignments.
 struct Stage {
   Pair gather = Pair::state;
   std::array<Assignment, max_assignments> assignments{};
 };
 inline constexpr std::size_t max_stages = 4;
 
-/// What finds the new state of an implicit step (src/backends/implicit/).
+/// The method that computes the new state of an implicit step (src/backends/implicit/).
 enum class Solver : std::uint8_t {
   none,          ///< the step is explicit: stages
   newton_step,   ///< one step of Newton's method from the state, by conjugate gradients
-  newton,        ///< Newton's method until the step's equation holds
-  local_global,  ///< projections of single springs and solutions of one constant system, by turns
-  constraints    ///< one spring after the other in small steps
+  newton,        ///< Newton's method until it converges
+  local_global,  ///< alternating projections of single springs and solutions of one constant system
+  constraints    ///< one spring after the other, in substeps
 };
 
-/// A step: the stages in order, or what the solver finds; then `next` is the new state and the floor has
-/// acted on it.
+/// A step: the stages in order, or the solver. After it, `next` is the new state and the floor has acted on
+/// it.
 struct Integrator {
   std::string_view name;
-  int order = 0;                   ///< of convergence on smooth problems, measured by the tests
+  int order = 0;                   ///< order of convergence on smooth problems, measured by the tests
   std::size_t stage_count = 0;     ///< also the number of force evaluations; 0 for implicit ones
   std::string_view description{};  ///< one line for `mssim list integrators`
-  std::string_view paper_name{};   ///< the integrator of Hong et al. that it stands for
+  std::string_view paper_name{};   ///< the corresponding integrator of Hong et al.
   std::array<Stage, max_stages> stages{};
   Solver solver = Solver::none;
-  int damped_order = order;  ///< of convergence where forces depend on velocities
-  /// The row of the table of stages that these stages are; null: this one is a row of that table.
+  int damped_order = order;  ///< order of convergence if forces depend on velocities
+  /// The row of the table that has these stages; null: this one is such a row.
   const Integrator* row = nullptr;
-  /// Part of a step by which the positions that the stages see stand ahead of the state's
-  /// (step_ahead, backends/interface/backend.h).
+  /// How far the stages' positions are ahead of the state's, in steps (step_ahead,
+  /// backends/interface/backend.h).
   double ahead = 0;
 };
 
@@ -103,7 +103,7 @@ constexpr Integrator of_stages(std::string_view name, int order, std::string_vie
   return {name, order, count, description, paper_name, stages};
 }
 
-/// Does the stage write this slot?
+/// Does the stage write the slot?
 constexpr bool writes(const Stage& stage, Slot slot) {
   for (const Assignment& assignment : stage.assignments)
     if (term_count(assignment) > 0 && assignment.out == slot) return true;
@@ -114,8 +114,8 @@ constexpr bool writes(const Stage& stage, Pair pair) {
   return writes(stage, position_slot(pair)) || writes(stage, velocity_slot(pair));
 }
 
-/// Does the stage need the slot's value from memory, because a line reads it before one has written it?
-/// The gathered pair is read by the force in any case.
+/// Does the stage read the slot from memory, because an assignment uses it before one has written it? The
+/// force reads the gathered pair in any case.
 constexpr bool reads(const Stage& stage, Slot slot) {
   for (const Assignment& assignment : stage.assignments) {
     for (std::size_t t = 0; t < term_count(assignment); ++t)
@@ -134,22 +134,21 @@ constexpr bool touches(const Integrator& integrator, Pair pair) {
   return false;
 }
 
-/// Where neighbours are gathered while others are being written, a stage must not write what it gathers from.
+/// If neighbours are gathered while others are written, a stage must not write the pair that it gathers.
 constexpr bool gathers_safely(const Integrator& integrator) {
   for (std::size_t s = 0; s < integrator.stage_count; ++s)
     if (writes(integrator.stages[s], integrator.stages[s].gather)) return false;
   return true;
 }
 
-/// How a backend lays the pairs out in memory.
+/// The layout of the pairs in a backend's memory.
 enum class Storage {
-  separate,  ///< every pair has arrays of its own: needed where a node's new value could be gathered by
-             ///< another
-  in_place   ///< pairs share arrays where a pointwise update allows it
+  separate,  ///< every pair has its own arrays, because another node could gather the new value
+  in_place   ///< pairs share arrays if a pointwise update allows it
 };
 
-/// The array pair that holds `pair`. In place, the second trial pair shares the first one's arrays (each
-/// trial is dead once the next is written), and `next` shares the state's unless an earlier stage already
+/// The array pair that stores `pair`. In place, the second trial pair shares the first one's arrays (a trial
+/// is dead once the next one is written), and `next` shares the state's unless an earlier stage already
 /// writes it.
 constexpr Pair storage_of(const Integrator& integrator, Pair pair, Storage storage) {
   if (storage == Storage::separate) return pair;
@@ -160,15 +159,15 @@ constexpr Pair storage_of(const Integrator& integrator, Pair pair, Storage stora
   return Pair::state;
 }
 
-/// The arrays that a stage writes `pair` to where stages follow each other in a walk over the nodes. Whatever
-/// a step gathered its `next` in, its last stage writes it over the state, which no later stage of the step
-/// looks at.
+/// The arrays to which a stage writes `pair` if stages follow each other in a walk over the nodes. A step's
+/// last stage writes `next` over the state, which no later stage of the step reads, wherever the step
+/// gathered its `next`.
 constexpr Pair walk_writes_to(const Integrator& integrator, std::size_t stage, Pair pair) {
   if (pair == Pair::next && stage + 1 == integrator.stage_count) return Pair::state;
   return storage_of(integrator, pair, Storage::in_place);
 }
 
-/// Does a step end with the state in the arrays of `next`, so that the two change roles?
+/// Does a step leave the new state in the arrays of `next`, so that the two change roles?
 constexpr bool swaps_state(const Integrator& integrator, Storage storage) {
   return storage_of(integrator, Pair::next, storage) == Pair::next;
 }
@@ -186,8 +185,8 @@ inline std::vector<Pair> stored_pairs(const Integrator& integrator, Storage stor
   return stored;
 }
 
-/// Does the stage write into `pair` what is gathered later, by another stage or as the state by the next
-/// step?
+/// Does the stage write values of `pair` that are gathered later, by another stage or as the state by the
+/// next step?
 constexpr bool writes_to_gather(const Integrator& integrator, std::size_t stage, Pair pair) {
   if (!writes(integrator.stages[stage], pair)) return false;
   if (pair == Pair::next && stage + 1 == integrator.stage_count) return true;

@@ -12,8 +12,8 @@
 namespace mssim {
 namespace {
 
-/// A number as a linear function of the state that a step starts from: of_x * x + of_v * v. The step of such
-/// numbers is the step's matrix.
+/// A number as a linear function of the state at the start of a step: of_x * x + of_v * v. A step of such
+/// numbers gives the step's matrix.
 struct Linear {
   double of_x = 0, of_v = 0;
 
@@ -62,7 +62,7 @@ double amplification(const Integrator& integrator, double dt_s, double stiffness
 }
 
 double largest_amplification(const Integrator& integrator, double dt_s, const ModeBound& bound) {
-  // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, moves as in free
+  // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, is nearly in free
   // flight.
   constexpr int modes = 63;
   double largest = 0, fraction = 1;
@@ -78,9 +78,9 @@ double largest_amplification(const Integrator& integrator, double dt_s, const Mo
 double largest_stable_dt(const Integrator& integrator, const ModeBound& bound) {
   const double fastest_rate = std::max(std::sqrt(bound.stiffness), bound.damping);
   if (is_implicit(integrator) || !(fastest_rate > 0)) return std::numeric_limits<double>::infinity();
-  // The first unstable dt on the way up, so that an island of stability beyond it is not taken for the limit.
-  // A consistent method that damping keeps stable is so where the walk starts, and no explicit one is where
-  // it would end.
+  // The first unstable dt going up, so an island of stability beyond it is not mistaken for the limit. A
+  // consistent method that damping stabilises is stable at the start of the search, and no explicit method is
+  // stable at its end.
   constexpr double step = 1.02;
   double unstable = 1e-5 / fastest_rate;
   if (!is_stable(integrator, unstable, bound)) return 0;
@@ -96,7 +96,7 @@ double largest_stable_dt(const Integrator& integrator, const ModeBound& bound) {
 double auto_dt(const ModeBound& bound) {
   constexpr double safety = 0.5;
   double limit = std::numeric_limits<double>::infinity();
-  for (const Integrator& integrator : integrators)  // the methods of the paper, not only its costs
+  for (const Integrator& integrator : integrators)  // the paper's methods, not those that only have its costs
     if (integrator.paper_name == integrator.name)
       limit = std::min(limit, largest_stable_dt(integrator, bound));
   if (std::isinf(limit))

@@ -1,12 +1,12 @@
-/// The pointwise part of a stage, unrolled from the integrator table: the only place where its assignments
-/// are executed on the host. Text without an include guard, because vector code has to compile it once per
+/// The pointwise part of a stage, unrolled from the integrator table: the only code that executes its
+/// assignments on the host. Text without an include guard, because vector code compiles it once per
 /// instruction set, inside a namespace of that set. The includer defines MSSIM_INLINE and, for its `Vector`
 /// and `Real`,
 ///   mul_add(Real, Vector, Vector), Vector + Vector, Real * Vector,
 /// and has included integrators/coefficients.h.
 
-/// One line: the sum of its terms, the last first, so that the large first term is added last. Of two terms
-/// it is rounded once where mul_add is.
+/// One assignment: the sum of its terms, the last first, so the large first term is added last. A sum of two
+/// terms is rounded once if mul_add is.
 template <std::size_t row, std::size_t stage, std::size_t assignment, bool in_steps, class Vector, class Real>
 MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coefficients) {
   constexpr Assignment terms = integrators[row].stages[stage].assignments[assignment];
@@ -14,7 +14,7 @@ MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coe
   const auto& factor = coefficients[stage][assignment];
   static_assert(count == 1 || (terms.terms[0].coefficient == 1 && terms.terms[0].dt_power == 0),
                 "the large term is a plain one");
-  // The same number as a product with 1, and one multiplication less.
+  // Equals a product with 1, but saves the multiplication.
   if constexpr (count == 2 && in_steps && terms.terms[1].coefficient == 1)
     return value[index(terms.terms[0].slot)] + value[index(terms.terms[1].slot)];
   else if constexpr (count == 2)
@@ -27,10 +27,10 @@ MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coe
   return sum;
 }
 
-/// All assignments of a stage at one node (or one vector of nodes).
-/// load(slot) -> Vector reads memory, store(slot, Vector) writes it, contact(x, v) acts on the new state at
-/// the end of the last stage. `x` and `v` are the gathered pair's values, `a` the acceleration found with
-/// them. `in_steps`: dt is the unit of time, and the coefficients are those of dt = 1.
+/// All assignments of a stage at one node (or one vector of nodes). load(slot) -> Vector reads memory,
+/// store(slot, Vector) writes it, contact(x, v) acts on the new state at the end of the last stage. `x` and
+/// `v` are the gathered pair's values, `a` is the acceleration at them. `in_steps`: dt is the unit of time,
+/// and the coefficients are those of dt = 1.
 template <std::size_t row, std::size_t stage, bool in_steps = false, class Vector, class Real, class Load,
           class Store, class Contact>
 MSSIM_INLINE void update_stage(const Coefficients<Real>& coefficients, const Vector& x, const Vector& v,

@@ -7,10 +7,10 @@
 
 namespace mssim {
 
-/// The laws of kernels/ for one node at a time on the host: Real is float or double. Code that handles
-/// several nodes in one vector register instantiates the same texts on its own.
+/// The laws of kernels/ for one node at a time on the host: Real is float or double. Vector code instantiates
+/// the same texts itself.
 
-/// a * b + c, in two roundings: a fused one would be a library call on processors without the instruction.
+/// a * b + c with two roundings: a fused one would be a library call on CPUs without the instruction.
 template <class Real>
 inline Real mul_add(Real a, Real b, Real c) {
   return a * b + c;
@@ -47,8 +47,8 @@ inline bool operator==(const SpringConstants<Real>& a, const SpringConstants<Rea
   return equal;
 }
 
-/// Puts a node that has fallen below y = height (m) back onto the floor and changes its velocity as
-/// kernels/node_laws.h says; a node above it stays as it is. `x` in m, `v` in m/s.
+/// Puts a node that has fallen below y = height (m) back on the floor and changes its velocity as in
+/// kernels/node_laws.h; a node above stays unchanged. `x` in m, `v` in m/s.
 template <class Real>
 inline void touch_floor(Vec3<Real>& x, Vec3<Real>& v, Real height, Real restitution, Real friction) {
   if (!(x.y < height)) return;
@@ -56,7 +56,7 @@ inline void touch_floor(Vec3<Real>& x, Vec3<Real>& v, Real height, Real restitut
   v = floor_velocity(v, restitution, friction);
 }
 
-/// The way from a joint's node to the point that it is sewn to: kernels/garment_laws.h for vectors.
+/// Vector from a joint's node to the point that it is sewn to: kernels/garment_laws.h for Vec3.
 template <class Real>
 inline Vec3<Real> joint_gap(const Vec3<Real>& node, const Vec3<Real>& first, const Vec3<Real>& second,
                             Real fraction) {

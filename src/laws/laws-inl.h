@@ -1,6 +1,6 @@
-// The laws of kernels/ for a number type `Real` of C++. Included inside a namespace that has what the texts
-// ask for, after MSSIM_LAW_INLINE (what makes a function inline there) is defined; it may be included again
-// elsewhere, so it has no guard.
+// The laws of kernels/ for a number type `Real` of C++. Include it inside a namespace that has the names the
+// texts need, after defining MSSIM_LAW_INLINE (the prefix of inline functions). It may be included several
+// times, so it has no guard.
 
 #define MSSIM_LAW       \
   template <class Real> \
@@ -20,12 +20,12 @@
 
 #include "kernels/node_laws.h"
 #include "kernels/spring_law.h"
-// After what they need.
+// After the names that they need.
 #include "kernels/body_contact.h"
 #include "kernels/garment_laws.h"
 #include "kernels/spring_jacobian.h"
 
-/// Constants of a spring, each made from those of the same name: make(number...).
+/// Constants of a spring, each made from the constants of the same name: make(number...).
 template <class Real, class Make, class... From>
 MSSIM_LAW_INLINE SpringConstants<Real> constants_from(const Make& make, const From&... from) {
 #define MSSIM_MADE(name) static_cast<Real>(make(from.name...)),

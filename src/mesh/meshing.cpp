@@ -25,7 +25,7 @@ double six_volumes_of(const TetMesh& mesh, const Tetrahedron& nodes) {
   return six_volumes(mesh.nodes[nodes[0]], mesh.nodes[nodes[1]], mesh.nodes[nodes[2]], mesh.nodes[nodes[3]]);
 }
 
-/// Volume below which a tetrahedron of the same longest edge counts as flat: rounding decides its sign.
+/// Six times the volume below which a tetrahedron of this longest edge is flat: rounding decides its sign.
 double flat_six_volumes(const TetMesh& mesh, const Tetrahedron& nodes) {
   double longest = 0;
   for (std::size_t i = 0; i < 4; ++i)
@@ -98,7 +98,7 @@ std::string header_of(const std::string& nodes, const std::string& tetrahedra) {
   return fmt::format("mssim mesh 1 {} {}\n", nodes.size(), to_hex(fnv1a_64(nodes + tetrahedra)));
 }
 
-/// The mesh, or nothing for a file that is not, or no longer, what was written.
+/// The mesh in the file, or nothing if the file is missing, damaged or foreign.
 std::optional<TetMesh> read_entry(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return std::nullopt;
@@ -118,19 +118,19 @@ std::optional<TetMesh> read_entry(const fs::path& file) {
   }
 }
 
-/// Meshes that were made before, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME
-/// or ~/.cache). A file's name is INPUT-PROGRAM: the hash of what TetGen was given and that of the TetGen
-/// that made it. The cache only saves time: an entry that is missing, damaged or cannot be written is no
-/// error, and several processes may use it at once.
+/// Cache of meshes, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME or ~/.cache).
+/// A file's name is INPUT-PROGRAM: hashes of TetGen's input and of the TetGen that made the mesh. The cache
+/// only saves time: an entry that is missing, damaged or cannot be written is no error, and several processes
+/// may use it at once.
 class MeshCache {
  public:
-  /// The mesh that this TetGen made of this input.
+  /// The mesh that this TetGen made from this input.
   std::optional<TetMesh> find(std::uint64_t input, std::uint64_t program) const {
     if (folder_.empty()) return std::nullopt;
     return read_entry(entry(input, program));
   }
 
-  /// The newest mesh that any TetGen made of this input: for machines without TetGen.
+  /// The newest mesh that any TetGen made from this input: for machines without TetGen.
   std::optional<TetMesh> find_of_any_program(std::uint64_t input) const {
     if (folder_.empty()) return std::nullopt;
     std::optional<TetMesh> newest;
@@ -159,7 +159,7 @@ class MeshCache {
     try {
       write_file_atomically(entry(input, program), header_of(nodes, tetrahedra) + nodes + tetrahedra);
     } catch (const WriteError&) {
-      // The mesh is made anew next time; or another process is storing the same.
+      // The mesh is made again next time, or another process is storing it.
     }
   }
 
@@ -168,7 +168,7 @@ class MeshCache {
     return folder_ / fmt::format("{}-{}{}", to_hex(input), to_hex(program), extension);
   }
 
-  fs::path folder_ = cache_folder("meshes");  ///< empty when the user has neither variable nor home
+  fs::path folder_ = cache_folder("meshes");  ///< empty if the user has neither variable nor home
 };
 
 Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }
@@ -178,12 +178,12 @@ Vec3d half_size(const TorusShape& torus) {
   return {outer, torus.minor_radius_m, outer};
 }
 
-/// Nodes are added, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
-/// than 1.414 times its shortest edge. (The surface's triangles may be few and long; kept as they are, they
-/// would stay the springs of the body.)
+/// TetGen adds nodes, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
+/// than 1.414 times its shortest edge. (Long triangles of the surface, if kept, would become springs of the
+/// body.)
 const std::string fill_well = "-pq1.414";
 
-/// The limit in TetGen's form, which has no exponents.
+/// The limit as TetGen's switch, which takes no exponents.
 std::string volume_switch(double largest_volume_m3) {
   if (largest_volume_m3 == 0) return "";
   std::array<char, 512> text;
@@ -192,14 +192,14 @@ std::string volume_switch(double largest_volume_m3) {
   return "a" + std::string(text.data(), end);
 }
 
-/// How thick a body is somewhere.
+/// Thickness of a body at a point of its surface.
 struct Thickness {
   double size = 0;  ///< m, the diameter of the largest ball inside that touches the surface there
   Vec3d at;
 };
 
-/// Places spread over the surface by area, and how thick the body is there, the thinnest first; only those
-/// where it is less than `limit`, m.
+/// Samples the surface uniformly by area and returns the places where the body is thinner than `limit`, m,
+/// the thinnest first.
 std::vector<Thickness> thin_places(const Surface& surface, const std::vector<double>& area_up_to,
                                    std::size_t samples, double limit) {
   const TriangleTree tree(surface);
@@ -236,9 +236,9 @@ std::vector<Thickness> thin_places(const Surface& surface, const std::vector<dou
   return thin;
 }
 
-/// Tetrahedra that are as wide as they are high need half a node for each square of the surface with the
-/// body's thickness as its side: with sheets of 1 m x 1 m x 0.1 to 0.005 m, TetGen makes 0.9 to 1.1 of that.
-/// Throws InputError where a hundredth of the surface or more is so thin that this is too many.
+/// Throws InputError if at least a hundredth of the surface is so thin that the mesh needs too many nodes:
+/// tetrahedra as wide as they are high take half a node for each square of the surface with the body's
+/// thickness as its side. For sheets of 1 m x 1 m x 0.1 to 0.005 m, TetGen makes 0.9 to 1.1 of that.
 void require_thick(const Surface& surface) {
   std::vector<double> area_up_to;
   double area = 0;
@@ -307,7 +307,7 @@ double smallest_dihedral_angle(const TetMesh& mesh) {
     const Vec3d ab = mesh.nodes[nodes[1]] - a;
     const Vec3d ac = mesh.nodes[nodes[2]] - a;
     const Vec3d ad = mesh.nodes[nodes[3]] - a;
-    // Outward normals of the four faces; the angle between two faces is 180 degrees less that of their
+    // Outward normals of the four faces; the angle between two faces is 180 degrees minus that of their
     // normals.
     const std::array normals{cross(ac - ab, ad - ab), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
     for (std::size_t i = 0; i < 4; ++i)
@@ -385,8 +385,8 @@ TetMesh surface_mesh(const SurfaceShape& body) {
   for (Vec3d& point : surface.points) point = body.unit_m * point;
   validate_surface(surface, name);
   const double volume = volume_of(surface);
-  const double tetrahedra = body.largest_volume_m3 > 0 ? volume / body.largest_volume_m3 : 0;  // at least
-  constexpr double tetrahedra_a_node = 7;  // of a fine mesh, a little fewer
+  const double tetrahedra = body.largest_volume_m3 > 0 ? volume / body.largest_volume_m3 : 0;  // lower bound
+  constexpr double tetrahedra_a_node = 7;  // slightly less than in a fine mesh
   // A limit far below the body's volume would fill the memory.
   if (tetrahedra > 1e7)
     throw InputError(

@@ -21,14 +21,14 @@ namespace mssim {
 struct TetMesh {
   std::vector<Vec3d> nodes;  ///< m
   std::vector<Tetrahedron> tetrahedra;
-  std::string note = {};  ///< what a reader should know of how it was made, in a sentence; or empty
+  std::string note = {};  ///< how it was made, if a reader should know; a sentence or empty
 };
 
 /// The unique edges of the tetrahedra, the lower node first, ascending.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const TetMesh& mesh);
 
-/// The faces of the tetrahedra, ascending, the nodes of each ascending, each as often as tetrahedra have it:
-/// one inside the body stands twice, one on its surface once.
+/// The faces of the tetrahedra in ascending order, the nodes of each ascending. A face inside the body
+/// appears twice, one on its surface once.
 std::vector<std::array<std::uint32_t, 3>> faces_of(const TetMesh& mesh);
 
 /// The sum of the tetrahedra's volumes, m^3.
@@ -37,20 +37,20 @@ double volume_of(const TetMesh& mesh);
 /// The smallest angle between two faces of a tetrahedron, degrees; 180 for a mesh without tetrahedra.
 double smallest_dihedral_angle(const TetMesh& mesh);
 
-/// What makes a mesh useless, and the node or tetrahedron at which it shows.
+/// A defect that makes a mesh useless, and the node or tetrahedron where it was found.
 struct MeshDefect {
   enum Of { node, tetrahedron } of = node;
   std::size_t index = 0;
-  std::string what;  ///< half a sentence: what is wrong, and what to do about it
+  std::string what;  ///< half a sentence: the defect and its remedy
 };
 
 /// The first defect of a mesh whose indices are in range and whose coordinates are finite: a node of no
-/// tetrahedron, two nodes at one place, a tetrahedron that is flat or turned inside out, a face that three
-/// tetrahedra share.
+/// tetrahedron, two nodes at one place, a flat or inverted tetrahedron, or a face that three tetrahedra
+/// share.
 std::optional<MeshDefect> find_defect(const TetMesh& mesh);
 
-/// When every tetrahedron's volume is negative, the file counts its nodes the other way round: swaps two
-/// nodes of each.
+/// If every tetrahedron's volume is negative (the file counts nodes in the opposite sense), swaps two nodes
+/// of each.
 void turn_if_mirrored(TetMesh& mesh);
 
 /// A box around the origin, its sides along the axes.
@@ -65,15 +65,15 @@ struct BoxShape {
 /// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
 std::uint64_t surface_point_count(const BoxShape& box);
 
-/// The surface with so many points. Throws InputError for a size that is not positive or for less
-/// than one cell.
+/// The surface with surface_point_count points. Throws InputError for a size that is not positive or for
+/// fewer than one cell.
 Surface surface_of(const BoxShape& box);
 
-/// Distance of a point inside from the nearest side, m; not positive outside.
+/// Depth of a point: distance from the nearest side, m; not positive outside.
 double depth_in(const BoxShape& box, const Vec3d& point);
 
-/// A sphere around the origin: an icosahedron, each of its triangles cut into frequency^2, pushed out to the
-/// radius.
+/// A sphere around the origin: an icosahedron whose triangles are cut into frequency^2 each and projected
+/// onto the sphere.
 struct SphereShape {
   double radius_m = 0;          ///< m
   std::uint32_t frequency = 0;  ///< triangles along an edge of the icosahedron
@@ -84,17 +84,17 @@ struct SphereShape {
 /// Points of the surface: 10 frequency^2 + 2.
 std::uint64_t surface_point_count(const SphereShape& sphere);
 
-/// The surface with so many points. Throws InputError for a radius or a frequency that is not positive.
+/// The surface with surface_point_count points. Throws InputError unless radius and frequency are positive.
 Surface surface_of(const SphereShape& sphere);
 
-/// Distance of a point inside from the sphere, m; not positive outside.
+/// Depth of a point: distance from the sphere, m; not positive outside.
 double depth_in(const SphereShape& sphere, const Vec3d& point);
 
-/// A ring around the y axis: a circle of the minor radius whose centre goes round the origin at the major
+/// A ring around the y axis: a circle of the minor radius whose centre moves around the origin at the major
 /// radius.
 struct TorusShape {
   double major_radius_m = 0;  ///< m
-  double minor_radius_m = 0;  ///< m, less than the major one
+  double minor_radius_m = 0;  ///< m, less than major_radius_m
   std::uint32_t cells_around =
       0;  ///< circles along the ring, an even number: every other one is turned by half a cell
   std::uint32_t cells_across = 0;  ///< points of each circle
@@ -105,25 +105,25 @@ struct TorusShape {
 /// Points of the surface: cells_around x cells_across.
 std::uint64_t surface_point_count(const TorusShape& torus);
 
-/// The surface with so many points. Throws InputError for radii that make no ring, for an odd number
-/// of cells around, and for fewer than 4 around or 3 across.
+/// The surface with surface_point_count points. Throws InputError for radii that make no ring, an odd number
+/// of cells around, and fewer than 4 around or 3 across.
 Surface surface_of(const TorusShape& torus);
 
-/// Distance of a point inside from the ring's surface, m; not positive outside.
+/// Depth of a point: distance from the ring's surface, m; not positive outside.
 double depth_in(const TorusShape& torus, const Vec3d& point);
 
-/// The nodes inside a generated body: points of a body-centred cubic lattice, moved a little at random. (That
-/// lattice's tetrahedra are the best shaped that fill space.)
+/// The nodes inside a generated body: points of a body-centred cubic lattice, slightly perturbed at random.
+/// (That lattice gives the best-shaped tetrahedra that fill space.)
 struct InteriorPoints {
   std::uint32_t count = 0;
-  std::uint32_t seed = 0;  ///< of the lattice's place and turn and of the moves
-  double jitter = 0;       ///< how far a point may move along each axis, in lattice spacings, 0 to 0.5
+  std::uint32_t seed = 0;  ///< of the lattice's position and rotation and of the perturbations
+  double jitter = 0;       ///< maximum perturbation along each axis, in lattice spacings, 0 to 0.5
   double margin = 0;       ///< smallest distance from the surface, in lattice spacings, 0 to 1
 
   bool operator==(const InteriorPoints&) const = default;
 };
 
-/// Where interior points may be.
+/// The space for interior points.
 struct InteriorSpace {
   double volume = 0;  ///< m^3
   Vec3d half_size;    ///< m, of a box around the origin that holds the space
@@ -131,25 +131,25 @@ struct InteriorSpace {
   std::function<double(const Vec3d&)> depth;
 };
 
-/// Exactly `count` points, rounded to micrometres. The spacing (the cube root of the volume for each point)
-/// is the largest at which so many points of the lattice lie inside, at least the margin deep; it follows
-/// from volume and count. Needs no libm but roots and no std distribution, so that every platform places the
-/// same points. Throws InputError for parameters out of range and for more points than fit.
+/// Exactly `count` points, rounded to micrometres. The spacing (the cube root of the volume per point) is the
+/// largest at which `count` points of the lattice lie inside, at least the margin deep; it follows from
+/// volume and count. Uses no libm except roots and no std distribution, so every platform places the same
+/// points. Throws InputError for parameters out of range and for more points than fit.
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space);
 
 /// TetGen's switches that fill a surface and keep it as it is.
 inline constexpr const char* keep_surface = "-pY";
 
-/// The mesh that TetGen makes of a valid surface (validate_surface) and points inside it, from the cache when
-/// it was made before; its nodes are the surface's points, then the interior points, then TetGen's own. Where
-/// TetGen is not installed, a mesh that one made earlier is taken. `added_points` is how many TetGen will
-/// add by itself at least. Throws what run_tetgen and require_meshing_memory throw, and MissingProgram when
-/// TetGen is needed and not installed.
+/// The mesh that TetGen makes of a valid surface (validate_surface) and points inside it, or its copy in the
+/// cache. Its nodes are the surface's points, then the interior points, then TetGen's own. Without TetGen, a
+/// cached mesh of another TetGen is used. `added_points`: lower bound on the points that TetGen adds. Throws
+/// what run_tetgen and require_meshing_memory throw, and MissingProgram if TetGen is needed and not
+/// installed.
 TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
                        const std::string& switches, std::uint64_t added_points = 0);
 
-/// What a scene's author got from a mesh; another TetGen may give something else, which is then said, not
-/// refused.
+/// The size of the mesh when its scene was written. Another TetGen may give another size, which is reported,
+/// not refused.
 struct MeshSize {
   std::uint32_t nodes = 0;
   std::uint32_t springs = 0;  ///< unique edges
@@ -160,33 +160,33 @@ struct MeshSize {
 /// The shapes that mssim can make by itself.
 using Shape = std::variant<BoxShape, SphereShape, TorusShape>;
 
-/// Points that TetGen is given for a shape, counted without making them.
+/// Number of points that TetGen gets for a shape, without making them.
 std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior);
 
-/// What TetGen is given for a shape: its surface and the points inside.
+/// TetGen's input for a shape: its surface and the points inside.
 struct ShapePoints {
   Surface surface;
   std::vector<Vec3d> interior;
 };
 ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
 
-/// The mesh of a shape: its surface points first, then the interior points, then what TetGen had to add
-/// (nothing, for the bodies of the committed scenes). Made by TetGen or taken from the cache
-/// (tetrahedralise). Throws InputError for parameters out of range and for more points than can be meshed
-/// (tetgen.h), MissingProgram when TetGen is needed and not installed.
+/// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add
+/// (none for the bodies of the committed scenes). Made by TetGen or taken from the cache (tetrahedralise).
+/// Throws InputError for parameters out of range and for more points than can be meshed (tetgen.h),
+/// MissingProgram if TetGen is needed and not installed.
 TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior);
 
-/// A body whose surface a user drew.
+/// A body whose surface comes from a user's file.
 struct SurfaceShape {
   std::filesystem::path file;    ///< .obj or .stl
   double unit_m = 1;             ///< metres in one unit of the file; 0.001 for a drawing in millimetres
-  double largest_volume_m3 = 0;  ///< no tetrahedron may be larger; 0 for no limit
+  double largest_volume_m3 = 0;  ///< upper limit for each tetrahedron; 0: none
 };
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
-/// shaped and small enough; the shape stays. From the cache when it was made before. Throws InputError, which
-/// names the file, for one that cannot be read, encloses no body or is too thin to be filled, and for
-/// numbers out of range; MissingProgram when TetGen is needed and not installed.
+/// shaped and small enough; the shape stays. Uses the cache. Throws InputError, which names the file, if it
+/// cannot be read, encloses no body or is too thin to be filled, and for numbers out of range; MissingProgram
+/// if TetGen is needed and not installed.
 TetMesh surface_mesh(const SurfaceShape& body);
 
 }  // namespace mssim

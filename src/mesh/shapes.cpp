@@ -13,14 +13,14 @@
 namespace mssim {
 namespace {
 
-/// Throws InputError unless `metres`, which is `what`, is between a tenth of a millimetre and a kilometre:
-/// coordinates are rounded to micrometres.
+/// Throws InputError unless `metres` is between a tenth of a millimetre and a kilometre: coordinates are
+/// rounded to micrometres. `what` names it in the message.
 void require_length(double metres, std::string_view what) {
   if (!(metres >= 1e-4 && metres <= 1000))
     throw InputError("{} is {} m; give a length from 0.0001 to 1000 m", what, decimal(metres));
 }
 
-/// Throws InputError unless `cells`, which are `what`, are from `smallest` to 1,000.
+/// Throws InputError unless `cells` is from `smallest` to 1,000. `what` names it in the message.
 void require_cells(std::uint32_t cells, std::uint32_t smallest, std::string_view what) {
   constexpr std::uint32_t largest = 1000;
   if (cells < smallest || cells > largest)
@@ -52,7 +52,7 @@ class SurfacePoints {
  private:
   const BoxShape& box_;
   Surface& surface_;
-  std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< by the corner's place in the grid
+  std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< by the corner's index in the grid
 };
 
 /// The corners of an icosahedron: (0, +-1, +-golden ratio) and its cyclic permutations.
@@ -78,8 +78,8 @@ constexpr std::array<std::array<std::uint32_t, 3>, 20> icosahedron_faces{{
     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1},
 }};
 
-/// The points of the cut icosahedron. One on an edge belongs to two faces or more, and is the same point for
-/// all: it is known by its weights at the corners that it lies between.
+/// The points of the cut icosahedron. A point on an edge belongs to several faces and has one number: its key
+/// is its weights at the corners around it.
 class SpherePoints {
  public:
   SpherePoints(const SphereShape& sphere, Surface& surface) : sphere_(sphere), surface_(surface) {}
@@ -97,7 +97,7 @@ class SpherePoints {
   }
 
  private:
-  /// (corner of the icosahedron counted from 1, weight), ascending; corner 0 is none.
+  /// (corner of the icosahedron from 1, weight), ascending; corner 0: none.
   using Weights = std::array<std::array<std::uint32_t, 2>, 3>;
 
   Vec3d position(const Weights& weights) const {
@@ -127,8 +127,8 @@ void require_ring(const TorusShape& torus) {
                      " m; give one less than the major radius");
 }
 
-/// Uniform numbers from the engine's own output: the standard fixes what std::mt19937 gives, and leaves open
-/// what a std distribution makes of it.
+/// Uniform numbers from the engine's own output: the standard fixes the output of std::mt19937, but not that
+/// of the std distributions.
 class UniformNumbers {
  public:
   explicit UniformNumbers(std::uint32_t seed) : engine_(seed) {}
@@ -144,8 +144,8 @@ class UniformNumbers {
   std::mt19937 engine_;
 };
 
-/// Three perpendicular unit vectors in a random direction, all directions being equally likely: the rotation
-/// of a random quaternion of length 1.
+/// Three perpendicular unit vectors in a random direction, uniformly distributed: the rotation of a random
+/// quaternion of length 1.
 std::array<Vec3d, 3> random_axes(UniformNumbers& random) {
   double w = 0;
   Vec3d v;
@@ -173,7 +173,7 @@ class Lattice {
   Lattice(const InteriorSpace& space, UniformNumbers& random)
       : space_(space), offset_(random.next_vector()), axes_(random_axes(random)) {}
 
-  /// The points at this spacing that lie at least so deep.
+  /// The points at this spacing that are at least smallest_depth deep, m.
   std::vector<LatticePoint> points(double spacing, double smallest_depth) const {
     const double cell = spacing * std::cbrt(2.0);  // a cubic cell holds two points
     const int reach = static_cast<int>(length(space_.half_size) / cell) + 2;
@@ -295,7 +295,7 @@ Surface surface_of(const TorusShape& torus) {
       const auto point = [&](std::uint32_t circle, std::uint32_t place_on_it) {
         return (circle % around) * across + place_on_it % across;
       };
-      // Point j of an odd circle lies between points j and j + 1 of the even circles beside it.
+      // Point j of an odd circle lies between points j and j + 1 of the neighbouring even circles.
       const std::uint32_t a = point(i, j);
       const std::uint32_t b = point(i, j + 1);
       if (i % 2 == 0) {
@@ -327,7 +327,7 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
   const Lattice lattice(space, random);
   const auto points_at = [&](double spacing) { return lattice.points(spacing, parameters.margin * spacing); };
 
-  // Where all the volume could be used, the spacing would be that of an endless lattice.
+  // The spacing of an infinite lattice, if all of the volume could be used.
   const double endless = std::cbrt(space.volume / parameters.count);
   double enough = 0.25 * endless;
   double too_wide = 1.5 * endless;
@@ -342,7 +342,7 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
         "{} interior points do not fit into a volume of {} m^3 at a margin of {} spacings from its surface; "
         "give fewer points or a smaller margin",
         parameters.count, shown(space.volume), decimal(parameters.margin));
-  // The few too many lie at the surface, where they are missed least.
+  // The excess points are the least deep ones: they are missed least.
   std::ranges::stable_sort(chosen, std::greater(), &LatticePoint::depth);
   chosen.resize(parameters.count);
 

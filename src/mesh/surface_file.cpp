@@ -15,13 +15,13 @@
 namespace mssim {
 namespace {
 
-/// Adds points to a surface, each place once: files that list every triangle's corners apart become surfaces
-/// whose triangles share them.
+/// Adds points to a surface, each location once, so files that list the corners of every triangle separately
+/// become surfaces with shared points.
 class PointMerger {
  public:
   explicit PointMerger(Surface& surface) : surface_(surface) {}
 
-  /// The number of the point at this place, exactly this one.
+  /// The number of the point at exactly this location.
   std::uint32_t add(const Vec3d& point) {
     // Adding zero turns -0 into 0.
     const std::array<double, 3> key{point.x + 0.0, point.y + 0.0, point.z + 0.0};
@@ -44,8 +44,8 @@ std::vector<Corners> fan(std::size_t corners) {
   return triangles;
 }
 
-/// Cuts a polygon of four corners or more as it lies in its plane, whose normal is Newell's: the sum of the
-/// cross products along its edges.
+/// Cuts a polygon of four or more corners in its plane, whose normal is Newell's: the sum of the cross
+/// products along its edges.
 class PolygonCutter {
  public:
   explicit PolygonCutter(const std::vector<Vec3d>& corners) {
@@ -71,8 +71,8 @@ class PolygonCutter {
 
   bool has_plane() const { return !flat_.empty(); }
 
-  /// Does the fan from the first corner cover the polygon, as it does a convex one? The other corners are
-  /// then seen one after the other from there, and not more than once round.
+  /// Does the fan from the first corner cover the polygon, as for a convex one? The other corners are then
+  /// seen in order from there, in at most one turn.
   bool fan_covers() const {
     double angle = 0;
     for (const auto& [a, b, c] : fan(flat_.size())) {
@@ -90,9 +90,8 @@ class PolygonCutter {
     return false;
   }
 
-  /// Ears (three corners that follow each other, with nothing of the polygon between them), one cut off after
-  /// the other. Ears without area come when there are no others: corners on a line. Nothing where there is no
-  /// ear.
+  /// Cuts off ears one after the other: three consecutive corners with nothing of the polygon between them.
+  /// Ears without area (corners on a line) come last. Nothing if no ear is left.
   std::optional<std::vector<Corners>> ears() const {
     std::vector<std::size_t> left(flat_.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
@@ -103,7 +102,7 @@ class PolygonCutter {
       if (!at) return std::nullopt;
       cut.push_back(corners_at(left, *at));
       left.erase(left.begin() + static_cast<std::ptrdiff_t>(*at));
-      begin = *at + 1;  // not beside it, which would make a fan of long triangles
+      begin = *at + 1;  // the next ear is not adjacent, which would make a fan of long triangles
     }
     cut.push_back({left[0], left[1], left[2]});
     if (area(left[0], left[1], left[2]) < -as_written_) return std::nullopt;
@@ -111,7 +110,7 @@ class PolygonCutter {
   }
 
  private:
-  /// Twice that of the triangle; positive where it runs as the polygon does.
+  /// Twice the triangle's area; positive if it is oriented like the polygon.
   double area(std::size_t a, std::size_t b, std::size_t c) const {
     const Vec3d ab = flat_[b] - flat_[a], ac = flat_[c] - flat_[a];
     return ab.x * ac.y - ab.y * ac.x;
@@ -123,7 +122,7 @@ class PolygonCutter {
     return area(a, b, c) > least * std::max(dot(ab, ab), dot(ac, ac));
   }
 
-  /// Does the line from a to b pass through that from c to d, and not merely touch it?
+  /// Does the segment from a to b cross the one from c to d, rather than only touch it?
   bool cross_each_other(std::size_t a, std::size_t b, std::size_t c, std::size_t d, double touching) const {
     const auto on_two_sides = [&](double one, double other) {
       return std::min(one, other) < -touching && std::max(one, other) > touching;
@@ -136,7 +135,7 @@ class PolygonCutter {
     return {left[(at + n - 1) % n], left[at], left[(at + 1) % n]};
   }
 
-  /// Can these corners be cut off what is left?
+  /// Can this ear be cut off the remaining corners?
   bool is_ear(const std::vector<std::size_t>& left, const Corners& ear, bool with_area) const {
     const auto& [a, b, c] = ear;
     if (with_area ? !has_area(ear) : area(a, b, c) < -as_written_) return false;
@@ -144,7 +143,7 @@ class PolygonCutter {
     for (std::size_t i = 0; i < left.size(); ++i) {
       const std::size_t p = left[i];
       if (cross_each_other(a, c, p, left[(i + 1) % left.size()], touching_)) return false;
-      // A cut to a hole, and the way back, have corners at the same places.
+      // A cut to a hole and the way back have corners at the same location.
       if (flat_[p] == flat_[a] || flat_[p] == flat_[b] || flat_[p] == flat_[c]) continue;
       if (area(a, b, p) >= margin && area(b, c, p) >= margin && area(c, a, p) >= margin) return false;
     }
@@ -160,12 +159,12 @@ class PolygonCutter {
     return std::nullopt;
   }
 
-  std::vector<Vec3d> flat_;  ///< the corners in the plane (z is 0), none where there is none
-  double touching_ = 0;      ///< twice an area that computing may make of none
-  double as_written_ = 0;    ///< twice one that a file of six digits may
+  std::vector<Vec3d> flat_;  ///< the corners in the plane (z is 0); empty without a plane
+  double touching_ = 0;      ///< twice the area that rounding may give three corners on a line
+  double as_written_ = 0;    ///< twice the area that a file of six digits may give them
 };
 
-/// Do they lie in a plane, to a thousandth of what they span?
+/// Are the corners in a plane, within a thousandth of their extent?
 bool is_flat_quad(const std::vector<Vec3d>& corners) {
   constexpr double level = 1e-3;
   const Vec3d a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0];
@@ -244,7 +243,7 @@ class ObjReader {
     faces_.push_back(std::move(face));
   }
 
-  /// Faces may name vertices that come later, so they are looked up at the end.
+  /// Faces may name later vertices, so they are resolved at the end.
   void add(const Face& face) {
     std::vector<std::uint32_t> points;
     for (const std::int64_t vertex : face.vertices) {
@@ -260,7 +259,7 @@ class ObjReader {
       surface_.triangles.push_back({points[a], points[b], points[c]});
   }
 
-  /// Keeps one of the corners that follow each other at one place, unless that leaves no triangle.
+  /// Keeps one of consecutive corners at the same location, unless that leaves no triangle.
   static void leave_out_repeated(std::vector<std::uint32_t>& points) {
     std::vector<std::uint32_t> apart = points;
     apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
@@ -281,7 +280,7 @@ class ObjReader {
       lines_.fail_at(line, fmt::format("{}is concave, and at most {} can be cut{}", which, most, remedy));
     if (polygon.has_plane() && !polygon.crosses_itself())
       if (const auto ears = polygon.ears()) return *ears;
-    // The edges of one that is bent pass each other, so that any diagonal will do.
+    // Opposite edges of a bent quadrangle do not meet, so any diagonal will do.
     if (points.size() == 4 && !is_flat_quad(corners)) return fan(4);
     lines_.fail_at(line, fmt::format("{}crosses itself{}", which, remedy));
   }
@@ -293,8 +292,8 @@ class ObjReader {
   PointMerger merger_;
 };
 
-// A binary file: 80 bytes of any text, the number of triangles, and for each a normal, three corners and two
-// bytes; numbers are little-endian.
+// A binary file: 80 bytes of any text, the number of triangles, then a normal, three corners and two bytes
+// for each; numbers are little-endian.
 constexpr std::size_t bytes_before_count = 80;
 constexpr std::size_t bytes_before_triangles = 84;
 constexpr std::size_t bytes_of_triangle = 50;
@@ -316,11 +315,11 @@ Vec3d vector_at(std::string_view content, std::size_t byte) {
 Surface parse_binary(const std::string& name, std::string_view content) {
   const std::size_t count = number_at(content, bytes_before_count);
   const std::size_t due = bytes_before_triangles + count * bytes_of_triangle;
-  const std::string promise = fmt::format("{}, byte {}: the file promises {} in {} bytes, and ", name,
+  const std::string promise = fmt::format("{}, byte {}: the file announces {} in {} bytes, and ", name,
                                           bytes_before_count, pluralize(count, "triangle"), due);
   if (content.size() < due)
     throw InputError("{}has {}; it is truncated or not an STL file", promise, content.size());
-  // Some writers fill up the last block; a whole triangle more is one that the number leaves out.
+  // Some writers fill up the last block; a whole extra triangle means that the number is wrong.
   if (content.size() - due >= bytes_of_triangle)
     throw InputError("{}{} bytes follow the last; the number is wrong, so write the file again", promise,
                      content.size() - due);
@@ -365,7 +364,7 @@ class AsciiReader {
                       [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
   }
 
-  /// Does the line begin so? Some writers have "end loop" for "endloop".
+  /// Does the line begin with the keyword? Some writers have "end loop" for "endloop".
   bool begins(std::string_view keyword) const {
     const auto& words = lines_.words();
     constexpr std::string_view end = "end";
@@ -373,7 +372,7 @@ class AsciiReader {
                                         equal(words[0], end) && equal(words[1], keyword.substr(end.size())));
   }
 
-  /// Goes to the next line and says whether it begins so.
+  /// Advances to the next line and tests whether it begins with the keyword.
   bool next_is(std::string_view keyword) {
     lines_.require_next("\"endsolid\"");
     return begins(keyword);
@@ -410,8 +409,8 @@ class AsciiReader {
   PointMerger merger_;
 };
 
-/// Binary files may begin with "solid" as well, so the length decides, and where that is wrong too
-/// (truncated), a zero byte, which no text has.
+/// Binary files may begin with "solid" as well, so the length decides; if it is wrong too (truncated), a zero
+/// byte, which no text has.
 bool is_binary(std::string_view content) {
   if (content.size() < bytes_before_triangles) return content.find('\0') != std::string_view::npos;
   const std::size_t count = number_at(content, bytes_before_count);

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// TetGen's own shared libraries, which hold most of it in Debian's package. Asked of the dynamic loader the
-/// way ldd does: it then prints what it would load, one "NAME => FILE (ADDRESS)" a line, and runs nothing.
+/// TetGen's own shared libraries, which hold most of it in Debian's package. Runs the dynamic loader in the
+/// way of ldd: it prints what it would load, one "NAME => FILE (ADDRESS)" per line, and runs nothing.
 std::vector<fs::path> libraries_of(const fs::path& executable) {
   constexpr unsigned cpu_s = 5, elapsed_s = 60;
   const ChildResult listing = run({executable, {}, {"LD_TRACE_LOADED_OBJECTS=1"}, "/", cpu_s, elapsed_s});
@@ -32,7 +32,7 @@ std::vector<fs::path> libraries_of(const fs::path& executable) {
     const std::size_t name = line.find_first_not_of(" \t"), arrow = line.find(before),
                       end = line.rfind(after);
     if (name == std::string::npos || arrow == std::string::npos || end == std::string::npos) continue;
-    // The name of a folder may have spaces.
+    // The name of a folder may contain spaces.
     const std::size_t file = arrow + before.size();
     if (line.compare(name, 6, "libtet") == 0 && file < end)
       libraries.emplace_back(line.substr(file, end - file));
@@ -40,8 +40,8 @@ std::vector<fs::path> libraries_of(const fs::path& executable) {
   return libraries;
 }
 
-/// TetGen prints its version only with its help, after which Debian's crashes; the text of that help stands
-/// in the program as a string that begins "Version".
+/// TetGen prints its version only with its help, after which Debian's crashes. The text of that help is a
+/// string in the program that begins "Version".
 std::optional<std::string> version_in(std::string_view program) {
   using namespace std::string_view_literals;
   constexpr auto before = "\0Version "sv;
@@ -54,8 +54,8 @@ std::optional<std::string> version_in(std::string_view program) {
   return std::nullopt;
 }
 
-/// The count at the start of a file. A file of so many bytes cannot hold more lines than a byte each: a count
-/// beyond is refused before memory is taken for it.
+/// The count at the start of a file. A line has at least one byte, so a count beyond the file's length is
+/// refused before memory is allocated.
 std::size_t count_of(const TextLines& lines, const std::string& things) {
   const std::int64_t count = lines.integer(0, "the number of " + things);
   if (count <= 0) lines.fail("the number of {} is {}; a mesh has at least one", things, count);
@@ -70,7 +70,7 @@ std::size_t count_of(const TextLines& lines, const std::string& things) {
   return static_cast<std::size_t>(count);
 }
 
-/// A number in a file's first line that may be left out.
+/// An optional number in a file's first line.
 std::int64_t optional_integer(const TextLines& lines, std::size_t index, std::string_view what,
                               std::int64_t absent) {
   if (index >= lines.words().size()) return absent;
@@ -94,7 +94,7 @@ void require_end(TextLines& lines, const std::string& things, std::size_t count)
         count, things);
 }
 
-/// Reads the nodes, and the line at which each stands. Returns the number that the first one has, 0 or 1.
+/// Reads the nodes, and the line of each. Returns the number of the first one, 0 or 1.
 std::int64_t read_nodes(TextLines& lines, std::vector<Vec3d>& nodes, std::vector<std::size_t>& at_line) {
   lines.require_next("the number of nodes");
   const std::size_t count = count_of(lines, "nodes");
@@ -123,14 +123,14 @@ std::int64_t read_nodes(TextLines& lines, std::vector<Vec3d>& nodes, std::vector
   return first;
 }
 
-/// The same of tetrahedra between `nodes` nodes.
+/// Reads tetrahedra between `nodes` nodes.
 void read_tetrahedra(TextLines& lines, std::vector<Tetrahedron>& tetrahedra,
                      std::vector<std::size_t>& at_line, std::size_t nodes, std::int64_t first_node) {
   lines.require_next("the number of tetrahedra");
   const std::size_t count = count_of(lines, "tetrahedra");
   if (const std::int64_t corners = optional_integer(lines, 1, "the number of nodes of a tetrahedron", 4);
       corners != 4)
-    lines.fail("the number of nodes of a tetrahedron is {}; give linear tetrahedra, of 4 nodes", corners);
+    lines.fail("the number of nodes of a tetrahedron is {}; give linear tetrahedra (4 nodes)", corners);
   const std::int64_t attributes = optional_integer(lines, 2, "the number of attributes", 0);
 
   tetrahedra.reserve(count);
@@ -138,7 +138,7 @@ void read_tetrahedra(TextLines& lines, std::vector<Tetrahedron>& tetrahedra,
   for (std::size_t t = 0; t < count; ++t) {
     lines.require_next(fmt::format("tetrahedron {} of {}", t + 1, count));
     require_words(lines, 5 + attributes);
-    // TetGen leaves gaps in these numbers where it has dropped tetrahedra, and nothing refers to them.
+    // TetGen leaves gaps in these numbers where it dropped tetrahedra; nothing refers to them.
     lines.integer(0, "the number of a tetrahedron");
     Tetrahedron tetrahedron{};
     for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -161,9 +161,9 @@ void append(std::string& text, const Vec3d& point) {
   for (const double x : {point.x, point.y, point.z}) text += ' ' + decimal(x);
 }
 
-/// The mesh of the largest committed body takes 0.2 s; what takes this long never ends.
+/// The mesh of the largest committed body takes 0.2 s; a run of this length does not end.
 constexpr unsigned cpu_seconds = 300;
-constexpr unsigned elapsed_seconds = 4 * cpu_seconds;  // where other programs want the processors, too
+constexpr unsigned elapsed_seconds = 4 * cpu_seconds;  // other programs may use the CPUs too
 
 constexpr std::uint64_t bytes_a_point = 3800;
 
@@ -187,7 +187,7 @@ class Run {
   Run(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior)
       : program_(program), surface_(surface), has_interior_(!interior.empty()) {
     write_text(folder_.path() / "body.smesh", smesh_text(surface));
-    // The name under which TetGen looks for the points of its switch i.
+    // TetGen's switch i reads the points from a file of this name.
     if (has_interior_) write_text(folder_.path() / "body.a.node", node_text(interior));
   }
 
@@ -224,10 +224,10 @@ class Run {
     constexpr std::string_view remedy =
         "; give a surface of fewer triangles, a thicker body or a larger largest volume";
     if (ended.out_of_time)
-      throw InputError("TetGen was stopped after {} s of processor time or {} s in all{}", cpu_seconds,
+      throw InputError("TetGen was stopped after {} s of CPU time or {} s in all{}", cpu_seconds,
                        elapsed_seconds, remedy);
     if (ended.signal == SIGKILL && !ended.out_of_memory)
-      throw InputError("TetGen was stopped by signal 9, as the system does where memory runs out" +
+      throw InputError("TetGen was stopped by signal 9, as the system does when memory runs out" +
                        std::string(remedy));
     if (ended.out_of_memory)
       throw InputError("TetGen needs more memory than the {} GB that were available{}",
@@ -241,7 +241,7 @@ class Run {
       how = fmt::format("with exit code {}", ended.exit_code);
     const std::string ending = "TetGen " + program_.version + " ended " + how + last_words(ended.output);
     if (search.find("No faces are intersecting") == std::string::npos)
-      throw InputError(ending + " and does not say whether triangles cross; make sure that " +
+      throw InputError(ending + " and does not report whether triangles cross; make sure that " +
                        program_.executable.string() + " is TetGen, or change the surface");
     throw InputError(ending +
                      " though it finds no triangles that cross; change the surface or the points inside a "
@@ -256,8 +256,8 @@ class Run {
     return last.empty() ? last : fmt::format(" after writing \"{}\"", last);
   }
 
-  /// Which triangles cross, from what TetGen prints when it is asked with -d: "Facet #3 intersects facet
-  /// #17", counted from 1. (A run that is to make a mesh just crashes on them.)
+  /// Finds the crossing triangles in TetGen's output with -d: "Facet #3 intersects facet #17", counted from
+  /// 1. (Without -d it just crashes on them.)
   std::optional<std::string> crossing_triangles(const std::string& search) const {
     std::istringstream lines(search);
     for (std::string line; std::getline(lines, line);) {
@@ -273,7 +273,7 @@ class Run {
     return std::nullopt;
   }
 
-  /// TetGen fills what lies inside the outermost triangles, holes and parts within parts included.
+  /// TetGen fills everything inside the outermost triangles, including holes and inner parts.
   void require_volume(const TetMesh& mesh) const {
     const double enclosed = volume_of(surface_);
     const double filled = volume_of(mesh);
@@ -362,8 +362,8 @@ std::string smesh_text(const Surface& surface) {
 void require_meshable(std::uint64_t points, std::string_view remedy) {
   if (points > most_meshable_points)
     throw InputError(
-        "its mesh would have {} points or more, with which TetGen takes longer than the {} s of processor "
-        "time that it is given; make it of at most {}, {}",
+        "its mesh would have {} points or more, for which TetGen needs more than its limit of {} s of CPU "
+        "time; make it of at most {}, {}",
         points, cpu_seconds, most_meshable_points, remedy);
 }
 

@@ -46,7 +46,7 @@ bool TextLines::take_line() {
   ++lines_;
   constexpr std::size_t longest_line = std::size_t{1} << 20;
   if (end - begin_ > longest_line)
-    fail("it has {} bytes and at most {} are read of one line; break the file into lines", end - begin_,
+    fail("it has {} bytes, but a line may have at most {}; break the file into lines", end - begin_,
          longest_line);
   rest = rest.substr(0, rest.find(signs_.comment));
   while (true) {

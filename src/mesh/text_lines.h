@@ -15,39 +15,39 @@ namespace mssim {
 /// The whole content of a file. Throws InputError with one sentence when it cannot be read.
 std::string read_text(const std::filesystem::path& file);
 
-/// Signs of a format of lines; '\0' where it has none.
+/// Special characters of a line format; '\0': none.
 struct LineSigns {
-  char comment = '#';        ///< what follows it on a line is left out
-  char continuation = '\0';  ///< the last of a line: the next line belongs to it
+  char comment = '#';        ///< begins a comment, which ends with the line
+  char continuation = '\0';  ///< at the end of a line: the next line continues it
 };
 
-/// Goes through the lines of a mesh file, split into words, and turns words into numbers. Lines end in LF, CR
-/// LF or CR. Every error is a InputError that begins "FILE, line N: "; of lines that are continued, N is the
-/// first.
+/// Iterates over the lines of a mesh file, splits them into words, and converts words to numbers. Lines end
+/// in LF, CR LF or CR. Every error is an InputError that begins "FILE, line N: "; N is the first of continued
+/// lines.
 class TextLines {
  public:
-  /// `text` must outlive this; a byte-order mark of UTF-8 at its beginning is left out.
+  /// `text` must outlive this object; a UTF-8 byte-order mark at its start is skipped.
   TextLines(std::string file, std::string_view text, const LineSigns& signs = {});
 
-  /// Goes to the next line that has words; false at the end. Throws for one of more than a megabyte: its
-  /// words would take many times that.
+  /// Advances to the next line that has words; false at the end. Throws if a line is longer than a megabyte:
+  /// its words would take many times that.
   bool next();
-  /// Goes to the next line that has words; throws at the end, where `expected` was to come.
+  /// Advances to the next line that has words; throws at the end, naming `expected`.
   void require_next(const std::string& expected);
 
   /// The words of the line.
   const std::vector<std::string_view>& words() const { return words_; }
   /// The number of the line, from 1.
   std::size_t line() const { return line_; }
-  /// Bytes of the whole text: no file holds more lines than that.
+  /// Bytes of the whole text: an upper bound on its lines.
   std::size_t bytes() const { return text_.size(); }
 
-  /// Word `index` as a coordinate (is_coordinate); `what` it is, for the message.
+  /// Word `index` as a coordinate (is_coordinate); `what` names it in the message.
   double coordinate(std::size_t index, std::string_view what) const;
-  /// Word `index` as a whole number.
+  /// Word `index` as a whole number; `what` names it in the message.
   std::int64_t integer(std::size_t index, std::string_view what) const;
 
-  /// A word for a message: in quotes, printable, cut off when long.
+  /// A word as shown in a message: in quotes, printable, truncated if long.
   static std::string quoted(std::string_view word);
 
   template <class... Values>
@@ -57,7 +57,7 @@ class TextLines {
   [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 
  private:
-  /// Adds the words of the next line to those of the statement, and says whether it is continued.
+  /// Adds the next line's words to the statement; returns whether the line is continued.
   bool take_line();
   std::string_view word(std::size_t index, std::string_view what) const;
 
@@ -65,8 +65,8 @@ class TextLines {
   std::string_view text_;
   LineSigns signs_;
   std::size_t at_ = 0;     ///< where the next line begins
-  std::size_t line_ = 0;   ///< the first of the statement
-  std::size_t lines_ = 0;  ///< up to there
+  std::size_t line_ = 0;   ///< first line of the statement
+  std::size_t lines_ = 0;  ///< lines read so far
   std::size_t begin_ = 0;  ///< where the statement begins
   std::vector<std::string_view> words_;
 };

@@ -14,7 +14,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Two triangles a cell.
+/// Two triangles per cell.
 void add_sheet(NodeSurface& surface, const GarmentPanel& sheet) {
   const std::uint32_t rows = sheet.rows, columns = sheet.columns;
   const auto first = static_cast<std::uint32_t>(surface.node.size());
@@ -29,9 +29,9 @@ void add_sheet(NodeSurface& surface, const GarmentPanel& sheet) {
     }
 }
 
-/// The faces that belong to one tetrahedron, outwards.
+/// The faces that belong to one tetrahedron only, facing outwards.
 std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra) {
-  std::vector<std::pair<Triangle, Triangle>> faces;  // its corners in order, and as it is
+  std::vector<std::pair<Triangle, Triangle>> faces;  // the face's sorted corners, and the face
   faces.reserve(4 * tetrahedra.size());
   for (const auto& [a, b, c, d] : tetrahedra)
     for (const Triangle& face :
@@ -106,7 +106,7 @@ void require_fitting_shape(const NodeShape& shape, std::size_t nodes) {
   std::size_t next = 0;
   for (const GarmentPanel& sheet : shape.sheets) {
     if (shape.in_panels && (sheet.rows < 2 || sheet.columns < 2 || sheet.first_node != next))
-      throw std::invalid_argument("a trace needs panels of rows and columns, one behind the other");
+      throw std::invalid_argument("a trace needs panels of rows and columns, in order");
     next += std::size_t{sheet.rows} * sheet.columns;
   }
   if (next != nodes)

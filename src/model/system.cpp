@@ -20,7 +20,7 @@ void append(std::string& bytes, const Vec3d& vector) {
     append(bytes, std::bit_cast<std::uint64_t>(number));
 }
 
-/// What a spring answers changes of its ends with, in a state.
+/// Linearised response of a spring to displacements of its ends, in a state.
 struct LinearisedSpring {
   std::uint32_t first, second;
   Vec3d direction;
@@ -53,7 +53,7 @@ class PowerIteration {
     scale();
   }
 
-  /// One iteration: the Rayleigh quotient of the vector before it.
+  /// One iteration: returns the Rayleigh quotient of the previous vector.
   double next() {
     for (Vec3d& force : force_) force = {};
     for (const LinearisedSpring& spring : springs_) {
@@ -161,8 +161,8 @@ System without_floor(System system) {
 }
 
 void round_to_single(double& value) {
-  // Through memory: where g++ 12.2 vectorises a conversion to float and back to double, at -O2 and -O3, it
-  // leaves the doubles as they were.
+  // Through memory: if g++ 12.2 vectorises a conversion to float and back to double, at -O2 and -O3, it
+  // leaves the doubles unchanged.
   const volatile float single = static_cast<float>(value);
   value = static_cast<double>(single);
 }
@@ -235,7 +235,7 @@ Energy energy_of(const System& system, const State& state) {
 std::string_view energies_leave_out(const System& system) {
   if (!std::holds_alternative<Garment>(system.topology)) return "";
   return "the work of seams, of contacts and of the correction of elongations; and gravitational energy "
-         "counts in full also while seams close, when gravity need not act in full";
+         "counts in full even while seams close, when gravity may be reduced";
 }
 
 double elastic_energy(const System& system, const Spring& spring, const State& state) {

@@ -19,23 +19,23 @@ namespace mssim {
 /// A spring between two nodes.
 struct Spring {
   std::uint32_t first = 0;   ///< node index
-  std::uint32_t second = 0;  ///< node index, another node than `first`
-  /// m. Single precision on purpose: every backend, the double-precision reference too, then simulates the
-  /// very same springs, and an error against the reference is an error of arithmetic alone.
+  std::uint32_t second = 0;  ///< node index, different from `first`
+  /// m. Single precision on purpose: every backend, including the double-precision reference, then simulates
+  /// exactly the same springs, and an error against the reference is purely arithmetic.
   float rest_length = 0;
   std::uint32_t kind = 0;  ///< index into System::materials
 };
 
-/// How a spring answers stretching.
+/// Stiffness and damping of a kind of spring.
 using SpringMaterial = SpringConstants<double>;
 
-/// What files call one of its constants.
+/// Names of one of its constants in files.
 struct SpringConstantInfo {
   double SpringMaterial::*number;
-  std::string_view name;             ///< in traces, and in the files of programs of the user's
-  std::string_view unit, h5md_unit;  ///< in those files, and as traces have it
+  std::string_view name;             ///< in traces, and in the files of users' programs
+  std::string_view unit, h5md_unit;  ///< in those files, and as in traces
   std::string_view key, sentence;    ///< in scene files and their schema
-  double most;                       ///< that a scene file may say
+  double most;                       ///< maximum in a scene file
 };
 inline constexpr auto spring_constants = std::to_array<SpringConstantInfo>({
     {&SpringMaterial::stiffness, "stiffness", "N/m", "N m-1", "stiffness_n_per_m",
@@ -45,11 +45,11 @@ inline constexpr auto spring_constants = std::to_array<SpringConstantInfo>({
 });
 static_assert(spring_constants.size() == spring_constant_count);
 
-/// The springs of a regular cloth, by what they resist. The numbers index GridSpringKind tables and
-/// materials.
+/// The springs of a regular cloth, by the deformation that they resist. The numbers index GridSpringKind
+/// tables and materials.
 enum GridSpringKind : std::uint32_t { structural, shear, bending };
 
-/// One row per kind of cloth spring: its name in scene files and the length in units of the spacing, squared.
+/// One row per kind of cloth spring: its name in scene files and its squared length in units of the spacing.
 struct GridSpringKindInfo {
   std::string_view name;
   double length_squared;
@@ -60,14 +60,15 @@ inline constexpr std::array<GridSpringKindInfo, 3> grid_spring_kinds{{
     {"bending", 4},
 }};
 
-/// One spring of the stencil, from its owner to the other end. Down means higher rows, of panels too.
+/// One spring of the stencil, as an offset from its owner to the other end. Down means towards higher rows,
+/// in panels too.
 struct GridSpring {
   int rows;     ///< down
   int columns;  ///< to the right
   GridSpringKind kind;
 };
 
-/// The 12-neighbour stencil of Hong et al., Figure 2, each spring named once.
+/// The 12-neighbour stencil of Hong et al., Figure 2, each spring once.
 inline constexpr std::array<GridSpring, 6> grid_stencil{{
     {1, 0, structural},
     {0, 1, structural},
@@ -82,7 +83,7 @@ struct GridPatch {
   std::uint32_t rows = 0;
   std::uint32_t columns = 0;
   double spacing = 0;              ///< m, between neighbours of a row or a column at rest
-  std::uint32_t first_column = 0;  ///< its place in the whole cloth, where this is a window of it
+  std::uint32_t first_column = 0;  ///< its first column in the whole cloth, if this is a window of it
 
   std::uint32_t nodes() const { return rows * columns; }
   std::uint32_t node(std::uint32_t row, std::uint32_t column) const { return row * columns + column; }
@@ -90,7 +91,7 @@ struct GridPatch {
   float rest_length(GridSpringKind kind) const;
 };
 
-/// The nodes of some rows and columns of a grid that follow each other.
+/// Consecutive rows and columns of a grid.
 struct GridWindow {
   std::uint32_t row = 0, column = 0;  ///< the first ones
   std::uint32_t rows = 0, columns = 0;
@@ -102,7 +103,7 @@ struct GridWindow {
 /// structural 2rc - r - c, shear 2(r-1)(c-1), bending 2rc - 2r - 2c (for grids of at least 2 x 2).
 std::uint64_t count_springs(std::uint64_t rows, std::uint64_t columns);
 
-/// The springs of the grid in the order of their owners, each once. Throws nothing but std::bad_alloc.
+/// The springs of the grid in the order of their owners, each once. Throws only std::bad_alloc.
 std::vector<Spring> springs_of(const GridPatch& grid);
 
 /// Node indices a, b, c, d of a tetrahedron of positive volume: (b - a) . ((c - a) x (d - a)) > 0.
@@ -113,37 +114,36 @@ struct TetrahedralMesh {
   std::vector<Tetrahedron> tetrahedra;
 };
 
-/// How far the solvers of implicit integrators go.
+/// Settings of the solvers of implicit integrators.
 struct SolverSettings {
-  /// Conjugate gradients and Newton's method end where the norm of the residual has become this part of what
-  /// it was.
+  /// Relative tolerance of conjugate gradients and of Newton's method (implicit/newton/newton_method.h).
   double tolerance = 1e-5;
   std::uint32_t iterations = 10;  ///< of fast-springs: local and global steps
-  std::uint32_t substeps = 10;    ///< of xpbd: small steps in a step
+  std::uint32_t substeps = 10;    ///< of xpbd: substeps per step
 };
 
-/// Where all nodes are and how they move, in the scene file's node order and in double precision: the form in
+/// Positions and velocities of all nodes, in the scene file's node order and in double precision: the form in
 /// which states enter and leave every backend.
 struct State {
   std::vector<Vec3d> position;  ///< [nodes] m
   std::vector<Vec3d> velocity;  ///< [nodes] m/s
-  bool draped = false;          ///< of a garment: all its seams are closed, and gravity and friction act
+  bool draped = false;          ///< a garment: all seams are closed, and gravity and friction act
 };
 
-/// The plane y = height that nothing may fall through (kernels/node_laws.h).
+/// The plane y = height through which nothing may fall (kernels/node_laws.h).
 struct Floor {
   double height = 0;       ///< m
-  double restitution = 0;  ///< share of the falling speed that comes back, 0 to 1
+  double restitution = 0;  ///< fraction of the falling speed that is reversed, 0 to 1
   double friction = 0;     ///< Coulomb's coefficient, not negative
 };
 
-/// How the nodes hang together: what a backend may know beyond the list of springs.
+/// The structure of the nodes, beyond the list of springs.
 using Topology = std::variant<GridPatch, TetrahedralMesh, Garment>;
 
-/// Everything that stays constant while a scene is stepped, and the state that it starts from.
+/// Everything that stays constant while a scene is stepped, and its start state.
 /// The acceleration of a free node is
 ///     a = (sum of spring forces) / node_mass[node] - viscous_damping v + (0, -gravity, 0);
-/// a pinned node stays where it starts, at rest.
+/// a pinned node keeps its start position, at rest.
 struct System {
   Topology topology;                      ///< all nodes belong to it
   std::vector<Spring> springs;            ///< [springs] each unique spring once
@@ -154,13 +154,13 @@ struct System {
   double viscous_damping = 0;             ///< 1/s
   Floor floor;                            ///< its height in single precision, like the start
   SolverSettings solver;                  ///< of implicit integrators
-  /// Pinned nodes are at rest. The numbers are single precision, for the reason given at Spring::rest_length.
+  /// Pinned nodes are at rest. The numbers are rounded to single precision; see Spring::rest_length.
   State start;
 
   std::size_t nodes() const { return start.position.size(); }
 };
 
-/// System::materials in some precision.
+/// System::materials in another precision.
 template <class Real>
 std::vector<SpringConstants<Real>> materials_of(const System& system) {
   std::vector<SpringConstants<Real>> materials;
@@ -169,13 +169,13 @@ std::vector<SpringConstants<Real>> materials_of(const System& system) {
   return materials;
 }
 
-/// The mass of each node, kg, where all nodes weigh the same.
+/// The mass of each node, kg, if all nodes have the same mass; else nothing.
 std::optional<double> uniform_node_mass(const System& system);
 
 /// Mean rest length over all springs, m: the unit of position errors.
 double mean_rest_length(const System& system);
 
-/// A system without nodes that has the laws of this one: its materials, gravity, damping, floor and solver.
+/// A system without nodes and with this one's laws: materials, gravity, damping, floor and solver.
 System with_laws_of(const System& system);
 
 /// The system with its floor out of reach.
@@ -184,22 +184,22 @@ System without_floor(System system);
 /// Rounds to single precision.
 void round_to_single(double& value);
 
-/// Rounds all numbers of a state.
+/// Rounds all numbers of a state to single precision.
 void round_to_single(State& state);
 
-/// Rounds what a system starts from: its start state, and its floor's height.
+/// Rounds a system's initial data to single precision: its start state and its floor's height.
 void round_start_to_single(System& system);
 
-/// Bounds on what the springs can do to one node, for the stability limit.
+/// Bounds on the springs' effect on one node, for the stability limit.
 struct StiffnessBound {
   double stiffness = 0;  ///< 1/s^2, at least the largest eigenvalue of K/m
   double damping = 0;    ///< 1/s, at least the largest eigenvalue of C/m, viscous damping included
 };
 
-/// Gershgorin's bound: a node's springs all aligned, all neighbours moving against it.
+/// Gershgorin's bound: all springs of a node aligned, all neighbours moving against it.
 StiffnessBound stiffness_bound(const System& system);
 
-/// The largest eigenvalues of a system about a state: what bounds the step of an explicit integrator.
+/// The largest eigenvalues of a system about a state: they limit the step of an explicit integrator.
 struct Spectrum {
   double stiffness = 0;  ///< 1/s^2, of M^-1 K: the square of the fastest angular frequency
   double damping = 0;    ///< 1/s, of M^-1 C, viscous damping included
@@ -207,29 +207,29 @@ struct Spectrum {
 
 /// The spectral radii of M^-1 K and M^-1 C at `state`, by power iteration (for example Golub and Van Loan,
 /// Matrix Computations, section 7.3.1) from a fixed pseudo-random vector: x becomes M^-1 K x, and its
-/// Rayleigh quotient in the inner product of M, which is at most the largest eigenvalue, tends to it. K and C
-/// are the derivatives of the spring forces by positions and velocities (kernels/spring_law.h), where
-/// pinned nodes do not move. Ends where a hundred iterations have raised the quotient by less than a
-/// thousandth, or after 3,000. A garment's joints and contacts are left out.
+/// Rayleigh quotient in the inner product of M, which is at most the largest eigenvalue, converges to it. K
+/// and C are the derivatives of the spring forces with respect to positions and velocities
+/// (kernels/spring_law.h) with pinned nodes fixed. Ends when a hundred iterations have raised the quotient by
+/// less than a thousandth, or after 3,000. A garment's joints and contacts are not included.
 Spectrum spectrum_at(const System& system, const State& state);
 
-/// Moments at equal times of a simulation, from its start on: a frame is the step nearest to its time.
+/// Equidistant times of a simulation, from its start on; a frame is the step nearest to its time.
 struct FrameGrid {
   double steps_per_frame = 1;  ///< at least 1, so that no two frames are the same step
 
-  /// Steps done when frame `frame` is taken.
+  /// Number of steps before frame `frame`.
   std::int64_t step_of(std::int64_t frame) const {
     return std::llround(static_cast<double>(frame) * steps_per_frame);
   }
 };
 
-/// Nodes of a leaf of state_hash.
+/// Nodes per leaf of state_hash.
 inline constexpr std::size_t state_hash_leaf = 4096;
 
-/// Two states have the same hash if they agree to the last bit; others, but by accident, do not. It is a tree
-/// of two levels, so that who holds only a part of the nodes can hash that part: FNV-1a of each 4096 nodes
-/// (the six numbers of a node after each other, position before velocity, each a double from its lowest byte
-/// on), and FNV-1a of these hashes in their order, each from its lowest byte on.
+/// Two states have the same hash if they are bitwise identical; other pairs collide only by accident. The
+/// hash is a tree of two levels, so a process with a part of the nodes can hash that part: FNV-1a of each
+/// 4096 nodes (a node's six numbers, position before velocity, each a double from its lowest byte on), and
+/// FNV-1a of these hashes in order, each from its lowest byte on.
 std::uint64_t state_hash(const State& state);
 
 /// The mechanical energy of a state, J.
@@ -240,27 +240,27 @@ struct Energy {
   double total() const { return kinetic + elastic + gravitational; }
 };
 
-/// What has been taken from the mechanical energy since the start, J.
+/// Losses of mechanical energy since the start, J.
 struct EnergyLosses {
   double damping = 0;      ///< by the springs and by the air
   double friction = 0;     ///< by sliding on the floor
-  double bounce = 0;       ///< by the floor otherwise; below zero where putting nodes back onto it gives more
-  double integration = 0;  ///< by the integrator's error off the floor; below zero where it feeds energy in
+  double bounce = 0;       ///< by the floor otherwise; negative if putting nodes back on it adds energy
+  double integration = 0;  ///< by the integrator's error off the floor; negative if it adds energy
   double total() const { return damping + friction + bounce + integration; }
 };
 
-/// Energy of `state` in double precision. Pinned nodes count, at their constant height.
+/// Energy of `state` in double precision. Pinned nodes are included, at their constant height.
 Energy energy_of(const System& system, const State& state);
 
-/// What does work on the nodes and is in none of these energies, in words; empty where there is nothing but
-/// what EnergyLosses account for.
+/// The work on the nodes that none of these energies include, in words; empty if EnergyLosses account for
+/// everything.
 std::string_view energies_leave_out(const System& system);
 
 /// Energy of one spring, J.
 double elastic_energy(const System& system, const Spring& spring, const State& state);
 
-/// What damping of the springs and of the air takes in `state`, W: the sum of spring_loss over all springs,
-/// and of viscous_damping m v^2 over all nodes.
+/// Power dissipated by damping of the springs and of the air in `state`, W: the sum of spring_loss over all
+/// springs, and of viscous_damping m v^2 over all nodes.
 double damping_power(const System& system, const State& state);
 
 }  // namespace mssim

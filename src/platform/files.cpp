@@ -67,7 +67,7 @@ const char* remedy(int error_number) {
   throw WriteError("cannot write {}: {}; {}choose another file name", file.string(), why, or_do);
 }
 
-/// What lies below these is not made of files. Shared memory is.
+/// Files in these system folders cannot be replaced; shared memory can.
 void require_ordinary_folder(const fs::path& file) {
   std::error_code ignored;
   const fs::path folder = fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".", ignored);
@@ -76,11 +76,11 @@ void require_ordinary_folder(const fs::path& file) {
   };
   for (const char* system : {"/dev", "/proc", "/sys"})
     if (begins_with(system) && !begins_with("/dev/shm"))
-      refuse(file, fmt::format("it lies in {}, which belongs to the system", system));
+      refuse(file, fmt::format("it is in {}, which belongs to the system", system));
 }
 
-/// Opens the temporary of `file` and locks it, before a byte of it changes. Follows no link, which could lead
-/// to a file of somebody else, and takes no file that has another name or owner, too.
+/// Opens and locks the temporary of `file` before changing it. Follows no link, which could lead to another
+/// user's file, and does not reuse a file with another name or owner.
 Descriptor open_locked(const fs::path& file) {
   constexpr int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
   constexpr mode_t everyone_as_umask_allows = 0666;
@@ -100,8 +100,8 @@ Descriptor open_locked(const fs::path& file) {
                        file.string());
     struct stat opened {};
     struct stat named {};
-    if (::fstat(part.get(), &opened) != 0) fail(file, "looking at " + temporary.string());
-    // Between opening and locking the writer before may have renamed or removed it.
+    if (::fstat(part.get(), &opened) != 0) fail(file, "inspecting " + temporary.string());
+    // Before the lock, the previous writer may have renamed or removed it.
     if (::lstat(temporary.c_str(), &named) != 0 || opened.st_dev != named.st_dev ||
         opened.st_ino != named.st_ino)
       continue;
@@ -116,8 +116,8 @@ Descriptor open_locked(const fs::path& file) {
 void sync_folder_of(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const Descriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // A folder that may be written but not read cannot be opened, and some file systems cannot sync folders;
-  // the rename is done then, only not yet proof against a power failure.
+  // A folder may be writable but not readable, and some file systems cannot sync folders; then the rename is
+  // done, but may not survive a power failure.
   if (!handle.is_open()) return;
   if (::fsync(handle.get()) != 0 && errno != EINVAL) fail(file, "syncing folder " + folder.string());
 }
@@ -138,11 +138,11 @@ fs::path own_program() {
   fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error)
     throw std::runtime_error("mssim cannot find its own program file through /proc/self/exe (" +
-                             error.message() + "), beside which its data folder lies");
+                             error.message() + "), from which its data folder is found");
   return program;
 }
 
-/// What `bin`, which has mssim, and `libexec/mssim`, which has its helpers, lie in.
+/// The folder of `bin`, which has mssim, and `libexec/mssim`, which has its helpers.
 fs::path own_prefix() {
   const fs::path folder = own_program().parent_path();
   return folder.parent_path().filename() == "libexec" ? folder.parent_path().parent_path()
@@ -154,7 +154,7 @@ bool may_be_executed(const fs::path& file) {
   return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
 }
 
-/// First line of a script, from #! on. Empty for what is no script.
+/// First line of a script, from #! on; empty if the file is not a script.
 std::string first_line(const fs::path& file) {
   std::array<char, 256> bytes{};  // no system reads more of it
   std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size() - 1);
@@ -175,7 +175,7 @@ void require_regular_file(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::not_found) throw ReadError(Cause::missing, "there is no such file");
-  if (error) fail("cannot be looked up", error, "check the path and its permissions");
+  if (error) fail("cannot be accessed", error, "check the path and its permissions");
   if (!fs::is_regular_file(status)) throw ReadError(Cause::not_regular, "is not a regular file");
 }
 
@@ -188,8 +188,7 @@ std::string read_file(const fs::path& file, std::size_t most_bytes) {
     refuse_size(most_bytes);
   std::string text;
   std::vector<char> block(std::size_t{1} << 16);
-  // The length is counted while reading, too, because the one that the file system states can be wrong
-  // (/proc).
+  // Count the length while reading too: the file system's length can be wrong (/proc).
   while (true) {
     const ssize_t bytes = ::read(open.get(), block.data(), block.size());
     if (bytes < 0 && errno == EINTR) continue;
@@ -218,12 +217,12 @@ std::string kept_in_part(const fs::path& file, std::string_view what, std::size_
 }
 
 fs::path target_of(const fs::path& file) {
-  constexpr int most_links = 40;  // as many as Linux follows
+  constexpr int most_links = 40;  // Linux's limit
   fs::path target = file;
   std::error_code error;
   for (int links = 0; fs::is_symlink(target, error); ++links) {
     require_ordinary_folder(target);
-    if (links == most_links) refuse(file, "its links lead round in a circle");
+    if (links == most_links) refuse(file, "its links form a circle");
     target = target.parent_path() / fs::read_symlink(target, error);
     if (error) throw WriteError(write_failure(file, "following the link", error.value()));
   }
@@ -287,7 +286,7 @@ int reserve_space(int descriptor, std::uint64_t bytes) {
   if (::fstat(descriptor, &status) != 0) return errno;
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0) return errno;
-  // fallocate() heeds this limit only when it changes the file's size.
+  // fallocate() obeys this limit only if it changes the file's size.
   if (limit.rlim_cur != RLIM_INFINITY && static_cast<std::uint64_t>(status.st_size) + bytes > limit.rlim_cur)
     return EFBIG;
   int result = 0;
@@ -322,7 +321,7 @@ FolderLock::FolderLock(const fs::path& folder)
 TemporaryFolder::TemporaryFolder() : TemporaryFolder(system_folder()) {}
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent) {
-  std::error_code none;  // where this process's folder is gone, the name stays as it is, and nothing is made
+  std::error_code none;  // if this process's folder is gone, keep the name; nothing is created
   const fs::path whole = fs::absolute(parent, none);
   std::string name = ((none ? parent : whole) / "mssim-XXXXXX").string();
   if (!::mkdtemp(name.data()))
@@ -350,12 +349,12 @@ fs::path data_folder() {
   if (!fs::is_directory(folder, error))
     throw std::runtime_error(
         "the data folder " + folder.string() + " of " + own_program().string() +
-        " is missing: run mssim from its build tree or from where `cmake --install` put it");
+        " is missing: run mssim from its build tree or from its installation (cmake --install)");
   return folder;
 }
 
 fs::path cache_folder(std::string_view name) {
-  // The XDG base directory specification has a relative path ignored.
+  // The XDG base directory specification requires relative paths to be ignored.
   const char* xdg = std::getenv("XDG_CACHE_HOME");
   if (xdg && *xdg == '/') return fs::path(xdg) / "mssim" / name;
   const char* home = std::getenv("HOME");
@@ -390,7 +389,8 @@ std::string why_not_executed(const fs::path& file, int error) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) return "it is a folder";
   if (names_interpreter_with_return(file))
-    return "its lines end as Windows has it (CR LF), also the name of its interpreter; save it with lines "
+    return "its lines end in CR LF, as on Windows, and so does the name of its interpreter; save it with "
+           "lines "
            "that end in LF (sed -i 's/\\r$//')";
   if (error == ENOENT && !fs::exists(file, ignored)) return "there is no such file";
   if (error == EACCES && ::access(file.c_str(), X_OK) != 0) return "it is not executable (chmod +x)";
@@ -398,7 +398,7 @@ std::string why_not_executed(const fs::path& file, int error) {
     return "it is neither a program for this machine nor a script whose first line names an interpreter "
            "(#!/usr/bin/env python3)";
   std::string line = first_line(file);
-  if (line.empty()) return "the system does not start it" + reason;
+  if (line.empty()) return "the system refuses to start it" + reason;
   line = line.substr(std::min(line.find_first_not_of(" \t", 2), line.size()), 200);
   return "its interpreter " + line.substr(0, line.find_first_of(" \t")) + " cannot be started" + reason;
 }

@@ -56,7 +56,7 @@ OnAllProcessCpus::~OnAllProcessCpus() {
 
 void for_each_at_once(std::size_t count, std::size_t at_once, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next = 0;
-  const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
+  const OnAllProcessCpus unbound;  // threads outside OpenMP would share the CPU of this one
   std::vector<std::future<void>> threads;
   for (std::size_t thread = 0; thread < std::min(at_once, count); ++thread)
     threads.push_back(std::async(as_the_system_can, [&] {
@@ -69,26 +69,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the files of one kind of limit are in a group's folder, and what they are called.
+/// Files of one kind of limit in a group's folder.
 struct Dialect {
   bool unified;  ///< version 2, whose groups have all controllers
   std::string_view quota, period, limit, used, file_prefix;
 };
-/// An empty name: version 2 has quota and period in one file.
+/// Empty name: version 2 has quota and period in one file.
 constexpr Dialect version_1{
     false,   "cpu.cfs_quota_us", "cpu.cfs_period_us", "memory.limit_in_bytes", "memory.usage_in_bytes",
     "total_"};
 constexpr Dialect version_2{true, "cpu.max", "", "memory.max", "memory.current", ""};
 
-/// A folder of the file system where groups are mounted.
+/// A folder where control groups are mounted.
 struct Mount {
   const Dialect* dialect;
-  std::string controllers;  ///< of version 1, with a comma before and behind each
-  std::string root;         ///< the group that its folder is
+  std::string controllers;  ///< version 1: with a comma before and after each
+  std::string root;         ///< the group that is mounted there
   fs::path folder;
 };
 
-/// The numbers at the start of a file; what is no number, such as "max", ends them.
+/// The numbers at the start of a file, up to the first word that is not a number, such as "max".
 std::vector<std::int64_t> numbers_in(const fs::path& file) {
   std::ifstream in(file);
   std::vector<std::int64_t> numbers;
@@ -114,9 +114,8 @@ std::vector<Mount> mounts(const fs::path& root) {
   return found;
 }
 
-/// A group in /proc/self/cgroup: "4:cpu,cpuacct:/group", of version 2 "0::/group". The group that this
-/// process is in, of the hierarchy that is mounted there; a group beyond the mount's root cannot be seen, and
-/// is that.
+/// This process's group in the hierarchy mounted there, from /proc/self/cgroup: "4:cpu,cpuacct:/group", in
+/// version 2 "0::/group". A group outside the mount's root is invisible; the root replaces it.
 fs::path own_group(const Mount& mount, const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {
@@ -145,7 +144,7 @@ void take_least(std::optional<Number>& least, Number number) {
   least = std::min(least.value_or(number), number);
 }
 
-/// The kernel's copies of files in a group, which it gives up for memory that is asked for.
+/// The group's page cache, which the kernel releases when memory is needed.
 std::uint64_t file_bytes(const fs::path& statistics, std::string_view prefix) {
   std::ifstream in(statistics);
   std::uint64_t sum = 0, bytes = 0;
@@ -162,7 +161,7 @@ void add_group(ContainerLimits& limits, const Dialect& dialect, const fs::path& 
   if (quota.size() == 2 && quota[0] > 0 && quota[1] > 0)
     take_least(limits.processors, static_cast<double>(quota[0]) / static_cast<double>(quota[1]));
 
-  // Version 1 says the largest number, less what does not fill a page, where there is no limit.
+  // Version 1 reports no limit as the largest number, rounded down to a page.
   constexpr std::int64_t none = std::int64_t{1} << 62;
   const std::vector<std::int64_t> limit = numbers_in(folder / dialect.limit);
   if (limit.empty() || limit[0] < 0 || limit[0] >= none) return;
@@ -175,7 +174,7 @@ void add_group(ContainerLimits& limits, const Dialect& dialect, const fs::path& 
   take_least(limits.memory_left, bytes - std::min(bytes, in_use - files));
 }
 
-/// MemAvailable of /proc/meminfo; all there could be where the kernel does not say.
+/// MemAvailable of /proc/meminfo; the largest number if the kernel does not report it.
 std::uint64_t kernel_available() {
   std::ifstream meminfo("/proc/meminfo");
   for (std::string key; meminfo >> key;) {
@@ -186,7 +185,7 @@ std::uint64_t kernel_available() {
   return std::numeric_limits<std::uint64_t>::max();
 }
 
-/// What the address-space limit leaves.
+/// Memory left by the address-space limit.
 std::uint64_t limit_available() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -202,11 +201,11 @@ std::string in_gigabytes(std::uint64_t bytes, int digits) {
 }
 
 constexpr const char* spin_variable = "GOMP_SPINCOUNT";
-/// Some ten or hundred microseconds, as long as a pause takes on the processor. Nobody but this program
-/// writes a sign before it, by which it knows that it has started itself.
+/// Tens to hundreds of microseconds, depending on the CPU's pause instruction. The sign, which only this
+/// program writes, shows that it restarted itself.
 constexpr std::string_view short_spins = "+1000";
 
-/// OMP_STACKSIZE as libgomp reads it, in bytes; none where it is not set, or is no size.
+/// OMP_STACKSIZE as libgomp reads it, in bytes; nothing if it is unset or not a size.
 std::optional<std::size_t> openmp_stack_bytes() {
   const char* text = std::getenv("OMP_STACKSIZE");
   if (text == nullptr) text = std::getenv("GOMP_STACKSIZE");
@@ -221,11 +220,11 @@ std::optional<std::size_t> openmp_stack_bytes() {
   return static_cast<std::size_t>(number << (10 * unit));
 }
 
-/// A thread that waits until it may end.
+/// A thread that waits until told to end.
 struct Waiter {
   pthread_t handle{};
   std::atomic<bool>* may_end = nullptr;
-  pid_t number = 0;  // of the system; known when it has ended
+  pid_t number = 0;  // the system's thread id; known when it has ended
 
   static void* run(void* argument) {
     auto& self = *static_cast<Waiter*>(argument);
@@ -233,7 +232,7 @@ struct Waiter {
     self.may_end->wait(false);
     return nullptr;
   }
-  /// The system counts a thread for a moment longer than until others can see that it has ended.
+  /// The system counts a thread for a moment after others can see that it has ended.
   void end_and_leave() const {
     pthread_join(handle, nullptr);
     const std::string folder = fmt::format("/proc/self/task/{}", number);
@@ -244,14 +243,14 @@ struct Waiter {
 };
 
 struct Trial {
-  int made = 1;  ///< threads at once, with the calling one
+  int made = 1;  ///< simultaneous threads, including the caller
   int error = 0;
 };
 
 Trial make_threads(int wanted, ThreadStack stack) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
-  // A size that is refused is not taken by libgomp either.
+  // libgomp also ignores a size that is refused.
   if (const auto bytes = openmp_stack_bytes(); stack == ThreadStack::openmp && bytes)
     pthread_attr_setstacksize(&attributes, *bytes);
   std::atomic<bool> may_end{false};
@@ -275,7 +274,7 @@ Trial make_threads(int wanted, ThreadStack stack) {
 }
 
 Trial try_threads(int wanted, ThreadStack stack) {
-  static std::mutex one_at_a_time;  // trials would count each other's threads
+  static std::mutex one_at_a_time;  // concurrent trials would count each other's threads
   static int openmp_has_made = 1;
   const std::lock_guard lock(one_at_a_time);
   if (stack == ThreadStack::openmp && wanted <= openmp_has_made) return {wanted};
@@ -289,7 +288,7 @@ std::string_view variable(const char* name) {
   return value == nullptr ? std::string_view() : value;
 }
 
-/// As the C library looks a locale up: the first of the three that is not empty.
+/// The locale by the C library's rule: the first of the three that is not empty.
 bool is_utf8(const StreamFacts& facts) {
   const std::string_view locale = !facts.lc_all.empty()     ? facts.lc_all
                                   : !facts.lc_ctype.empty() ? facts.lc_ctype
@@ -340,8 +339,7 @@ void start_with_short_waits(char** argv) {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error || setenv(spin_variable, short_spins.data(), 1) != 0) return;
-  // The program started anew would inherit the one CPU that OpenMP has bound this thread to, and find no
-  // other.
+  // The restarted program would inherit the one CPU that OpenMP bound this thread to, and see no other.
   const OnAllProcessCpus on_all_cpus;
   execv(program.c_str(), argv);
   unsetenv(spin_variable);
@@ -352,7 +350,7 @@ std::optional<std::string> thread_shortage(int threads, ThreadStack stack) {
   if (trial.made >= threads) return std::nullopt;
   const char* size = std::getenv("OMP_STACKSIZE");
   return fmt::format(
-      "{} were asked for; the system makes {} ({}): ask for fewer with --threads, raise the limit of "
+      "{} were requested; the system allows {} ({}): request fewer with --threads, raise the limit of "
       "processes (ulimit -u, or pids.max of a container){}",
       pluralize(threads, "thread"), trial.made, std::generic_category().message(trial.error),
       stack == ThreadStack::openmp && size ? fmt::format(", or lower OMP_STACKSIZE, which is {}", size) : "");

@@ -15,13 +15,13 @@
 
 namespace mssim {
 
-/// Numbers of the logical CPUs that the process may use, in ascending order; empty where the system does not
-/// tell. Not the calling thread's affinity mask, unless OpenMP binds no threads: with OMP_PROC_BIND or
-/// OMP_PLACES it binds the first one to a CPU of its own before main begins.
+/// Numbers of the logical CPUs that the process may use, in ascending order; empty if the system does not
+/// report them. Not the calling thread's affinity mask, unless OpenMP binds no threads: with OMP_PROC_BIND or
+/// OMP_PLACES it binds the first thread to its own CPU before main begins.
 std::vector<int> process_cpus();
 
-/// While it lives, the calling thread may move to all of process_cpus(), and the threads and processes that
-/// it starts inherit that: they would otherwise share the one CPU that OpenMP has bound this thread to.
+/// While it lives, the calling thread may use all process_cpus(), and the threads and processes that it
+/// starts inherit that. Otherwise they would share the one CPU that OpenMP has bound this thread to.
 class OnAllProcessCpus {
  public:
   OnAllProcessCpus();
@@ -34,63 +34,61 @@ class OnAllProcessCpus {
   bool changed_ = false;
 };
 
-/// How std::async starts what should run beside the caller: in a thread, or where the system makes none, in
-/// that which waits for it.
+/// Launch policy for std::async: in a new thread, or, if the system refuses one, in the thread that waits for
+/// the result.
 inline constexpr std::launch as_the_system_can = std::launch::async | std::launch::deferred;
 
-/// Calls `work` with 0 to `count` - 1, so many at the same time. Throws what `work` throws.
+/// Calls `work` with 0 to `count` - 1, at most `at_once` at the same time. Throws what `work` throws.
 void for_each_at_once(std::size_t count, std::size_t at_once, const std::function<void(std::size_t)>& work);
 
-/// What control groups (cgroups) let this process have, as containers, Slurm and systemd set them: of the
-/// group that it is in and of those that this is in, each the least. None where there is no limit.
+/// Limits of control groups (cgroups), as containers, Slurm and systemd set them: for each limit, the least
+/// of this process's group and its ancestors. Nothing without a limit.
 struct ContainerLimits {
-  std::optional<double> processors;           ///< processor seconds a second
+  std::optional<double> processors;           ///< CPU seconds per second
   std::optional<std::uint64_t> memory_bytes;  ///< the limit
-  /// Bytes of it that are not in use; the kernel gives up its copies of files before it refuses memory, so
-  /// that they count as unused.
+  /// Bytes of it that are not in use; the page cache counts as unused, because the kernel releases it before
+  /// it refuses memory.
   std::optional<std::uint64_t> memory_left;
 };
 
-/// Asks cgroups of version 1 and 2. `root` stands before /proc and the folders where cgroups are mounted.
+/// Reads the limits of cgroups version 1 and 2. `root` is prepended to /proc and to the mount folders.
 ContainerLimits container_limits(const std::filesystem::path& root = "/");
 
-/// Bytes that this process can still get: what the kernel calls available, or what the address-space limit
+/// Bytes that this process can still allocate: the kernel's available memory, or what the address-space limit
 /// (`ulimit -v`) or a container's limit leaves if that is less.
 std::uint64_t available_memory();
 
-/// "needs at least 3.20 GB of memory, but 1.00 GB are available", in as many digits as tell the two apart;
-/// none where the available memory suffices. Both in bytes.
+/// "needs at least 3.20 GB of memory, but 1.00 GB are available", with enough digits to distinguish the two;
+/// nothing if the available memory suffices. Both in bytes.
 std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t available);
 
-/// Compares with the memory that is available now (available_memory), bytes.
+/// Compares with the memory available now (available_memory), bytes.
 std::optional<std::string> memory_shortage(std::uint64_t needed);
 
-/// Starts the program anew, with its arguments, where OpenMP's threads would wait for each other as long as
-/// libgomp does by default: some ten milliseconds, in which they spin. On processors that other programs use,
-/// two threads then come to lie on one of them, where each spins while the other one should work. libgomp
-/// reads how long it spins before main() and never again. To be called first of all in main(); returns where
-/// the user has said how to wait (OMP_WAIT_POLICY, GOMP_SPINCOUNT), where the program has been started anew,
-/// and where that is impossible. What the program starts itself is told nothing of it.
+/// Restarts the program with the same arguments if OpenMP's threads would spin as long as libgomp does by
+/// default, tens of milliseconds. On CPUs that other programs use, two threads can end up on one CPU, where
+/// each spins while the other should work. libgomp reads its spin count once, before main(). Call it first in
+/// main(). Returns if the user has set the waiting (OMP_WAIT_POLICY, GOMP_SPINCOUNT), if the program was
+/// already restarted, and if that is impossible. Programs that mssim runs do not inherit the setting.
 void start_with_short_waits(char** argv);
 
-/// The stack that threads get: that of any thread, or that which OpenMP gives (OMP_STACKSIZE).
+/// The stack of threads: the default of the system, or the one of OpenMP (OMP_STACKSIZE).
 enum class ThreadStack : std::uint8_t { usual, openmp };
 
-/// Why the system does not make so many threads, the calling one included: how many it makes, and what to do.
-/// None where it does. Tries it: a thread that cannot be made ends a process that asks OpenMP for it. What
-/// has succeeded for OpenMP is not tried again, because OpenMP keeps its threads.
+/// Why the system cannot create `threads` threads, including the calling one: the number it allows and a
+/// remedy; nothing if it can. Tests it by creating them, because OpenMP ends the process if a thread cannot
+/// be created. A success for OpenMP is not repeated, because OpenMP keeps its threads.
 std::optional<std::string> thread_shortage(int threads, ThreadStack stack);
 
-/// Why so many threads make no sense, as what follows "are": more than eight for each processor that this
-/// process may use, so that each step would take as long as the system needs to let all of them run. None
-/// where they do.
+/// Why so many threads make no sense, as what follows "are": more than eight per CPU of this process, so each
+/// step would take as long as the system needs to run them all. Nothing if they do.
 std::optional<std::string> thread_excess(int threads);
 
-/// How many threads a parallel region can have whose result does not depend on their number: `wanted` (0: as
-/// many as OpenMP takes by itself), or where the system does not make so many, as many as it makes.
+/// Threads for a parallel region whose result does not depend on their number: `wanted` (0: OpenMP's
+/// default), or fewer if the system allows only those.
 int openmp_team(int wanted);
 
-/// Wall time since it was made, by a clock that is never set back.
+/// Wall time since construction, from a monotonic clock.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -100,26 +98,26 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// What decides how an output stream is written; the texts are variables of the environment, empty where
+/// The facts that decide how an output stream is written; the texts are environment variables, empty if
 /// unset.
 struct StreamFacts {
   bool is_terminal = false;
-  int columns = 0;  ///< as the terminal says; 0 where it does not
+  int columns = 0;  ///< of the terminal; 0 if unknown
   std::string_view term = {}, no_color = {}, lc_all = {}, lc_ctype = {}, lang = {};
 };
 
-/// What may be written to an output stream.
+/// Capabilities of an output stream.
 struct Terminal {
-  std::optional<int> width = {};  ///< columns; none where it is no terminal, and nothing has to fit
-  bool rewrites = false;          ///< lines may be written over, by escape sequences
-  bool colours = false;           ///< in addition to what characters say
-  bool utf8 = false;              ///< characters beyond ASCII are shown
+  std::optional<int> width = {};  ///< columns; nothing if it is not a terminal: no limit
+  bool rewrites = false;          ///< lines can be overwritten with escape sequences
+  bool colours = false;           ///< colours may be used, in addition to characters
+  bool utf8 = false;              ///< characters beyond ASCII are displayed
 };
 
 /// Colours need a terminal that knows escape sequences and no NO_COLOR (no-color.org).
 Terminal terminal_with(const StreamFacts& facts);
 
-/// What may be written to a descriptor, in this environment. The only place that asks what a stream leads to.
+/// The capabilities of a descriptor in this environment. Only this function inspects a stream's type.
 Terminal terminal_of(int descriptor);
 
 }  // namespace mssim

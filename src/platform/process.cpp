@@ -30,7 +30,7 @@ namespace {
   fail(child, fmt::format("{} failed ({})", action, std::strerror(error)));
 }
 
-/// The two ends of a pipe; the child inherits neither but as stdout and stderr.
+/// The two ends of a pipe; a child inherits them only as stdout and stderr.
 struct Pipe {
   explicit Pipe(const ChildProcess& child) {
     std::array<int, 2> ends{};
@@ -62,35 +62,35 @@ std::vector<std::string> environment_with(const std::vector<std::string>& added)
 
 void limit(int resource, rlim_t soft, rlim_t hard) {
   const rlimit limits{soft, hard};
-  // A lower limit that is already in force may not be raised; then it stays, which is as good.
+  // A lower limit already in force may not be raised; then it stays, which also works.
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
-/// What a child could not do before it became the program, a text that it shares with its parent, and errno.
+/// An action that failed in a child before exec: its text, shared with the parent, and errno.
 struct StartError {
   const char* action = nullptr;
   int error = 0;
 };
 
-/// The last action, of which it can be said why it failed.
+/// The last action; the reason for its failure can be explained.
 constexpr const char* execution = "starting it";
 
-/// What the child does between fork and exec, where only async-signal-safe calls are allowed: this process
-/// may have threads. `group`: of processes, 0 for a new one. Returns when something fails.
+/// Runs in the child between fork and exec, where only async-signal-safe calls are allowed, because this
+/// process may have threads. `group`: a process group, 0 for a new one. Returns only on failure.
 StartError become(const ChildProcess& child, char* const* arguments, char* const* environment, int output,
                   pid_t group) {
-  // A group of their own, so that what it starts in turn can be ended with it; and no orphan if this process
-  // is killed.
+  // In a group of its own, so that its descendants can be killed with it; it dies with this process, even if
+  // that is killed.
   if (::setpgid(0, group) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
-    return {"giving it a group", errno};
+    return {"setting its process group", errno};
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return {"opening /dev/null", errno};
   if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0)
-    return {"giving it an output", errno};
+    return {"redirecting its output", errno};
   limit(RLIMIT_CPU, child.cpu_seconds, child.cpu_seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
   if (child.memory_bytes > 0) limit(RLIMIT_AS, child.memory_bytes, child.memory_bytes);
-  std::signal(SIGXFSZ, SIG_DFL);  // which mssim itself ignores
+  std::signal(SIGXFSZ, SIG_DFL);  // mssim itself ignores it
   if (::chdir(child.folder.c_str()) != 0) return {"entering its folder", errno};
   ::execve(child.program.c_str(), arguments, environment);
   return {execution, errno};
@@ -98,7 +98,7 @@ StartError become(const ChildProcess& child, char* const* arguments, char* const
 
 using Clock = std::chrono::steady_clock;
 
-/// Waits until there is something to read, or the end; false when that time has come. None: for ever.
+/// Waits until data or the end can be read; false after the deadline. No deadline: waits for ever.
 bool wait_to_read(int descriptor, const std::optional<Clock::time_point>& deadline) {
   while (true) {
     constexpr std::chrono::milliseconds longest{60'000};
@@ -112,7 +112,7 @@ bool wait_to_read(int descriptor, const std::optional<Clock::time_point>& deadli
   }
 }
 
-/// Reads to the end and keeps the last bytes; no farther than that time.
+/// Reads to the end, at most until the deadline, and keeps the last bytes.
 std::string read_tail(int descriptor, const std::optional<Clock::time_point>& deadline) {
   constexpr std::size_t kept = 64 * 1024;
   std::string tail;
@@ -128,10 +128,10 @@ std::string read_tail(int descriptor, const std::optional<Clock::time_point>& de
   return tail;
 }
 
-/// A program under way.
+/// A running program.
 class Running {
  public:
-  /// Starts it in that group of processes; 0: in a group of its own, which has the number of its process.
+  /// Starts it in process group `group`; 0: in a new group, whose number is its process id.
   Running(const ChildProcess& child, pid_t group, const InterruptionGuard& interruption)
       : child_(child), output_(child), start_error_(child) {
     std::vector<std::string> arguments{child.program.filename().string()};
@@ -156,7 +156,7 @@ class Running {
     start_error_.writer.close();
   }
 
-  /// Where it has not ended because another could not be started, it is ended now.
+  /// Kills it if it is still running because another program could not be started.
   ~Running() {
     if (ended_) return;
     ::kill(process_, SIGKILL);
@@ -171,7 +171,7 @@ class Running {
     result_.output = read_tail(output_.reader.get(), deadline_);
     int status = 0;
     rusage used{};
-    // What it started may hold the pipe open without it, and it may close the pipe and go on.
+    // Its descendants may hold the pipe open after it ends, and it may close the pipe and continue.
     while (!has_ended(status, used)) {
       if (deadline_ && Clock::now() >= *deadline_) {
         result_.out_of_time = true;
@@ -192,7 +192,7 @@ class Running {
     result_.out_of_memory = failed && !result_.out_of_time && child_.memory_bytes > 0 && has_filled(used);
   }
 
-  /// The result of a child that has ended.
+  /// The result, once the child has ended.
   const ChildResult& result() const {
     if (error_.action == execution) fail(child_, why_not_executed(child_.program, error_.error));
     if (error_.action != nullptr) fail(child_, error_.action, error_.error);
@@ -200,7 +200,7 @@ class Running {
   }
 
  private:
-  /// Without a time limit it waits for that.
+  /// Without a time limit, waits for the end.
   bool has_ended(int& status, rusage& used) {
     while (true) {
       const pid_t ended = ::wait4(process_, &status, deadline_ ? WNOHANG : 0, &used);
@@ -209,8 +209,8 @@ class Running {
     }
   }
 
-  /// Whether it had most of the memory that it may take. The system counts what this process has as the
-  /// child's, too, which begins as a copy of it: where that is as much, the child's own words tell.
+  /// Whether it used most of its memory limit. The system counts this process's memory as the child's too,
+  /// which begins as a copy; if that alone is as much, the child's output decides.
   bool has_filled(const rusage& used) const {
     const auto has_most = [&](const rusage& usage) {
       return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024 > child_.memory_bytes / 4 * 3;
@@ -222,7 +222,7 @@ class Running {
   }
 
   const ChildProcess& child_;
-  Pipe output_, start_error_;  // the latter stays empty when the program starts: exec closes it
+  Pipe output_, start_error_;  // the latter is empty if the program starts: exec closes it
   pid_t process_ = 0, group_ = 0;
   std::optional<Clock::time_point> deadline_;
   bool ended_ = false;
@@ -230,7 +230,7 @@ class Running {
   ChildResult result_;
 };
 
-/// Ends quietly whatever happens: without messages, a core file or the handlers of a sanitizer.
+/// Ends silently in every case: without messages, a core file or sanitizer handlers.
 [[noreturn]] void try_out(const std::function<void()>& work, unsigned most_seconds) {
   const rlimit no_core{0, 0}, seconds{most_seconds, most_seconds};
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -242,13 +242,13 @@ class Running {
   }
   try {
     work();
-  } catch (...) {  // NOLINT(bugprone-empty-catch): it will be thrown again where somebody hears it
+  } catch (...) {  // NOLINT(bugprone-empty-catch): thrown again when called for real
   }
   ::_exit(0);
 }
 
-// What a signal handler may touch has to be global. The system chooses the thread that handles a signal,
-// hence atomic.
+// Data used by a signal handler must be global; atomic, because the system chooses the thread that handles a
+// signal.
 std::atomic<int> noted = 0;
 std::atomic<pid_t> watched_group = 0;
 std::atomic<int> received_signal = 0;
@@ -281,7 +281,7 @@ std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
   InterruptionGuard interruption;
   std::deque<Running> all;
   {
-    const OnAllProcessCpus inherited;  // set before a fork and restored in this process alone
+    const OnAllProcessCpus inherited;  // set before the fork, restored only in this process
     for (const ChildProcess& child : children)
       all.emplace_back(child, all.empty() ? 0 : all.front().process(), interruption);
   }
@@ -343,7 +343,7 @@ InterruptionGuard::~InterruptionGuard() {
   watched_group = 0;
   signals_.reset();
   ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  if (received_signal != 0) std::raise(received_signal);  // came after it was asked for
+  if (received_signal != 0) std::raise(received_signal);  // arrived after the last check
 }
 
 void InterruptionGuard::release_child() const {

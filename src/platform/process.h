@@ -32,108 +32,108 @@ class Descriptor {
   }
   bool is_open() const { return descriptor_ >= 0; }
   int get() const { return descriptor_; }
-  /// Closes and says whether that worked: some file systems report a failed write only here.
+  /// Closes and returns whether that succeeded: some file systems report a failed write only here.
   bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
 
-  /// Keeps an open file or folder for one writer while it is open: false where another one has it, in any
-  /// process. Leaves nothing behind, whatever ends the process. True on a file system that knows no locks.
+  /// Locks an open file or folder for one writer while it is open: false if another process or descriptor has
+  /// the lock. Leaves nothing behind, however the process ends. True on a file system without locks.
   bool lock() const { return ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK; }
 
  private:
   int descriptor_;
 };
 
-/// How a program that was run ended.
+/// How a program ended.
 struct ChildResult {
-  int exit_code = 0;           ///< what it returned, when signal is 0
-  int signal = 0;              ///< what ended it, or 0
-  bool out_of_time = false;    ///< it was ended because its processor time or its elapsed time was over
-  bool out_of_memory = false;  ///< it failed when it had more than three quarters of memory_bytes
-  std::string output;          ///< what it wrote to stdout and stderr, the last 64 KiB
+  int exit_code = 0;           ///< if signal is 0
+  int signal = 0;              ///< the signal that ended it, or 0
+  bool out_of_time = false;    ///< ended because it exceeded its CPU time or elapsed time
+  bool out_of_memory = false;  ///< it failed with more than three quarters of memory_bytes in use
+  std::string output;          ///< its stdout and stderr, the last 64 KiB
 };
 
-/// How a program failed, for the end of a sentence: "ended with signal 6 when DOING: " and the first line of
-/// its output that speaks of an error, or else the last one. Empty where it returned 0.
+/// The failure of a program, for the end of a sentence: "ended with signal 6 when DOING: " and the first line
+/// of its output that mentions an error, else the last line. Empty if it returned 0.
 std::string failed_end(const ChildResult& result, const std::string& doing);
 
-/// What a program is run with.
+/// A program to run, its environment and its limits.
 struct ChildProcess {
   std::filesystem::path program;
   std::vector<std::string> arguments;    ///< without the program's name
-  std::vector<std::string> environment;  ///< NAME=VALUE, added to this process's or replacing what it has
-  std::filesystem::path folder;          ///< the folder it runs in
-  unsigned cpu_seconds = 0;              ///< processor time after which the system ends it with SIGXCPU
-  /// Time after which it is killed, with all that it started and all that runs together with it; 0: none.
+  std::vector<std::string> environment;  ///< NAME=VALUE, added to this process's or replacing it
+  std::filesystem::path folder;          ///< working directory
+  unsigned cpu_seconds = 0;              ///< CPU time after which the system ends it with SIGXCPU
+  /// Elapsed time after which it, its descendants and all programs run together with it are killed; 0: none.
   unsigned elapsed_seconds = 0;
-  std::uint64_t memory_bytes = 0;  ///< the most address space that it gets; 0: as much as this process
+  std::uint64_t memory_bytes = 0;  ///< limit of its address space; 0: that of this process
 };
 
 /// Runs a program to its end: no shell, empty stdin, no core file. Throws std::runtime_error with one
-/// sentence when it cannot be started, Interrupted when this process was told to end
-/// meanwhile: then the program and all that it started have been killed.
+/// sentence if it cannot be started, and Interrupted if this process received an ending signal meanwhile:
+/// then the program and its descendants have been killed.
 ChildResult run(const ChildProcess& child);
 
-/// Runs several at the same time, until all have ended: their results, in the same order. Throws like the one
-/// above; where one cannot be started, after the others have ended.
+/// Runs several programs at the same time, until all have ended; results in the same order. Throws like
+/// run(const ChildProcess&); if one cannot be started, the others are killed first.
 std::vector<ChildResult> run_together(std::span<const ChildProcess> children);
 
-/// Does `work` in a process of its own, a copy of this one, and says whether it came to an end: a library
-/// that crashes, or does not end within `most_seconds` of processor time, then ends that process alone. What
-/// `work` throws counts as an end, and what it prints is lost. True where no process can be made. Only this
-/// thread is in the copy: `work` must not need others.
+/// Runs `work` in a forked copy of this process and returns whether it finished. A library that crashes, or
+/// uses more than `most_seconds` of CPU time, ends only that copy. An exception from `work` counts as
+/// finished; its output is discarded. True if the system cannot fork. The copy has only this thread, so
+/// `work` must not need others.
 bool ends_in_trial(const std::function<void()>& work, unsigned most_seconds);
 
-/// The signals by which a user ends a program: Ctrl-C, kill, a closed terminal, Ctrl-\.
+/// Signals by which a user ends a program: Ctrl-C, kill, a closed terminal, Ctrl-\.
 inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
-/// Notes that such a signal has come, for those who look. Async-signal-safe.
+/// Notes that such a signal has arrived. Async-signal-safe.
 void note_ending_signal(int signal);
 
-/// The signal that was noted last and that nobody has taken, or 0.
+/// The last noted signal that has not been taken, or 0.
 int noted_ending_signal();
 
-/// Takes the noted signal, or 0: nothing is noted any more.
+/// Takes the noted signal and clears the note; 0 if there is none.
 int take_ending_signal();
 
-/// While it lives, those signals call a handler, but for those that are ignored (nohup), which stay so.
+/// While it lives, the ending signals call a handler, except ignored ones (nohup), which stay ignored.
 class EndingSignals {
  public:
-  /// `flags`: of sigaction.
+  /// `flags`: those of sigaction.
   EndingSignals(void (*handler)(int signal), int flags);
   ~EndingSignals() { restore(); }
   EndingSignals(const EndingSignals&) = delete;
   EndingSignals& operator=(const EndingSignals&) = delete;
 
-  /// They do again what they did before. Async-signal-safe.
+  /// Restores their previous actions. Async-signal-safe.
   void restore() const;
 
  private:
   std::array<struct sigaction, ending_signals.size()> before_{};
 };
 
-/// Thrown when the user ends mssim (Ctrl-C, a closed terminal, kill) while another program runs for it, so
-/// that what is half made is cleared away on the way out. The program then ends by that signal, as it would
-/// have at once. Not a std::exception: nothing but the end of the program is to catch it.
+/// Thrown if the user ends mssim (Ctrl-C, a closed terminal, kill) while another program runs for it, so that
+/// partial results are removed during unwinding. The program then ends by that signal. Not a std::exception:
+/// only the end of the program may catch it.
 struct Interrupted {
   int signal;
 };
 
-/// Throws Interrupted with the noted signal, which it takes, where there is one.
+/// If a signal is noted, takes it and throws Interrupted with it.
 void throw_if_ending_signal_noted();
 
-/// While it lives, the ending signals end the processes of one group instead of this one, and wait to
-/// be asked for. Signals that are ignored (nohup) stay so. One at a time.
+/// While it lives, the ending signals end the processes of one group instead of this one, and are kept for
+/// throw_if_interrupted(). Ignored signals (nohup) stay ignored. Only one object at a time.
 class InterruptionGuard {
  public:
-  /// Until watch() the signals are held back, so that none falls between a fork and its watch.
+  /// Blocks the signals until watch(), so that none arrives between a fork and its watch.
   InterruptionGuard();
   ~InterruptionGuard();
 
-  /// To be called in a forked child: its signals become what they were before the guard. Async-signal-safe.
+  /// Call in a forked child: restores its signals to their state before the guard. Async-signal-safe.
   void release_child() const;
-  /// From now on the signals end this process group.
+  /// From now on, the signals end this process group.
   void watch(pid_t group);
-  /// Throws Interrupted when a signal has come. One that comes later acts when the guard goes.
+  /// Throws Interrupted if a signal has arrived. A later one takes effect when the guard is destroyed.
   void throw_if_interrupted();
 
  private:

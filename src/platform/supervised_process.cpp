@@ -21,7 +21,7 @@
 namespace mssim {
 namespace {
 
-/// How long the supervisor may take for what takes it a millisecond, and to end what SIGKILL ends.
+/// Time limit for actions of the supervisor (usually a millisecond) and for the end of killed processes.
 constexpr std::chrono::seconds supervisor_patience{30};
 
 std::string reason(int error) { return fmt::format(" ({})", std::strerror(error)); }
@@ -37,18 +37,18 @@ std::string why_not_started(const SupervisedProgram& program, const SupervisorAn
     case SupervisorWord::no_folder:
       return fmt::format("its folder {} cannot be entered{}", program.folder.string(), reason(answer.value));
     case SupervisorWord::no_processors:
-      return "it cannot be bound to its processors" + reason(answer.value);
+      return "it cannot be bound to its CPUs" + reason(answer.value);
     case SupervisorWord::no_program:
       return why_not_executed(file_of(program), answer.value);
     default:
-      return "the system has no room for it" + reason(answer.value);
+      return "the system has no resources for it" + reason(answer.value);
   }
 }
 
-/// Starts the supervisor with its end of the channel as descriptor 3, and none but that: descriptors that are
-/// not closed by exec, it closes itself.
+/// Starts the supervisor with only its end of the channel, as descriptor 3; the supervisor closes other
+/// inherited descriptors itself.
 pid_t start_supervisor(const SupervisedProgram& program, int channel) {
-  // Of this the system would say the same as of a missing program.
+  // The system would report this like a missing program.
   if (::access("/dev/null", R_OK | W_OK) != 0) fail(program, "/dev/null cannot be opened" + reason(errno));
   const std::string supervisor = helper_program("supervise").string();
   std::string cpus;
@@ -70,7 +70,7 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   ::posix_spawnattr_init(&attributes);
   ::posix_spawnattr_setsigmask(&attributes, &none);
   ::posix_spawnattr_setsigdefault(&attributes, &all);
-  // A session of its own: no terminal, and so no Ctrl-C.
+  // A session of its own, so no terminal and no Ctrl-C.
   ::posix_spawnattr_setflags(&attributes,
                              POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID);
   posix_spawn_file_actions_t actions;
@@ -88,7 +88,7 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   return process;
 }
 
-/// False after that time; also when the other end is closed there is something to be read.
+/// False after `patience`; true also if the other end is closed.
 bool readable(int descriptor, std::chrono::milliseconds patience) {
   using std::chrono::steady_clock;
   const steady_clock::time_point limit = steady_clock::now() + patience;
@@ -125,7 +125,7 @@ std::string describe(const ProgramEnd& end) {
 }
 
 SupervisedProcess::SupervisedProcess(const SupervisedProgram& program) {
-  // The system would start it, where it only asks `env` for "python3\r".
+  // The system would start it, and only `env` would fail, for lack of "python3\r".
   if (names_interpreter_with_return(file_of(program))) fail(program, why_not_executed(file_of(program), 0));
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
@@ -166,17 +166,17 @@ const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
   return end_;
 }
 
-/// Asks and takes the answer. False where the program has ended.
+/// Sends a request and receives its answer. False if the program has ended.
 bool SupervisedProcess::ask(SupervisorRequest request) const {
   if (ended_) return false;
-  // Where the supervisor is gone, hear() finds that out.
+  // If the supervisor is gone, hear() detects it.
   ::send(channel_.get(), &request, sizeof request, MSG_NOSIGNAL);
   SupervisorAnswer answer;
   return hear(answer);
 }
 
-/// Waits until the supervisor says something, and continues it where somebody has stopped it: what the
-/// program is may reach its parent. False where it says nothing.
+/// Waits for data from the supervisor, and continues it if it was stopped: the program could send signals to
+/// its parent. False if there is none in time.
 bool SupervisedProcess::says_something() const {
   constexpr std::chrono::milliseconds look{500};
   for (std::chrono::milliseconds waited{0}; waited < supervisor_patience; waited += look) {
@@ -188,7 +188,7 @@ bool SupervisedProcess::says_something() const {
   return false;
 }
 
-/// Takes an answer. False where it is that the program has ended, or where there is none.
+/// Receives an answer. False if the program has ended or there is no answer.
 bool SupervisedProcess::hear(SupervisorAnswer& answer) const {
   if (!says_something()) {
     lose(
@@ -197,7 +197,7 @@ bool SupervisedProcess::hear(SupervisorAnswer& answer) const {
     return false;
   }
   if (!receive(channel_.get(), &answer, sizeof answer)) {
-    lose("was ended because mssim's program supervise, which watches over it, was ended");
+    lose("was ended because mssim's program supervise, which monitors it, was ended");
     return false;
   }
   processor_seconds_ = std::max(processor_seconds_, answer.processor_seconds);
@@ -217,11 +217,11 @@ void SupervisedProcess::take_end(const SupervisorAnswer& answer) const {
   ended_ = true;
 }
 
-/// The supervisor is gone, or does not answer: ends what is known of the program.
+/// The supervisor is gone or does not answer: kills the known processes of the program.
 void SupervisedProcess::lose(const std::string& trouble) const {
   if (program_ > 0) ::kill(-program_, SIGKILL);
   ::shutdown(channel_.get(), SHUT_RDWR);
-  ::kill(supervisor_, SIGCONT);  // it may have been stopped again; it ends by itself now
+  ::kill(supervisor_, SIGCONT);  // it may have been stopped again; it now ends by itself
   ::waitpid(supervisor_, nullptr, WNOHANG);
   end_.signal = SIGKILL;
   end_.trouble = trouble;

@@ -12,26 +12,26 @@
 
 namespace mssim {
 
-// What mssim (supervised_process.cpp) and libexec/mssim/supervise (src/supervise.cpp) say to each other. The
+// Protocol between mssim (supervised_process.cpp) and libexec/mssim/supervise (src/supervise.cpp). The
 // supervisor's arguments: COUNT PATH... FOLDER CPUS COUNT NAME=VALUE... PROGRAM ARGUMENT..., where COUNT is
-// the number of what follows, PATHs are removed where mssim has ended before the program, and CPUS is as
+// the number of the following items, PATHs are removed if mssim ends before the program, and CPUS is like
 // "0,1," or empty. Descriptor 3 is its end of the channel, a stream.
 
-/// One byte from mssim. Each is answered. When mssim closes its end, the supervisor ends everything.
+/// A one-byte request from mssim. Each is answered. If mssim closes its end, the supervisor kills everything.
 enum class SupervisorRequest : char { pause, resume, processor_time };
 
-/// What the supervisor answers.
+/// Kinds of answers of the supervisor.
 enum class SupervisorWord : int {
   no_process,     ///< it cannot make a pipe or a process; value: errno
   no_folder,      ///< the program's folder cannot be entered; value: errno
-  no_processors,  ///< the program cannot be bound to its processors; value: errno
+  no_processors,  ///< the program cannot be bound to its CPUs; value: errno
   no_program,     ///< the program cannot be executed; value: errno
-  started,        ///< value: the program's process, which is its process group as well
-  done,           ///< what was asked for has been done
-  ended           ///< the program and all that it started are gone; value: as waitpid has it
+  started,        ///< value: the program's process, which is also its process group
+  done,           ///< the request has been carried out
+  ended           ///< the program and all its descendants are gone; value: as of waitpid
 };
 
-/// An answer; the last output follows it when the program has ended.
+/// An answer; if the program has ended, its last output follows.
 struct SupervisorAnswer {
   SupervisorWord word = SupervisorWord::no_process;
   int value = 0;
@@ -39,60 +39,59 @@ struct SupervisorAnswer {
   std::size_t output_bytes = 0;  ///< with ended
 };
 
-/// How much of the output is kept.
+/// Maximum size of the output that is kept.
 inline constexpr std::size_t kept_output_bytes = 64 * 1024;
 
-/// What a program is started with.
+/// A program to start, its environment and CPUs.
 struct SupervisedProgram {
-  std::filesystem::path program;  ///< a file; where it is relative, from the folder; PATH is not searched
+  std::filesystem::path program;         ///< a file; if relative, then to `folder`; PATH is not searched
   std::vector<std::string> arguments;    ///< without the program's name
-  std::vector<std::string> environment;  ///< NAME=VALUE, added to mssim's or replacing what it has
-  std::filesystem::path folder;          ///< the folder it runs in
-  std::vector<int> cpus;                 ///< the logical CPUs it is bound to; empty: those that mssim may use
-  /// Files and folders that are removed with all that is in them where mssim ends before the program does, as
-  /// by SIGKILL. Else they are the caller's to remove.
+  std::vector<std::string> environment;  ///< NAME=VALUE, added to mssim's; replaces variables of that name
+  std::filesystem::path folder;          ///< working directory
+  std::vector<int> cpus;                 ///< logical CPUs that it is bound to; empty: those of mssim
+  /// Files and folders that are removed, with their contents, if mssim ends before the program does, for
+  /// example by SIGKILL. Otherwise the caller removes them.
   std::vector<std::filesystem::path> removed = {};
 };
 
 /// How a program ended.
 struct ProgramEnd {
-  int exit_code = 0;   ///< what it returned, when signal is 0
-  int signal = 0;      ///< what ended it, or 0; SIGKILL where mssim ended it
-  std::string output;  ///< what it and all that it started wrote to stdout and stderr, the last 64 KiB
-  std::string
-      trouble;  ///< why mssim does not know how it ended: the end of a sentence that begins with its name
+  int exit_code = 0;    ///< if signal is 0
+  int signal = 0;       ///< the signal that ended it, or 0; SIGKILL if mssim ended it
+  std::string output;   ///< stdout and stderr of it and its descendants, the last 64 KiB
+  std::string trouble;  ///< why its end is unknown: end of a sentence that begins with its name
 };
 
-/// The end of a sentence that begins with the program's name: "ended with exit code 3", "was ended by
-/// signal 11 (Segmentation fault)".
+/// End of a sentence that begins with the program's name: "ended with exit code 3", "was ended by signal 11
+/// (Segmentation fault)".
 std::string describe(const ProgramEnd& end);
 
-/// A program that runs beside mssim, which does not trust it: whatever it does, it and all that it started
-/// are gone when this object is, or when mssim is, however that ends. Between the two stands
-/// libexec/mssim/supervise, which also takes what the program writes; a program that stops it is not left
-/// alone by that: it is continued. The program has an empty stdin, a process group and session that no key of
-/// mssim's terminal reaches, no descriptor of mssim's, and leaves no core file. Several may be started at the
-/// same time; each is used by one thread at a time.
+/// An untrusted program that runs in parallel with mssim: it and all its descendants are gone when this
+/// object is destroyed, or when mssim ends, however that happens. libexec/mssim/supervise runs it and
+/// collects its output; if the program stops the supervisor, mssim continues it. The program has an empty
+/// stdin, its own process group and session, which no key of mssim's terminal reaches, no descriptor of
+/// mssim's, and no core file. Several may be started at the same time; each is used by one thread at a time.
 class SupervisedProcess {
  public:
-  /// Throws std::runtime_error with one sentence when the program cannot be started.
+  /// Throws std::runtime_error with one sentence if the program cannot be started.
   explicit SupervisedProcess(const SupervisedProgram& program);
-  /// Ends all of it at once.
+  /// Kills all of it at once.
   ~SupervisedProcess();
 
-  /// Stops all its processes, also those that have left its group, until resume(). Nothing once it has ended.
+  /// Stops all its processes, including those that left its group, until resume(). No effect once it has
+  /// ended.
   void pause();
   void resume();
 
-  /// Readable once the program has ended and all that it started is gone; to be polled, not read.
+  /// Becomes readable when the program and all its descendants are gone; poll it, do not read it.
   int end_descriptor() const { return channel_.get(); }
 
-  /// Gives the program that time to end by itself (resumed, if it was paused), then ends all of it. Once it
-  /// has ended, the same again.
+  /// Gives the program `patience` to end by itself (resumed, if it was paused), then kills all of it. Later
+  /// calls return the same result.
   const ProgramEnd& end(std::chrono::milliseconds patience);
 
-  /// Processor time of the program so far, in seconds: of its processes that live, by their clocks, and of
-  /// those that ended, as far as their parents have waited for them (in clock ticks, 0.01 s).
+  /// CPU time of the program so far, s: of its living processes by their clocks, and of ended ones if their
+  /// parents have waited for them (in clock ticks, 0.01 s).
   double processor_seconds() const;
 
  private:
@@ -105,7 +104,7 @@ class SupervisedProcess {
   Descriptor channel_;
   pid_t supervisor_ = 0, program_ = 0;
   bool paused_ = false;
-  // What any answer may bring.
+  // State that any answer may change.
   mutable bool ended_ = false;
   mutable ProgramEnd end_;
   mutable double processor_seconds_ = 0;

@@ -17,14 +17,14 @@ const std::vector<BodySpec>& list_of(const SceneSpec& scene) {
   return std::get<BodiesSpec>(scene.content).list;
 }
 
-/// The scene with some of its bodies.
+/// The scene with only these bodies.
 SceneSpec with_bodies(const SceneSpec& scene, const std::vector<BodySpec>& bodies) {
   SceneSpec some = scene;
   std::get<BodiesSpec>(some.content).list = bodies;
   return some;
 }
 
-/// [bodies] what each has. Every shape is meshed once.
+/// [bodies] nodes and springs of each. Every shape is meshed once.
 std::vector<SceneCounts> counts_of_bodies(const SceneSpec& scene) {
   const std::vector<BodySpec>& list = list_of(scene);
   std::vector<SceneCounts> counts;
@@ -36,14 +36,14 @@ std::vector<SceneCounts> counts_of_bodies(const SceneSpec& scene) {
   return counts;
 }
 
-/// Throws Unavailable, on all ranks alike, where they have not the same meshes, as with another TetGen.
+/// Throws Unavailable, on all ranks, if their meshes differ, for example because of another TetGen.
 void require_same_meshes(const Session& session, const std::vector<SceneCounts>& bodies) {
   std::string own;
   for (const SceneCounts& body : bodies) own += fmt::format("{} {} ", body.nodes, body.springs_unique);
   const std::vector<std::string> all = session.gather(own);
   for (int rank = 1; rank < session.ranks(); ++rank)
     if (all[static_cast<std::size_t>(rank)] != all.front())
-      throw Unavailable("{} meshes these bodies in another way than {}: install the same TetGen on both",
+      throw Unavailable("{} meshes these bodies differently from {}: install the same TetGen on both",
                         session.name_of(rank), session.name_of(0));
 }
 
@@ -65,15 +65,15 @@ std::vector<std::size_t> nodes_of(const std::vector<SceneCounts>& bodies) {
   return nodes;
 }
 
-/// A body of which this rank has something, in the system of all such bodies.
+/// A body with nodes on this rank, in the system of all such bodies.
 struct BodyHere {
-  std::size_t number;      ///< in the scene
+  std::size_t number;      ///< index in the scene
   std::size_t scene_node;  ///< its first node in the scene
   std::size_t first_node, nodes;
   std::vector<Spring> springs;  ///< between its nodes, from 0
 };
 
-/// Those bodies. `system`: theirs, one after the other.
+/// Finds these bodies. `system`: all of them, one after the other.
 std::vector<BodyHere> bodies_here(const System& system, const std::vector<std::size_t>& numbers,
                                   const std::vector<std::size_t>& nodes) {
   std::vector<BodyHere> here;
@@ -91,8 +91,8 @@ std::vector<BodyHere> bodies_here(const System& system, const std::vector<std::s
   return here;
 }
 
-/// [bodies][nodes] the rank of each node of the divided bodies; nothing of whole ones. The first rank of a
-/// divided body cuts it, and tells all: whatever METIS does on their machines, they agree.
+/// [bodies][nodes] the rank of each node of the divided bodies; empty for whole ones. The first rank of a
+/// divided body cuts it and sends the result to all, because METIS may differ between machines.
 std::vector<std::vector<int>> ranks_of_nodes(const Session& session, const std::vector<BodyHere>& here,
                                              const std::vector<std::vector<BodyShare>>& shares,
                                              const std::vector<std::size_t>& nodes) {
@@ -108,7 +108,7 @@ std::vector<std::vector<int>> ranks_of_nodes(const Session& session, const std::
     own.append(reinterpret_cast<const char*>(ranks.data()), ranks.size() * sizeof(int));
   }
   const std::vector<std::string> all = session.gather(own);
-  std::vector<std::size_t> taken(all.size(), 0);  // of each rank's text
+  std::vector<std::size_t> taken(all.size(), 0);  // [ranks] values read from its text
   std::vector<std::vector<int>> rank_of(shares.size());
   for (std::size_t body = 0; body < shares.size(); ++body) {
     if (shares[body].size() == 1) continue;
@@ -120,7 +120,7 @@ std::vector<std::vector<int>> ranks_of_nodes(const Session& session, const std::
   return rank_of;
 }
 
-/// [ranks] the nodes of the scene that each steps.
+/// [ranks] the scene's nodes that each steps.
 std::vector<std::vector<NodeRun>> runs_of_ranks(int ranks, const std::vector<std::vector<BodyShare>>& shares,
                                                 const std::vector<std::vector<int>>& rank_of,
                                                 const std::vector<std::size_t>& nodes) {
@@ -140,7 +140,7 @@ std::vector<std::vector<NodeRun>> runs_of_ranks(int ranks, const std::vector<std
   return all;
 }
 
-/// The part of this rank. `system`: all of the bodies of which it has something.
+/// The part of this rank. `system`: all bodies with nodes on it.
 BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHere>& here,
                         const std::vector<std::vector<int>>& rank_of) {
   std::vector<std::uint32_t> place(system.nodes());
@@ -154,9 +154,9 @@ BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHe
   return part_of_bodies(system, place, owner, rank);
 }
 
-/// The bodies of a scene that one rank steps, whole ones and parts of divided ones, by openmp's own vector
-/// code: with the same instruction set the same bits as there. Bodies do not touch each other: only the ranks
-/// of a divided one have something to say to each other while they step.
+/// The bodies of a scene that one rank steps, whole ones and parts of divided ones, with openmp's own vector
+/// code: bitwise identical with openmp for the same instruction set. Bodies do not touch each other, so only
+/// the ranks of a divided body exchange messages while they step.
 class BodiesPiece final : public Piece {
  public:
   BodiesPiece(const Session& session, const RankJob& job)
@@ -191,7 +191,7 @@ class BodiesPiece final : public Piece {
     bodies_->set_state(part.system.start);
   }
 
-  /// Without ghosts: messages bring those before the first stage.
+  /// Without ghosts: messages bring them before the first stage.
   std::vector<NodeRun> taken_by(int rank) const override { return runs_[static_cast<std::size_t>(rank)]; }
   std::vector<NodeRun> owned_by(int rank) const override { return taken_by(rank); }
   std::size_t scene_nodes() const override { return scene_nodes_; }
@@ -214,10 +214,10 @@ class BodiesPiece final : public Piece {
  private:
   StepKernel<SlicedBodies> kernel_;
   std::vector<std::vector<BodyShare>> shares_;  ///< [bodies of the scene]
-  std::vector<std::vector<NodeRun>> runs_;      ///< [ranks] on rank 0; elsewhere only its own
+  std::vector<std::vector<NodeRun>> runs_;      ///< [ranks] on rank 0; on other ranks only their own
   std::size_t scene_nodes_ = 0;
-  std::unique_ptr<Backend> whole_;      ///< openmp, where this rank has whole bodies only
-  std::optional<SlicedBodies> bodies_;  ///< else
+  std::unique_ptr<Backend> whole_;      ///< openmp, if this rank has only whole bodies
+  std::optional<SlicedBodies> bodies_;  ///< otherwise
   std::optional<GhostMessages> messages_;
 };
 

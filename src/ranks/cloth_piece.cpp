@@ -11,14 +11,14 @@
 namespace mssim {
 namespace {
 
-/// Columns of a cloth that one host of this run steps, about: what shares its last-level cache.
+/// Approximate number of a cloth's columns per host of this run: hosts share their last-level cache.
 std::size_t columns_on_host(const Session& session, std::size_t columns) {
   const auto ranks = static_cast<std::size_t>(session.ranks());
   return std::max<std::size_t>(1, columns * static_cast<std::size_t>(session.ranks_on_host()) / ranks);
 }
 
-/// The columns of a cloth that one rank steps, and the ghost columns beside them, by openmp's own walk: the
-/// same bits as there.
+/// The columns of a cloth that one rank steps, and their neighbouring ghost columns, with openmp's walk and
+/// bitwise identical results.
 class ClothPiece final : public Piece {
  public:
   ClothPiece(const Session& session, const RankJob& job)
@@ -79,7 +79,7 @@ class ClothPiece final : public Piece {
   }
 
  private:
-  /// Makes bands and messages for so many steps between two messages, at the scene's start state.
+  /// Makes bands and messages, at the scene's start state, with `steps` steps between two messages.
   void make(const Session& session, const RankJob& job, std::size_t steps) {
     messages_.reset();
     bands_.reset();
@@ -94,8 +94,8 @@ class ClothPiece final : public Piece {
     if (ranks_ > 1) bands_->messages = &*messages_;
     bands_->set_state(system.start);
   }
-  /// How many steps there had best be between two messages, by trials of all ranks together: fewer messages
-  /// cost more columns that are computed twice. The result has the same bits with any number. Rank 0 decides.
+  /// The best number of steps between two messages, by trials of all ranks together: fewer messages mean that
+  /// more columns are computed twice. The number does not change the result. Rank 0 decides.
   std::size_t chosen_steps(const Session& session, const RankJob& job) {
     const Integrator& integrator = *job.integrator;
     const auto& cloth = std::get<ClothSpec>(job.scene.content);
@@ -106,17 +106,17 @@ class ClothPiece final : public Piece {
         static_cast<std::size_t>(session.ranks_on_host()) * static_cast<std::size_t>(job.threads));
     const std::size_t usual = std::stoul(session.share(std::to_string(found)));
     const std::size_t narrowest = columns_ / static_cast<std::size_t>(ranks_);
-    // Of a larger piece messages are a small part, and making it takes long.
+    // In a larger piece, messages cost little and the trial takes long.
     constexpr std::size_t largest_tried = 1'000'000;  // nodes
     const bool tries = ranks_ > 1 && narrowest * cloth.rows <= largest_tried && !session.shares_processors();
     if (session.share(tries ? "try" : "") != "try") return usual;
-    // Another number must be so much faster: trials are short, and other programs may run.
+    // Required gain of another number: trials are short, and other programs may run.
     constexpr double clearly_faster = 0.95;
     std::vector<std::size_t> candidates{usual};
     for (std::size_t steps = 1; steps * integrator.stage_count <= stages_under_way; steps *= 2)
       if (steps != usual && ghost_columns(integrator, steps) <= narrowest) candidates.push_back(steps);
     std::vector<double> least(candidates.size(), std::numeric_limits<double>::infinity());
-    // In turns: another program that runs for a while shall not decide.
+    // Alternate, so that another program that runs for a while does not decide.
     constexpr int turns = 2;
     for (int turn = 0; turn < turns; ++turn)
       for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -128,7 +128,7 @@ class ClothPiece final : public Piece {
         candidates[static_cast<std::size_t>(std::ranges::min_element(least) - least.begin())];
     return std::stoul(session.share(std::to_string(chosen)));
   }
-  /// Seconds that a step takes as the piece is made.
+  /// Seconds per step of the piece in its present form.
   double trial_seconds(const Session& session) {
     constexpr double trial_s = 0.01;
     constexpr int trials = 3, most_steps = 500, first_steps = 16;
@@ -149,7 +149,7 @@ class ClothPiece final : public Piece {
   ColumnRange columns_of(int rank) const {
     return part_of({0, columns_}, static_cast<std::size_t>(rank), static_cast<std::size_t>(ranks_));
   }
-  /// Those and its ghosts.
+  /// Owned columns and ghosts of a rank.
   ColumnRange with_ghosts(int rank) const { return mssim::with_ghosts(columns_of(rank), ghosts_, columns_); }
   std::vector<NodeRun> runs_of(ColumnRange columns) const {
     std::vector<NodeRun> runs;
@@ -157,7 +157,7 @@ class ClothPiece final : public Piece {
       runs.push_back({row * columns_ + columns.first, columns.count});
     return runs;
   }
-  /// The nodes that this rank has, at the scene's start state.
+  /// The nodes of this rank at the scene's start state.
   System nodes_at_start() const {
     const ColumnRange all = with_ghosts(rank_);
     System system = build_cloth_window(scene_, {.row = 0,
@@ -175,9 +175,9 @@ class ClothPiece final : public Piece {
     return {window.row, static_cast<std::uint32_t>(begin), window.rows,
             static_cast<std::uint32_t>(end - std::min(begin, end))};
   }
-  /// That this rank needs for so many steps between two messages.
+  /// Memory of this rank with `steps` steps between two messages.
   std::uint64_t memory_bytes(std::size_t steps) const {
-    // A node's start with its mass, while the piece is filled, and its state in the bands.
+    // Per node: its start and mass while the piece is filled, and its state in the bands.
     constexpr std::uint64_t node_bytes =
         2 * sizeof(Vec3d) + sizeof(double) + BandLayout::components * sizeof(float);
     const std::size_t ghosts = 2 * ghost_columns(*integrator_, steps);

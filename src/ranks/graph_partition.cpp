@@ -12,8 +12,8 @@ namespace mssim {
 namespace {
 
 std::string reason_of(int result) {
-  if (result == METIS_ERROR_MEMORY) return "it has not enough memory";
-  if (result == METIS_ERROR_INPUT) return "it does not take the graph";
+  if (result == METIS_ERROR_MEMORY) return "it has too little memory";
+  if (result == METIS_ERROR_INPUT) return "it rejects the graph";
   return fmt::format("error {}", result);
 }
 
@@ -22,8 +22,8 @@ std::string reason_of(int result) {
       fmt::format("METIS cannot cut a body of {} nodes into {} parts: {}", nodes, parts, reason));
 }
 
-/// Gives every part that is empty a node of the largest one, the one of least neighbours there. METIS leaves
-/// parts empty where they are to have a few nodes only.
+/// Gives every empty part a node of the largest part, the one with the fewest neighbours there. METIS leaves
+/// parts empty if they are to have only a few nodes.
 void fill_empty_parts(const Adjacency& graph, std::size_t parts, std::vector<std::uint32_t>& part_of) {
   std::vector<std::size_t> nodes_of(parts, 0);
   for (const std::uint32_t part : part_of) ++nodes_of[part];
@@ -52,9 +52,9 @@ std::vector<std::uint32_t> graph_partition(std::size_t nodes, std::span<const Sp
                                            std::span<const std::size_t> shares) {
   const std::size_t parts = shares.size();
   if (parts == 1) return std::vector<std::uint32_t>(nodes, 0);
-  // What a node costs: its springs, and its share of what a slice costs beside its entries.
+  // Cost of a node: its springs, and its share of a slice's fixed cost.
   const std::size_t own_cost = cost_of_slices_before({0, 0}, 1);
-  // METIS adds the costs up in its integers.
+  // METIS adds up the costs in its integer type.
   if (2 * springs.size() + own_cost * nodes > static_cast<std::size_t>(std::numeric_limits<idx_t>::max()))
     fail(nodes, parts, "it has too many springs");
   const Adjacency graph(nodes, springs);

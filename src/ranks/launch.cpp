@@ -36,12 +36,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-/// Until then the launcher must have started all ranks.
+/// Time limit for the launcher to start all ranks.
 constexpr std::chrono::seconds start_limit = 25s;
-/// How long a launcher that is to end gets to end the ranks.
+/// Time for the launcher to end its ranks when it must end.
 constexpr std::chrono::seconds patience = 3s;
 
-/// A launcher that runs.
+/// A running launcher.
 class Launcher {
  public:
   Launcher(const std::filesystem::path& program, std::vector<std::string> words) {
@@ -53,22 +53,22 @@ class Launcher {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    const OnAllProcessCpus inherited;  // OpenMP may have bound this thread, which has nothing to compute
+    const OnAllProcessCpus inherited;  // OpenMP may have bound this thread, which computes nothing
     process_ = ::fork();
     if (process_ == 0) {
       ::dup2(written.get(), STDOUT_FILENO);
       ::dup2(written.get(), STDERR_FILENO);
       ::execv(program.c_str(), arguments.data());
-      // The only thread there is: it may do what it likes.
+      // The only thread, so any function may be called.
       std::cerr << "cannot run " << program.string() << ": " << why_not_executed(program, errno) << std::endl;
       _exit(127);
     }
     if (process_ < 0) throw std::runtime_error(fmt::format("cannot fork ({})", std::strerror(errno)));
   }
 
-  /// Passes on what is printed until the launcher ends. False where it does not: it has not started the ranks
-  /// in time, or a rank has failed, and it does not hear from other machines that theirs have ended. What
-  /// ranks print that outlive it is passed on for some seconds.
+  /// Forwards printed output until the launcher ends. False if it does not end: it did not start the ranks in
+  /// time, or a rank has failed and the launcher does not learn that remote ranks have ended. Output of ranks
+  /// that outlive it is forwarded for some seconds.
   bool watch(LauncherOutput& printed) {
     Clock::time_point limit = Clock::now() + start_limit;
     bool failed = false;
@@ -91,7 +91,7 @@ class Launcher {
     return true;
   }
 
-  /// Ends it, and with it, where it can still do that, the ranks.
+  /// Ends the launcher, and through it the ranks if it still responds.
   void end() {
     ::kill(process_, SIGTERM);
     const Clock::time_point limit = Clock::now() + patience;
@@ -102,13 +102,13 @@ class Launcher {
   }
 
   bool succeeded() const { return status_ && WIFEXITED(*status_) && WEXITSTATUS(*status_) == 0; }
-  /// The signal that has ended it, or nothing.
+  /// The signal that ended it, or nothing.
   std::optional<int> signal() const {
     return status_ && WIFSIGNALED(*status_) ? std::optional(WTERMSIG(*status_)) : std::nullopt;
   }
 
  private:
-  /// Whether it has ended, and then its status. Waits for that unless `options` say WNOHANG.
+  /// Whether it has ended; stores its status. Waits for that unless `options` is WNOHANG.
   bool has_ended(int options) {
     int status = 0;
     if (::waitpid(process_, &status, options) != process_) return false;
@@ -121,18 +121,18 @@ class Launcher {
   std::optional<int> status_;
 };
 
-/// What Open MPI and Slurm are told unless the user has told them something else.
+/// Defaults for Open MPI and Slurm, unless the user has set these variables.
 void set_defaults() {
   const auto set = [](const char* name, const char* value) { ::setenv(name, value, 0); };
-  // Ranks bind themselves, whatever launcher has started them.
+  // Ranks bind themselves, whatever the launcher.
   set("OMPI_MCA_hwloc_base_binding_policy", "none");
-  // Columns and ghosts in one go: from 4 KB on, ranks of a machine would first agree on each message.
+  // Send columns and ghosts in one piece: from 4 KB on, ranks of a machine would first agree on each message.
   set("OMPI_MCA_btl_vader_eager_limit", "65536");
-  // Slurm: the ranks of several rows and integrators are there at the same time, in one allocation.
+  // Slurm: the ranks of several rows and integrators exist at the same time, in one allocation.
   set("SLURM_OVERLAP", "1");
-  // Open MPI leaves files behind; mssim removes what is in the folder of its socket.
+  // Open MPI leaves files behind; mssim removes the contents of its socket's folder.
   ::setenv("TMPDIR", std::filesystem::path(variable("MSSIM_SOCKET", "/tmp/")).parent_path().c_str(), 1);
-  // These are for mssim's own threads: with them all ranks would begin on the same processor.
+  // For mssim's own threads only: with them all ranks would start on the same CPU.
   for (const char* name : {"OMP_PROC_BIND", "OMP_PLACES", "GOMP_CPU_AFFINITY"}) ::unsetenv(name);
 }
 
@@ -144,7 +144,7 @@ int answer_alone(const std::string& answer) {
   return 0;
 }
 
-/// Throws Unsupported for what ranks would find out together, after all have been started.
+/// Throws Unsupported for problems that otherwise all ranks would find after their start.
 void require_cuttable(int ranks) {
   const Integrator* integrator = find_integrator(variable("MSSIM_INTEGRATOR"));
   if (integrator != nullptr) require_cut(load_scene(variable("MSSIM_SCENE_FILE")), *integrator, ranks);
@@ -159,16 +159,15 @@ int launch_ranks(bool copies) {
   std::vector<std::string> words{std::istream_iterator<std::string>(in), {}};
   try {
     if (words.empty()) throw std::runtime_error("MSSIM_LAUNCHER is empty");
-    // The user's names of files, in --launcher, are as seen from where mssim was started.
+    // The user's file names in --launcher are relative to the folder where mssim was started.
     const std::string folder = variable("MSSIM_FOLDER", ".");
     if (::chdir(folder.c_str()) != 0)
       throw std::runtime_error("cannot enter " + folder + " (" + std::strerror(errno) +
                                "), where mssim was started; start it in another folder");
     const auto program = find_program(words.front());
     if (!program && words.front().find('/') != std::string::npos)
-      return answer_alone(
-          "unavailable " + words.front() +
-          " is no file that may be executed: name another launcher (--launcher), or chmod +x it");
+      return answer_alone("unavailable " + words.front() +
+                          " is not an executable file: name another launcher (--launcher), or chmod +x it");
     if (!program)
       return answer_alone("unavailable there is no " + words.front() +
                           " in PATH: install Open MPI (Debian: openmpi-bin), or name another launcher "

@@ -39,18 +39,18 @@ bool all_complete(std::span<MPI_Request> requests) {
   return complete != 0;
 }
 
-/// Numbers of a node in a message.
+/// Floats per node in a message.
 constexpr std::size_t node_floats = 6;
-/// Where a record has the velocity (backends/layouts/node_arrays.h).
+/// Offset of the velocity in a record (backends/layouts/node_arrays.h).
 constexpr std::size_t velocity = 4;
 
 constexpr int link_tag = 3;
 constexpr std::size_t few_bytes = 8;
-/// As large as the columns beside a part of a large cloth.
+/// About the size of the edge columns of a large cloth's part.
 constexpr std::size_t many_bytes = std::size_t{1} << 16;
 constexpr int trials = 100;
 
-/// Starts a message to a rank, or from there: `start` is MPI_Isend or MPI_Irecv.
+/// Starts a message to or from a rank: `start` is MPI_Isend or MPI_Irecv.
 template <class Start>
 MPI_Request started(const Start& start, std::span<char> bytes, int rank) {
   MPI_Request request = MPI_REQUEST_NULL;
@@ -60,7 +60,7 @@ MPI_Request started(const Start& start, std::span<char> bytes, int rank) {
   return request;
 }
 
-/// Of all trials the shortest counts: other programs only ever add to a time.
+/// The shortest of all trials: other programs can only add time.
 template <class Exchange>
 double least_seconds(const Exchange& exchange) {
   double least = std::numeric_limits<double>::infinity();
@@ -72,7 +72,7 @@ double least_seconds(const Exchange& exchange) {
   return least;
 }
 
-/// Half of the time of a message to a rank and back: one sends when the other has received.
+/// Half of the time of a message to a rank and back: each sends after receiving.
 double one_way_s(const Session& session, int rank) {
   std::array<char, few_bytes> bytes{};
   const auto pass = [&](auto start) {
@@ -87,7 +87,7 @@ double one_way_s(const Session& session, int rank) {
          2;
 }
 
-/// Both send at the same time.
+/// Time if both send simultaneously.
 double both_ways_s(const Session& session, int rank) {
   std::vector<char> sent(many_bytes), received(many_bytes);
   return least_seconds([&] {
@@ -108,14 +108,14 @@ void check_mpi(int result, const char* action) {
 }
 
 Session::Session(int* argc, char*** argv) {
-  // Open MPI (4 and 5) leaves 4 MB of shared memory behind for each rank that is killed: in a folder that
-  // mssim removes, if it is in the shared memory of this machine.
+  // Open MPI (4 and 5) leaves 4 MB of shared memory behind for each killed rank: in a folder that mssim
+  // removes, if it is in this machine's shared memory.
   if (const std::string folder = variable("MSSIM_MEMORY_FOLDER");
       folder.starts_with("/dev/shm/") && ::access(folder.c_str(), W_OK) == 0)
     for (const char* name : {"OMPI_MCA_btl_vader_backing_directory", "OMPI_MCA_btl_sm_backing_directory"})
       ::setenv(name, folder.c_str(), 0);
   int provided = 0;
-  // One thread of a rank calls MPI at a time, but not always the same one.
+  // A rank's threads call MPI one at a time, but not always the same thread.
   if (MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     throw RankFailure("MPI did not start");
   if (provided < MPI_THREAD_SERIALIZED)
@@ -140,7 +140,7 @@ std::string Session::name_of(int rank) const {
 }
 
 void Session::give_up(const std::string& sentence) const {
-  // In one piece: other ranks may say something at the same time.
+  // One write: other ranks may print at the same time.
   std::cerr << std::string(sentence_mark) + name_of(rank_) + ": " + sentence + '\n' << std::flush;
   MPI_Abort(MPI_COMM_WORLD, 1);
   std::abort();
@@ -154,7 +154,7 @@ std::vector<int> Session::others() const {
 }
 
 void Session::wait(std::span<MPI_Request> requests, std::span<const int> peers) const {
-  constexpr int tests_a_look = 256;  // at the clock
+  constexpr int tests_a_look = 256;  // iterations between two readings of the clock
   std::optional<Clock::time_point> begin;
   for (;;) {
     for (int test = 0; test < tests_a_look; ++test) {
@@ -167,7 +167,7 @@ void Session::wait(std::span<MPI_Request> requests, std::span<const int> peers) 
     std::vector<std::string> silent;
     for (const int peer : peers)
       if (std::ranges::find(silent, name_of(peer)) == silent.end()) silent.push_back(name_of(peer));
-    throw RankFailure(fmt::format("it has heard nothing for {} from {}",
+    throw RankFailure(fmt::format("it has received nothing for {} from {}",
                                   pluralize(static_cast<std::uint64_t>(longest_silence_s), "second"),
                                   listed(silent, "or")));
   }
@@ -176,7 +176,7 @@ void Session::wait(std::span<MPI_Request> requests, std::span<const int> peers) 
 void Session::wait_idle(MPI_Request& request) {
   using namespace std::chrono_literals;
   const Clock::time_point begin = Clock::now();
-  // What follows a request at once is not kept waiting; who waits long leaves the processor to others.
+  // Poll first, because the next request often comes at once; during a long wait, leave the CPU to others.
   while (!all_complete({&request, 1}))
     if (Clock::now() - begin > 2ms)
       std::this_thread::sleep_for(50us);

@@ -21,13 +21,12 @@
 namespace mssim {
 namespace {
 
-/// The whole scene, on every rank once more, stepped as openmp steps it: what the ranks of a machine take
-/// where they have nothing to say to each other, and only share its memory. Rank 0 takes part in the states
-/// of mssim; the others must have the same.
+/// The whole scene, copied on every rank and stepped like openmp, to measure ranks that share a machine's
+/// memory without communicating. Only rank 0 exchanges states with mssim; the others must have equal states.
 class CopiesPiece final : public Piece {
  public:
   CopiesPiece(const Session& session, const RankJob& job) : session_(session) {
-    // Its start with masses, springs, and what openmp makes of them while it is made.
+    // Start with masses, springs, and the memory that openmp needs during construction.
     constexpr std::uint64_t node_bytes = 200, spring_bytes = 70;
     const SceneCounts counts = counts_of(job.scene);
     require_memory(session, node_bytes * counts.nodes + spring_bytes * counts.springs_unique);
@@ -42,19 +41,19 @@ class CopiesPiece final : public Piece {
   }
   std::size_t scene_nodes() const override { return system_.nodes(); }
   void set_state(const State& state) override { backend_->set_state(state); }
-  /// Throws RankFailure where the states of the ranks differ.
+  /// Throws RankFailure if the states of the ranks differ.
   State state() const override {
     State state = backend_->state();
     const std::vector<std::string> hashes = session_.gather(std::to_string(state_hash(state)));
     for (int rank = 1; rank < session_.ranks(); ++rank)
       if (hashes[static_cast<std::size_t>(rank)] != hashes.front())
-        throw RankFailure(fmt::format("the copy of {} has another state than that of {}",
+        throw RankFailure(fmt::format("the copy of {} has a different state from that of {}",
                                       session_.name_of(rank), session_.name_of(0)));
     return state;
   }
   void step(int count) override { backend_->step(count); }
   int threads() const override { return backend_->threads(); }
-  std::string note() const override { return backend_->device() + ", a copy of the scene each"; }
+  std::string note() const override { return backend_->device() + ", a copy of the scene per rank"; }
 
  private:
   const Session& session_;
@@ -62,14 +61,14 @@ class CopiesPiece final : public Piece {
   std::unique_ptr<Backend> backend_;
 };
 
-[[noreturn]] void refuse_windows() { throw RankFailure("mssim asks for windows of what is no cloth"); }
+[[noreturn]] void refuse_windows() { throw RankFailure("mssim requests windows without a cloth"); }
 
-/// Nodes that a message holds at most.
+/// Maximum number of nodes in a message.
 constexpr std::size_t nodes_at_once = std::size_t{1} << 18;
 constexpr int state_tag = 2;
 
-/// The file of a state, [2: positions, velocities][nodes] vectors, in memory. mssim, which made it, leaves
-/// its size alone.
+/// The file of a state, [2: positions, velocities][nodes] vectors, mapped into memory. mssim made it and does
+/// not change its size.
 class MappedState {
  public:
   MappedState(const std::filesystem::path& file, std::size_t nodes) : nodes_(nodes) {
@@ -95,11 +94,11 @@ class MappedState {
   Vec3d* vectors_ = nullptr;
 };
 
-/// Goes through the nodes of some runs.
+/// Iterates over the nodes of some runs.
 class NodeWalk {
  public:
   explicit NodeWalk(std::vector<NodeRun> runs) : runs_(std::move(runs)) {}
-  /// The next nodes, as many as a message holds; none at the end.
+  /// The next nodes, as many as fit in a message; none at the end.
   std::vector<NodeRun> next() {
     std::vector<NodeRun> some;
     std::size_t room = nodes_at_once;
@@ -122,7 +121,7 @@ class NodeWalk {
   std::size_t run_ = 0, taken_ = 0;
 };
 
-/// The states of some nodes on their way: all positions, and then all velocities.
+/// Buffer for the states of some nodes: first all positions, then all velocities.
 struct Message {
   std::size_t nodes = 0;
   std::vector<Vec3d> vectors;
@@ -135,7 +134,7 @@ struct Message {
   Vec3d* velocities() { return vectors.data() + nodes; }
 };
 
-/// Calls `pass` for every message between rank 0 and a rank in which this process has a part: the rank, the
+/// Calls `pass` for every message between rank 0 and a rank that involves this process, with the rank, the
 /// runs and the message.
 template <class RunsOf, class Pass>
 void for_each_message(const Session& session, const RunsOf& runs_of, const Pass& pass) {
@@ -149,7 +148,7 @@ void for_each_message(const Session& session, const RunsOf& runs_of, const Pass&
   }
 }
 
-/// Sends a message to a rank, or receives it from there: `start` is MPI_Isend or MPI_Irecv.
+/// Sends a message to a rank or receives one: `start` is MPI_Isend or MPI_Irecv.
 template <class Start>
 void exchange(const Session& session, Message& message, int rank, const Start& start) {
   MPI_Request request = MPI_REQUEST_NULL;
@@ -159,8 +158,8 @@ void exchange(const Session& session, Message& message, int rank, const Start& s
   session.wait({&request, 1}, std::array{rank});
 }
 
-/// Writes what the ranks own of the nodes of a file into it: runs_of(rank), whose state on this rank is
-/// `own`.
+/// Writes the ranks' own nodes into a file of some nodes: runs_of(rank) gives the nodes of a rank, `own` is
+/// the state of this rank's.
 template <class RunsOf>
 void gather(const Session& session, const std::filesystem::path& file, std::size_t nodes,
             const RunsOf& runs_of, const State& own) {
@@ -200,7 +199,7 @@ void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks
 std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job) {
   const bool is_cloth = std::holds_alternative<ClothSpec>(job.scene.content);
   const bool has_bodies = std::holds_alternative<BodiesSpec>(job.scene.content);
-  if (!is_cloth && !has_bodies) throw Unsupported("it steps cloths and bodies");
+  if (!is_cloth && !has_bodies) throw Unsupported("it steps only cloths and bodies");
   if (job.copies) return std::make_unique<CopiesPiece>(session, job);
   if (is_cloth) return make_cloth_piece(session, job);
   return make_bodies_piece(session, job);

@@ -16,22 +16,22 @@
 
 namespace mssim {
 
-/// What every rank must know to step its part of a scene.
+/// Data that every rank needs to step its part of a scene.
 struct RankJob {
   SceneSpec scene;
   const Integrator* integrator = nullptr;
   double dt_s = 0;
-  int threads = 1;  ///< of each rank
+  int threads = 1;  ///< per rank
   Roots roots = Roots::fast;
-  bool copies = false;  ///< each rank steps the whole scene, and none says anything to another
+  bool copies = false;  ///< each rank steps the whole scene, without communication
 };
 
-/// Nodes of a scene that follow each other.
+/// A run of consecutive nodes of a scene.
 struct NodeRun {
   std::size_t first = 0, count = 0;
 };
 
-/// The part of a scene that one rank steps. The rest of the scene is nowhere in this process.
+/// The part of a scene that one rank steps. This process has nothing of the rest.
 class Piece {
  public:
   Piece() = default;
@@ -39,55 +39,55 @@ class Piece {
   Piece& operator=(const Piece&) = delete;
   virtual ~Piece() = default;
 
-  /// The nodes of the scene whose states a rank takes, with the ghosts that no message brings before they are
-  /// needed, in the order in which its states have them. Rank 0 asks it of all ranks, others of themselves.
+  /// The scene's nodes whose states a rank receives: its own and the ghosts that it needs before the first
+  /// message, in the order of its states. Rank 0 calls it for all ranks, the others for themselves.
   virtual std::vector<NodeRun> taken_by(int rank) const = 0;
-  /// The nodes of the scene that a rank steps: every node of the scene is one rank's.
+  /// The scene's nodes that a rank steps: every node of the scene is owned by exactly one rank.
   virtual std::vector<NodeRun> owned_by(int rank) const = 0;
   virtual std::size_t scene_nodes() const = 0;
 
-  /// Takes a state of the nodes of taken_by(this rank).
+  /// Sets the state of the nodes of taken_by(this rank).
   virtual void set_state(const State& state) = 0;
-  /// The present state of the nodes of owned_by(this rank).
+  /// The current state of the nodes of owned_by(this rank).
   virtual State state() const = 0;
-  /// Goes back to the scene's start state, its positions moved by so many seconds of their velocities. Throws
-  /// RankFailure where it cannot.
+  /// Returns to the scene's start state, with positions moved by `seconds` times their velocities. Throws
+  /// RankFailure if it cannot.
   virtual void restart(double seconds);
-  /// The nodes of a window of a cloth that a rank owns, as the window numbers them. Throws RankFailure.
+  /// The nodes of a window of a cloth that a rank owns, numbered within the window. Throws RankFailure.
   virtual std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const;
-  /// The present state of those of this rank. Throws RankFailure.
+  /// The current state of those of this rank. Throws RankFailure.
   virtual State state(const GridWindow& window) const;
-  /// Takes so many steps, as all ranks do at the same time.
+  /// Takes `count` steps; all ranks call it together.
   virtual void step(int count) = 0;
 
   virtual RankCosts costs() const { return {}; }
 
   virtual int threads() const = 0;
-  /// What a reader of its times should know of how it steps.
+  /// How it steps, for readers of its times.
   virtual std::string note() const = 0;
 };
 
-/// The part of this rank, at the scene's start state. Throws Unsupported, on all ranks alike, where the scene
-/// cannot be cut for so many.
+/// This rank's part, at the scene's start state. Throws Unsupported, on all ranks, if the scene cannot be cut
+/// for this many.
 std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job);
 
-/// Throws Unsupported where the scene cannot be cut for so many ranks, as make_piece does in each of them: to
-/// be asked before any are started.
+/// Throws Unsupported if the scene cannot be cut for `ranks` ranks, like make_piece on each of them: call it
+/// before any are started.
 void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks);
 
-/// What make_piece makes of a cloth, with ghost columns beside its own, and of bodies, whole ones and parts
-/// of divided ones. They also throw Unsupported where the processors of the ranks cannot give the same bits,
-/// and the second Unavailable where the ranks have not the same meshes; on all ranks alike.
+/// make_piece for a cloth, with ghost columns next to its own, and for bodies, whole ones and parts of
+/// divided ones. They also throw Unsupported if the ranks' CPUs cannot give bitwise identical results, and
+/// make_bodies_piece throws Unavailable if the meshes differ; on all ranks.
 std::unique_ptr<Piece> make_cloth_piece(const Session& session, const RankJob& job);
 std::unique_ptr<Piece> make_bodies_piece(const Session& session, const RankJob& job);
-/// What require_cut asks of so many columns of a cloth, and of the bodies of a scene.
+/// require_cut for the columns of a cloth, and for the bodies of a scene.
 void require_columns(std::size_t columns, const Integrator& integrator, int ranks);
 void require_shares(const SceneSpec& scene, int ranks);
 
-/// A kernel with which all ranks give the same bits: the best of each where that is the same one, and else
-/// the best that finds roots exactly. `kernels`: those of this processor, the best first; of these the
-/// variable MSSIM_INSTRUCTION_SET names the best that counts, by which different processors can be tried on
-/// one machine. Throws Unsupported, on all ranks, where their bits would differ.
+/// A kernel with which all ranks give bitwise identical results: the best of each rank if that is the same
+/// one, else the best that computes roots exactly. `kernels`: those of this CPU, the best first. The variable
+/// MSSIM_INSTRUCTION_SET names the best one to be used, to test different CPUs on one machine. Throws
+/// Unsupported, on all ranks, if their results would differ.
 template <class Data>
 StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Data>> kernels, Roots roots) {
   using Kernel = StepKernel<Data>;
@@ -108,34 +108,34 @@ StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Da
                     session.name_of(0), sets.front(), session.name_of(static_cast<int>(rank)), sets[rank]);
 }
 
-/// States between mssim and the pieces: rank 0 has the file of a state (docs/protocol.md), and each rank
-/// its part. No rank holds more than its part and a message. All ranks call these together; they throw
-/// RankFailure.
+/// Transfer of states between mssim and the pieces: rank 0 has the file of a state (docs/protocol.md),
+/// and each rank its part. No rank holds more than its part and a message. All ranks call these functions
+/// together; they throw RankFailure.
 
-/// Gives every rank what it takes of the state in the file.
+/// Sends every rank its part of the state in the file.
 void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece);
 
-/// Writes what every rank owns into the file.
+/// Writes the nodes that each rank owns into the file.
 void gather_state(const Session& session, const std::filesystem::path& file, const Piece& piece);
 
-/// Writes what every rank owns of a window of a cloth: the file has its nodes alone.
+/// Writes the owned nodes within a window of a cloth; the file has only the window's nodes.
 void gather_window(const Session& session, const std::filesystem::path& file, const Piece& piece,
                    const GridWindow& window);
 
-/// What the steps of all ranks cost since they were last told: the answers to the request `costs`
+/// Costs of the steps of all ranks since the last report: the answers to the request `costs`
 /// (docs/protocol.md).
 class StepCosts {
  public:
   explicit StepCosts(const LinkSpeed& links) : links_(links) {}
 
-  /// Takes steps with the piece, until all ranks have.
+  /// Takes steps with the piece, until all ranks have finished.
   void step(const Session& session, Piece& piece, int count);
   /// The lines of the answer, on all ranks, which call this together.
   std::vector<std::string> tell(const Session& session, const Piece& piece);
 
  private:
   LinkSpeed links_;
-  RankCosts told_;      ///< what the piece said when it was last asked
+  RankCosts told_;      ///< the piece's costs at the last report
   double seconds_ = 0;  ///< of the steps since then
   double met_s_ = 0;    ///< of these, waiting for others at their end
   double steps_ = 0;

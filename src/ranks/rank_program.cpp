@@ -24,16 +24,16 @@
 namespace mssim {
 namespace {
 
-/// What rank 0 asks of all ranks, itself included.
+/// A request from rank 0 to all ranks, including itself.
 struct Wish {
   enum Kind : int { set, restart, step, get, window, costs, end };
   int kind = end;
-  int count = 0;          ///< of steps
-  double seconds = 0;     ///< that positions are ahead of the start
-  GridWindow nodes = {};  ///< of a window
+  int count = 0;          ///< number of steps
+  double seconds = 0;     ///< time by which positions are ahead of the start
+  GridWindow nodes = {};  ///< nodes of a window
 };
 
-/// What mssim has told rank 0, as a text for the other ranks. Only rank 0 needs the scene's file and the
+/// mssim's introduction to rank 0, as a text for the other ranks. Only rank 0 needs the scene's file and the
 /// environment that mssim has set.
 std::string job_text(const std::map<std::string, std::string>& introduction, int ranks, bool copies) {
   const std::filesystem::path file = variable("MSSIM_SCENE_FILE");
@@ -62,8 +62,8 @@ RankJob job_of(const std::string& text) {
   return job;
 }
 
-/// Gives the ranks of a host processors of their own, as many as they have threads, where there are enough,
-/// and where nobody has bound them already. Returns where they have to share, in words; empty elsewhere.
+/// Binds the ranks of a host to CPUs of their own, one per thread, if there are enough and the ranks are not
+/// yet bound. Returns a description if they have to share CPUs; empty otherwise.
 std::string take_processors(const Session& session, int threads) {
   const std::vector<int> cpus = process_cpus();
   std::string own;
@@ -91,13 +91,13 @@ std::string take_processors(const Session& session, int threads) {
   return "";
 }
 
-/// The first of these texts that says something.
+/// The first nonempty text.
 std::string first_of(const std::vector<std::string>& texts) {
   const auto found = std::ranges::find_if(texts, [](const std::string& text) { return !text.empty(); });
   return found == texts.end() ? "" : *found;
 }
 
-/// What rank 0 says of all before "ready 1".
+/// Rank 0's answers for all ranks before "ready 1".
 void introduce(const Session& session, const Piece& piece, const std::string& crowded, Requests& requests) {
   std::vector<std::string> hosts = session.hosts();
   std::ranges::sort(hosts);
@@ -118,7 +118,7 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   requests.answer("ready 1");
 }
 
-/// The wish of a line of mssim's. Throws RankFailure for one that is none.
+/// Parses a line from mssim. Throws RankFailure for an unknown request.
 Wish wish_of(const std::string& line) {
   if (line == "set") return {Wish::set};
   if (line == "get") return {Wish::get};
@@ -136,10 +136,10 @@ Wish wish_of(const std::string& line) {
     return wish;
   if (line.starts_with("step "))
     if (const auto count = number_in<int>(std::string_view(line).substr(5))) return {Wish::step, *count};
-  throw RankFailure(fmt::format("mssim asks for \"{}\", which this program does not know", line));
+  throw RankFailure(fmt::format("mssim requests \"{}\", which this program does not support", line));
 }
 
-/// Does what mssim asks for, until it asks for the end.
+/// Handles requests from mssim until "end".
 void serve(const Session& session, Piece& piece, std::optional<Requests>& requests,
            const std::filesystem::path& state_file) {
   StepCosts costs(measure_links(session));
@@ -183,7 +183,7 @@ void work(Session& session, bool copies) {
     const std::string where_crowded = first_of(session.gather(crowded));
     if (requests) introduce(session, *piece, where_crowded, *requests);
     serve(session, *piece, requests, introduction["state"]);
-  } catch (const Unsupported& unsupported) {  // by all ranks alike
+  } catch (const Unsupported& unsupported) {  // thrown by all ranks
     if (requests) requests->answer(std::string("unsupported ") + unsupported.what());
   } catch (const Unavailable& unavailable) {
     if (requests) requests->answer(std::string("unavailable ") + unavailable.what());
@@ -200,7 +200,7 @@ int run_rank(int argc, char** argv) {
       const int asked = number_in<int>(variable("MSSIM_RANKS")).value_or(1);
       if (asked != session->ranks())
         throw RankFailure(fmt::format(
-            "the launcher has started {} instead of {}: it may be that of another MPI than this program's",
+            "the launcher has started {} instead of {}: it may belong to an MPI other than this program's",
             pluralize(static_cast<std::uint64_t>(session->ranks()), "rank"), asked));
     }
     work(*session, argc > 2 && std::string_view(argv[2]) == copies_word);

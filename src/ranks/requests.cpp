@@ -31,7 +31,7 @@ Requests::Requests() : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0))
 std::map<std::string, std::string> Requests::read_introduction() {
   std::map<std::string, std::string> introduction;
   for (std::string line = next(); line != "prepare"; line = next()) {
-    if (line == "end") throw std::runtime_error("mssim has gone before it said all");
+    if (line == "end") throw std::runtime_error("mssim has ended before its last line");
     const std::size_t space = line.find(' ');
     introduction[line.substr(0, space)] = space == std::string::npos ? "" : line.substr(space + 1);
   }
@@ -54,14 +54,14 @@ std::string Requests::next() {
 }
 
 void Requests::answer(std::string text) {
-  constexpr std::size_t longest = 4000;  // mssim takes 4,096 bytes
+  constexpr std::size_t longest = 4000;  // mssim accepts 4,096 bytes
   std::ranges::replace(text, '\n', ' ');
   text.resize(std::min(text.size(), longest));
   text += '\n';
   for (std::string_view rest = text; !rest.empty();) {
     const ssize_t count = ::send(socket_.get(), rest.data(), rest.size(), MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return;  // next() says that mssim has gone
+    if (count < 0) return;  // next() reports that mssim has ended
     rest.remove_prefix(static_cast<std::size_t>(count));
   }
 }
@@ -86,15 +86,14 @@ void LauncherOutput::take_line(const std::string& line) {
     started_ = true;
     return;
   }
-  if (line.starts_with("mpirun: Forwarding signal")) return;  // for each pause that mssim makes
+  if (line.starts_with("mpirun: Forwarding signal")) return;  // for each pause by mssim
   passed_on_ << line << '\n';
   if (const std::size_t mark = line.find(sentence_mark); mark != std::string::npos && of_rank_.empty())
     of_rank_ = line.substr(mark + sentence_mark.size());
   // "process rank 1 with PID 7 on node a exited on signal 9 (Killed)" (mpirun), "a: task 1: Killed" (srun)
   if (line.find(" rank ") != std::string::npos || line.find(" task ") != std::string::npos)
     about_rank_ = line;
-  // Open MPI's note, now and then, that its ssh has ended sooner than it could be put into a group: no
-  // reason.
+  // Open MPI's occasional note that its ssh ended before it could be put into a group: not a reason.
   if (line.find("plm:rsh: Warning: setpgid(") != std::string::npos) return;
   const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
   const bool is_frame = !is_blank && !has_words(line);

@@ -9,10 +9,10 @@ namespace {
 
 using Shares = std::vector<std::vector<BodyShare>>;
 
-/// The level up to which so many nodes fill ranks that have these loads.
+/// The level up to which `nodes` nodes fill ranks with these loads.
 double level_of(std::vector<std::size_t> loads, std::size_t nodes) {
   std::ranges::sort(loads);
-  auto below = static_cast<double>(nodes);  // of the lowest ranks, with what is to be filled in
+  auto below = static_cast<double>(nodes);  // nodes of the lowest ranks, including those to be filled in
   for (std::size_t lowest = 1;; ++lowest) {
     below += static_cast<double>(loads[lowest - 1]);
     const double level = below / static_cast<double>(lowest);
@@ -20,7 +20,7 @@ double level_of(std::vector<std::size_t> loads, std::size_t nodes) {
   }
 }
 
-/// Bodies that are given to ranks one after the other.
+/// Assigns bodies to ranks, one after the other.
 class Filling {
  public:
   Filling(std::size_t bodies, int ranks) : shares(bodies), loads(static_cast<std::size_t>(ranks), 0) {}
@@ -29,7 +29,7 @@ class Filling {
     shares[body].push_back({static_cast<int>(rank), nodes});
     loads[rank] += nodes;
   }
-  /// Gives whole bodies, the heaviest first.
+  /// Assigns whole bodies, the heaviest first.
   void give_whole(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
     std::vector<std::size_t> weights;
     for (const std::size_t body : bodies) weights.push_back(nodes[body]);
@@ -37,8 +37,8 @@ class Filling {
     for (std::size_t i = 0; i < bodies.size(); ++i)
       give(bodies[i], static_cast<std::size_t>(rank_of[i]), weights[i]);
   }
-  /// Fills the ranks up to one level, those of most room first: a body goes on in the next rank where one is
-  /// full. No part is too small.
+  /// Fills the ranks up to one level, those with most room first: a body continues in the next rank when one
+  /// is full. No part is too small.
   void divide(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
     std::size_t together = 0;
     for (const std::size_t body : bodies) together += nodes[body];
@@ -47,7 +47,7 @@ class Filling {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t rank) { return loads[rank]; });
     auto rank = order.begin();
-    double missing = 0;  // nodes by which the ranks before this one are below the level, by roundings mostly
+    double missing = 0;  // nodes by which earlier ranks are below the level, mostly because of rounding
     const auto room = [&] { return level - static_cast<double>(loads[*rank]); };
     const auto leave = [&] {
       missing += room();
@@ -76,7 +76,7 @@ class Filling {
   std::vector<std::size_t> loads;  ///< [ranks] nodes
 
  private:
-  /// Gives what is left of a body to the rank with the least, which may have some of it.
+  /// Gives the rest of a body to the rank with the lowest load, which may already have a part of it.
   void give_rest(std::size_t body, std::size_t nodes) {
     const auto rank = static_cast<std::size_t>(std::ranges::min_element(loads) - loads.begin());
     const auto same = std::ranges::find(shares[body], static_cast<int>(rank), &BodyShare::rank);
@@ -86,10 +86,10 @@ class Filling {
   }
 };
 
-/// A node and the rank that it matters to.
+/// A node and the rank that needs it.
 using RankAndNode = std::pair<int, std::uint32_t>;
 
-/// Sorted, each once.
+/// Sorted, without duplicates.
 std::vector<RankAndNode> in_order(std::vector<RankAndNode> nodes) {
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -105,8 +105,8 @@ std::optional<Shares> body_shares(const std::vector<std::size_t>& nodes, int ran
   const auto all = static_cast<double>(std::reduce(nodes.begin(), nodes.end()));
   const double most_allowed = (1 + most_excess) * all / ranks;
   std::optional<Filling> best;
-  // More divided bodies than ranks are never needed: together they weigh as much as the largest whole one on
-  // every rank, so that they fill what the whole ones leave.
+  // More divided bodies than ranks are never needed: together they weigh as much as the largest whole body on
+  // every rank, and so fill the gaps that the whole ones leave.
   const std::size_t most_divided = std::min(nodes.size(), static_cast<std::size_t>(ranks));
   for (std::size_t divided = 0; divided <= most_divided; ++divided) {
     const auto first_whole = order.begin() + static_cast<std::ptrdiff_t>(divided);
@@ -142,7 +142,7 @@ BodiesPart part_of_bodies(const System& bodies, std::span<const std::uint32_t> p
   ghosts = in_order(std::move(ghosts));
 
   constexpr std::uint32_t elsewhere = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> number(bodies.nodes(), elsewhere);  // in the part
+  std::vector<std::uint32_t> number(bodies.nodes(), elsewhere);  // [nodes] number in the part
   BodiesPart part;
   System& system = part.system = with_laws_of(bodies);
   const auto add = [&](std::uint32_t node) {
@@ -161,7 +161,7 @@ BodiesPart part_of_bodies(const System& bodies, std::span<const std::uint32_t> p
       part.neighbours.push_back({other_rank, {}, 0});
     ++part.neighbours.back().ghosts;
   }
-  // A rank that has a ghost here has one of its own nodes beside it.
+  // Every rank with a ghost here has an adjacent own node.
   auto neighbour = part.neighbours.begin();
   for (const auto& [other_rank, node] : edge) {
     while (neighbour->rank != other_rank) ++neighbour;

@@ -28,8 +28,7 @@ constexpr std::uint32_t most_nodes = 100'000'000;
 
 void visit_expected(FieldVisitor& fields, BodySpec& body) {
   fields.object(
-      {"expected",
-       "What the mesh of this shape should have; mssim says so where another TetGen gives something else."},
+      {"expected", "Expected size of this shape's mesh; mssim reports if another TetGen gives another size."},
       Presence::optional, [&](FieldVisitor& expected) {
         MeshSize& size = body.expected.emplace();
         expected.integer({"nodes", "Number of nodes."}, size.nodes, 4, most_nodes);
@@ -40,11 +39,11 @@ void visit_expected(FieldVisitor& fields, BodySpec& body) {
 
 void visit_interior(FieldVisitor& fields, InteriorPoints& interior) {
   fields.object(
-      {"interior", "The points inside the shape that become nodes: those of a lattice, moved at random."},
+      {"interior", "The points inside the shape that become nodes: a lattice, perturbed at random."},
       Presence::required, [&](FieldVisitor& points) {
-        points.integer({"points", "How many there are."}, interior.count, 0, 1'000'000);
+        points.integer({"points", "Number of points."}, interior.count, 0, 1'000'000);
         points.integer({"seed", "Seed of the random numbers."}, interior.seed, 0, 0xffff'ffff);
-        points.number({"jitter", "How far a point may be moved, in lattice spacings."}, interior.jitter,
+        points.number({"jitter", "Maximum perturbation of a point, in lattice spacings."}, interior.jitter,
                       from(0, 0.5));
         points.number({"margin", "Smallest distance from the surface, in lattice spacings."}, interior.margin,
                       from(0, 1));
@@ -69,7 +68,7 @@ void visit_sphere(FieldVisitor& fields, BodySpec& body) {
 
 void visit_torus(FieldVisitor& fields, BodySpec& body) {
   auto& [torus, interior] = body.shape.emplace<GeneratedShape<TorusShape>>();
-  fields.number({"major_radius_m", "From the centre of the ring to that of its section, m."},
+  fields.number({"major_radius_m", "Distance from the centre of the ring to that of its section, m."},
                 torus.major_radius_m, above(0, 1000));
   fields.number({"minor_radius_m", "Radius of the section, m."}, torus.minor_radius_m, above(0, 1000));
   fields.integer({"cells_around", "Sections along the ring."}, torus.cells_around, 3, 1000);
@@ -99,8 +98,8 @@ void visit_scene_shape(FieldVisitor& fields, BodySpec& body) {
               Presence::required, body.shape.emplace<ShapeOfScene>().name);
 }
 
-/// The TABLE of shapes, in the order of BodyShape's alternatives: the value of `shape`, its section, and what
-/// names the section's fields.
+/// The TABLE of shapes, in the order of BodyShape's alternatives: value of `shape`, its section, and the
+/// function that names the section's fields.
 struct ShapeKind {
   Field section;
   void (*visit_fields)(FieldVisitor& fields, BodySpec& body);
@@ -117,15 +116,15 @@ constexpr auto shape_kinds = std::to_array<ShapeKind>({
 });
 static_assert(shape_kinds.size() == std::variant_size_v<BodyShape>);
 
-/// A shape that is not that of another scene any more.
+/// A shape with the reference to another scene resolved.
 struct OwnShape {
   BodyShape shape;
-  std::filesystem::path folder;             ///< that the paths of its files start at
-  std::optional<MeshSize> stated_by_other;  ///< about the mesh, by the scene that it was taken from
+  std::filesystem::path folder;             ///< base of the paths of its files
+  std::optional<MeshSize> stated_by_other;  ///< size of the mesh that the other scene states
 };
 
-/// The shape of a body in a scene file of that folder; where it is another scene's, that is read. Throws
-/// SceneError when there is no such scene, or none whose first body has a shape of its own.
+/// The shape of a body in a scene file of that folder. If it refers to another scene, that one is read;
+/// throws SceneError if there is no such scene or its first body has no shape of its own.
 OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
   const auto* other = std::get_if<ShapeOfScene>(&shape);
   if (other == nullptr) return {shape, folder, std::nullopt};
@@ -133,16 +132,16 @@ OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) 
   const SceneSpec scene = find_scene(is_path_of_scene(name) ? (folder / name).string() : name);
   const auto* bodies = std::get_if<BodiesSpec>(&scene.content);
   if (bodies == nullptr)
-    throw SceneError("the scene \"{}\" has no bodies whose shape could be taken: name one that has",
+    throw SceneError("the scene \"{}\" has no bodies whose shape could be used: name another scene",
                      printable(name));
   const BodySpec& body = bodies->list.front();
   if (std::holds_alternative<ShapeOfScene>(body.shape))
-    throw SceneError("the first body of the scene \"{}\" takes its shape from another scene: name that one",
+    throw SceneError("the first body of the scene \"{}\" takes its shape from another scene: name that scene",
                      printable(name));
   return {body.shape, scene.file.parent_path(), body.expected};
 }
 
-/// How a shape becomes a mesh, one overload a kind.
+/// Makes the mesh of a shape; one overload per kind.
 struct Mesher {
   const std::filesystem::path& folder;
 
@@ -158,14 +157,14 @@ struct Mesher {
   TetMesh operator()(const SurfaceFile& surface) const {
     return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
   }
-  /// No OwnShape is that of another scene.
+  /// Unreachable: own_shape has resolved references to other scenes.
   TetMesh operator()(const ShapeOfScene& shape) const {
     throw std::logic_error("the shape of the scene " + shape.name + " was not read");
   }
 };
 
-/// What is known of a mesh before it is made. All edges of a generated surface stay edges of the mesh, three
-/// for a point in the limit; an inner point has four at least, each of which it may share.
+/// Lower bounds on a mesh before it is made. All edges of a generated surface are edges of the mesh, in the
+/// limit three per point; an inner point has at least four, each possibly shared.
 SceneCounts least_counts(const OwnShape& own) {
   return std::visit(
       [](const auto& shape) -> SceneCounts {
@@ -180,8 +179,8 @@ SceneCounts least_counts(const OwnShape& own) {
 
 constexpr std::size_t most_bodies = 10'000;
 
-/// How short and long a spring of a body may be, m. Within, lengths, masses and stiffnesses over masses are
-/// ordinary numbers in single precision.
+/// Range of lengths of a body's springs, m. Within it, lengths, masses and stiffnesses over masses are normal
+/// numbers in single precision.
 constexpr double shortest_spring = 1e-7, longest_spring = 1e6;
 
 const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.content); }
@@ -193,12 +192,12 @@ void visit_body(FieldVisitor& fields, BodySpec& body) {
                         kind.visit_fields(section, body);
                         if (!std::holds_alternative<ShapeOfScene>(body.shape)) visit_expected(section, body);
                       }});
-  fields.one_of({"shape", "Which of the sections says what shape the body has."}, shapes);
-  fields.vector({"centre_m", "Where the centre of mass starts, [x, y, z], m."}, Presence::required,
-                body.centre_m, from(-1e6, 1e6));
-  fields.object({"turn", "How the shape is turned about its centre at the start."}, Presence::optional,
+  fields.one_of({"shape", "The section that describes the body's shape."}, shapes);
+  fields.vector({"centre_m", "Start of the centre of mass, [x, y, z], m."}, Presence::required, body.centre_m,
+                from(-1e6, 1e6));
+  fields.object({"turn", "Rotation of the shape about its centre at the start."}, Presence::optional,
                 [&](FieldVisitor& turn) {
-                  turn.vector({"axis", "Direction of the axis, of any length but zero."}, Presence::required,
+                  turn.vector({"axis", "Direction of the axis, of any nonzero length."}, Presence::required,
                               body.turn_axis, from(-1, 1));
                   turn.number({"angle_deg", "Angle, degrees."}, body.turn_deg, from(-360, 360));
                 });
@@ -208,22 +207,22 @@ void visit_body(FieldVisitor& fields, BodySpec& body) {
                 Presence::required, body.spin_rad_per_s, from(-1000, 1000));
   fields.number(
       {"swell_per_s",
-       "Rate at which the body grows at first, 1/s, so that every spring works from the first step on."},
+       "Initial growth rate of the body, 1/s, so that every spring is active from the first step on."},
       body.swell_per_s, from(-100, 100));
 }
 
 std::string pointer_to(std::size_t body) { return fmt::format("/bodies/list/{}", body); }
 
-/// A shape of bodies: a mesh and what follows from it.
+/// A shape of bodies: its mesh and quantities derived from it.
 struct MeshedShape {
-  std::size_t first_body;  ///< that has it
+  std::size_t first_body;  ///< first body that has it
   OwnShape own;
   TetMesh mesh = {};  ///< its centre is the origin
   std::vector<std::array<std::uint32_t, 2>> edges = {};
   double volume = 0;  ///< m^3
 };
 
-/// Throws SceneError where it is that of another scene, which cannot be used.
+/// Throws SceneError if the shape of another scene cannot be used.
 OwnShape shape_of(const SceneSpec& spec, std::size_t body) {
   try {
     return own_shape(bodies_of(spec).list[body].shape, spec.file.parent_path());
@@ -259,8 +258,7 @@ void mesh(MeshedShape& shape, const SceneSpec& spec) {
 /// The shapes of a scene's bodies, each read and meshed once.
 class MeshedShapes {
  public:
-  /// Throws SceneError, where the memory does not do for what will be meshed before it is, and
-  /// MissingProgram.
+  /// Throws SceneError, before meshing if the memory does not suffice, and MissingProgram.
   explicit MeshedShapes(const SceneSpec& spec) {
     const std::vector<BodySpec>& list = bodies_of(spec).list;
     for (std::size_t body = 0; body < list.size(); ++body) {
@@ -276,7 +274,7 @@ class MeshedShapes {
 
   const MeshedShape& of_body(std::size_t body) const { return shapes_[of_body_[body]]; }
 
-  /// Counts all bodies together.
+  /// Nodes and springs of all bodies.
   SceneCounts counts() const {
     SceneCounts counts;
     for (const std::size_t shape : of_body_) {
@@ -286,7 +284,7 @@ class MeshedShapes {
     return counts;
   }
 
-  /// What is to be known of how they were made, in sentences; or empty.
+  /// How the meshes were made, if a reader should know: sentences, or empty.
   std::string note() const {
     std::string all;
     for (const MeshedShape& shape : shapes_) append_sentence(all, shape.mesh.note);
@@ -294,8 +292,7 @@ class MeshedShapes {
   }
 
  private:
-  /// Meshing takes minutes where there are millions of nodes: what cannot be held afterwards is refused
-  /// before.
+  /// Meshing takes minutes for millions of nodes, so scenes that do not fit in memory are refused before.
   void require_memory_for_meshes(const SceneSpec& spec) const {
     SceneCounts least;
     for (const std::size_t shape : of_body_) {
@@ -311,7 +308,7 @@ class MeshedShapes {
   }
 
   std::vector<MeshedShape> shapes_;
-  std::vector<std::size_t> of_body_;  ///< the number of its shape
+  std::vector<std::size_t> of_body_;  ///< [bodies] the index of its shape
 };
 
 /// Rodrigues' rotation by `angle` (radians) about the unit vector `axis`.
@@ -342,7 +339,7 @@ void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const Meshed
                           bodies.density_kg_per_m3 * shape.volume / static_cast<double>(nodes));
 }
 
-/// The sum over the bodies; none unless all of them state their size.
+/// The sum over the bodies; nothing unless all of them state their size.
 std::optional<SceneCounts> stated_counts_of(const SceneSpec& spec,
                                             const std::function<OwnShape(std::size_t body)>& shape_of) {
   SceneCounts counts;
@@ -358,7 +355,7 @@ std::optional<SceneCounts> stated_counts_of(const SceneSpec& spec,
   return counts;
 }
 
-/// Throws SceneError when a body starts below the floor.
+/// Throws SceneError if a body starts below the floor.
 System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
   const BodiesSpec& bodies = bodies_of(spec);
   System system;
@@ -376,13 +373,12 @@ System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
       lowest = std::min(lowest, system.start.position[node].y);
       highest = std::max(highest, system.start.position[node].y);
     }
-    // The height shows a mesh in another unit than its unit_m says.
+    // The message has the height because it reveals a wrong unit_m.
     if (!(lowest > spec.floor.height))
       refuse(spec.file, pointer_to(i) + "/centre_m/1",
-             "is " + shown_number(bodies.list[i].centre_m.y) +
-                 ", so that the lowest node of the body, which is " + shown(highest - lowest) +
-                 " m high, would start at " + shown(lowest) + ", not above the floor at " +
-                 shown_number(spec.floor.height) + ": raise it");
+             "is " + shown_number(bodies.list[i].centre_m.y) + ", so the lowest node of the body, which is " +
+                 shown(highest - lowest) + " m high, would start at " + shown(lowest) +
+                 ", not above the floor at " + shown_number(spec.floor.height) + ": raise it");
     for (std::size_t s = first_spring; s < system.springs.size(); ++s) {
       const auto in_single = [&](std::uint32_t node) {
         return vec3_cast<float>(system.start.position[node]);
@@ -399,17 +395,16 @@ System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
 
 void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   BodiesSpec& bodies = spec.content.emplace<BodiesSpec>();
-  fields.number(
-      {"density_kg_per_m3", "Mass per volume, kg/m^3; the mass of a body is spread evenly over its nodes."},
-      bodies.density_kg_per_m3, from(1e-3, 1e6));
+  fields.number({"density_kg_per_m3", "Mass per volume, kg/m^3; the nodes of a body share its mass evenly."},
+                bodies.density_kg_per_m3, from(1e-3, 1e6));
   fields.object(
-      {"springs", "How the springs answer stretching."}, Presence::required,
+      {"springs", "Stiffness and damping of the springs."}, Presence::required,
       [&](FieldVisitor& springs) { visit_material(springs, bodies.springs, above(0, largest_stiffness)); });
-  fields.list({"list", "The bodies."}, Presence::required, most_bodies, "One body, and how it starts.",
+  fields.list({"list", "The bodies."}, Presence::required, most_bodies, "One body and its start.",
               [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); });
 }
 
-/// Every turn has an axis.
+/// Every rotation needs an axis.
 void check(const SceneSpec& spec) {
   const BodiesSpec& bodies = bodies_of(spec);
   for (std::size_t i = 0; i < bodies.list.size(); ++i)
@@ -431,11 +426,10 @@ std::vector<std::string> files(const SceneSpec& spec) {
 
 /// Meshes every shape once.
 ///
-/// The scene has the bodies one after the other, each in its mesh's node order, its springs the edges of its
-/// tetrahedra at their length in the mesh. A body starts turned, as a rigid body that flies and spins, and
-/// grows at its swell rate. Deterministic. Throws SceneError when a body has no mesh and when the memory does
-/// not suffice for the meshes, and MissingProgram; building it throws SceneError when a body starts below the
-/// floor.
+/// The scene has its bodies one after the other, each in its mesh's node order; its springs are the edges of
+/// its tetrahedra at their length in the mesh. A body starts rotated, in rigid flight and spin, and grows at
+/// its swell rate. Deterministic. Throws SceneError if a body has no mesh or if the memory does not suffice
+/// for the meshes, and MissingProgram; building throws SceneError if a body starts below the floor.
 SceneParts read(const SceneSpec& spec) {
   const auto shapes = std::make_shared<const MeshedShapes>(spec);
   return {shapes->counts(),
@@ -458,8 +452,8 @@ extern const SceneKind bodies_kind{
         "only the floor stops them.",
     .visit_fields = visit_fields,
     .check = check,
-    // The published counts seem to be the length of the array of packed springs, three values each: all nine
-    // can be divided by three, and the thirds fit tetrahedral meshes.
+    // The published counts seem to be the length of the array of packed springs, three values per spring: all
+    // nine are divisible by three, and the thirds fit tetrahedral meshes.
     .published_per_spring = 3,
     .files = files,
     .stated =

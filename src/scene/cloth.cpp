@@ -14,13 +14,13 @@
 namespace mssim {
 namespace {
 
-/// Amplitude of the ripple's displacement in the plane over that out of it. Out of the plane alone, a small
-/// ripple would strain the springs in second order only.
+/// Ratio of the ripple's displacement in the plane to that out of it. A small ripple only out of the plane
+/// would strain the springs in second order only.
 constexpr double in_plane_share = 0.5;
 
 /// Largest height of the ripple over its wavelength. The displacement u in the plane has a gradient of at
-/// most sqrt(2) in_plane_share height 2 pi / wavelength in Frobenius' norm; below 1 no two nodes can meet,
-/// and at this slope it is 0.44.
+/// most sqrt(2) in_plane_share height 2 pi / wavelength in the Frobenius norm; below 1 no two nodes can
+/// coincide, and at this slope it is 0.44.
 constexpr double steepest_ripple = 0.1;
 
 const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.content); }
@@ -29,7 +29,7 @@ void visit_springs(FieldVisitor& fields, ClothSpec& cloth) {
   constexpr std::array<std::string_view, grid_spring_kinds.size()> descriptions{
       "Springs between neighbours.", "Springs across the diagonals.", "Springs between nodes two apart."};
   for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind) {
-    // Without structural springs nothing would hold the cloth together; the other two kinds can be left out.
+    // Structural springs hold the cloth together; the other two kinds are optional.
     const Range stiffness = kind == structural ? above(0, largest_stiffness) : from(0, largest_stiffness);
     fields.object({grid_spring_kinds[kind].name, descriptions.at(kind)}, Presence::required,
                   [&](FieldVisitor& material) { visit_material(material, cloth.springs[kind], stiffness); });
@@ -41,14 +41,14 @@ bool is_pinned(const ClothSpec& cloth, std::uint32_t row, std::uint32_t column) 
          (column % cloth.pins->every_columns == 0 || column + 1 == cloth.columns);
 }
 
-/// The standing wave of the ripple: six components, each at most 1 and the product of a sine of the column's
-/// place and one of the row's, which are kept for all of both: 16 million nodes take 48,000 sines then.
+/// The standing wave of the ripple. Each of its six components is the product of a sine of the column and one
+/// of the row, which are tabulated: 16 million nodes need only 48,000 sines.
 class Ripple {
  public:
   explicit Ripple(const ClothSpec& cloth)
       : columns_(sines(cloth, cloth.columns, 0)), rows_(sines(cloth, cloth.rows, 1)) {}
 
-  /// Three components, from `first` on.
+  /// Three components, starting with number `first`.
   Vec3d at(std::uint32_t row, std::uint32_t column, std::size_t first) const {
     const auto &x = columns_[column], &z = rows_[row];
     return {x[first] * z[first], x[first + 1] * z[first + 1], x[first + 2] * z[first + 2]};
@@ -57,9 +57,9 @@ class Ripple {
 
  private:
   static constexpr std::size_t components = 6;
-  /// Phases along x and z, in radians. A component is zero along lines of constant x and of constant z. As no
-  /// two phases of the velocity on one axis differ by a multiple of pi, no place lies on a line of all three,
-  /// and no node starts at rest.
+  /// Phases along x and z, in radians. A component is zero along lines of constant x and of constant z. No
+  /// two phases of the velocity on one axis differ by a multiple of pi, so no point is on zero lines of all
+  /// three, and no node starts at rest.
   static constexpr std::array<std::array<double, 2>, components> phase{
       {{0.2, 0.9}, {1.2, 1.9}, {2.2, 2.9}, {0.4, 1.3}, {1.5, 2.5}, {2.6, 0.3}}};
 
@@ -91,21 +91,21 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.number(
       {"areal_density_kg_per_m2", "Mass per area, kg/m^2; a node weighs this times the spacing squared."},
       cloth.areal_density_kg_per_m2, from(1e-6, 1e6));
-  fields.number({"ceiling_height_m", "Height that the cloth starts and is pinned at, m."},
+  fields.number({"ceiling_height_m", "Height at which the cloth starts and is pinned, m."},
                 cloth.ceiling_height_m, from(-1e6, 1e6));
   fields.object(
-      {"pins", "The nodes that stay where they start. Without this section the cloth falls freely."},
+      {"pins", "The nodes that keep their start position. Without this section the cloth falls freely."},
       Presence::optional, [&](FieldVisitor& section) {
         ClothPins& pins = cloth.pins.emplace();
-        section.integer({"row", "The row that is pinned, counted from 0."}, pins.row, 0, 999'999);
+        section.integer({"row", "The pinned row, counted from 0."}, pins.row, 0, 999'999);
         section.integer(
             {"every_columns",
-             "Of the pinned row every so many columns one node is pinned, from column 0 on, and the last."},
+             "Columns from one pinned node to the next, from column 0 on; the last column is pinned, too."},
             pins.every_columns, 1, 1'000'000);
       });
   fields.object(
       {"ripple",
-       "A standing wave at the start, so that all springs work and all nodes move from the first step."},
+       "A standing wave at the start, so that all springs act and all nodes move from the first step."},
       Presence::required, [&ripple = cloth.ripple](FieldVisitor& section) {
         section.number(
             {"height_m", "Amplitude of the vertical displacement, m; within the plane it is half as large."},
@@ -115,12 +115,12 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
         section.number({"speed_m_per_s", "Amplitude of each component of the velocity, m/s."},
                        ripple.speed_m_per_s, from(0, 1000));
       });
-  fields.object({"springs", "How each kind of spring answers stretching."}, Presence::required,
+  fields.object({"springs", "Stiffness and damping of each kind of spring."}, Presence::required,
                 [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
 }
 
-/// The nodes can be numbered, the pinned row exists, the cloth starts above the floor, and the ripple folds
-/// no spring to length zero.
+/// The nodes can be numbered, the pinned row exists, the cloth starts above the floor, and the ripple
+/// compresses no spring to length zero.
 void check(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   constexpr std::uint64_t largest = std::numeric_limits<std::uint32_t>::max();
@@ -135,7 +135,7 @@ void check(const SceneSpec& spec) {
   const double lowest_start = cloth.ceiling_height_m - cloth.ripple.height_m;
   if (!(lowest_start > spec.floor.height))
     refuse(spec.file, "/cloth/ceiling_height_m",
-           "is " + shown_number(cloth.ceiling_height_m) + ", so that the ripple would start at " +
+           "is " + shown_number(cloth.ceiling_height_m) + ", so the ripple would start at " +
                shown_number(lowest_start) + ", not above the floor at " + shown_number(spec.floor.height) +
                ": raise it or lower /floor/height_m");
   if (cloth.ripple.height_m > steepest_ripple * cloth.ripple.wavelength_m)
@@ -208,8 +208,8 @@ extern const SceneKind cloth_kind{
         "bending springs.",
     .visit_fields = visit_fields,
     .check = check,
-    // The published counts take the 12-neighbour stencil of every node, and so each spring from both of its
-    // ends.
+    // The published counts include the 12-neighbour stencil of every node, and so each spring from both of
+    // its ends.
     .published_per_spring = 2,
     .files = [](const SceneSpec& /*spec*/) { return std::vector<std::string>(); },
     .stated = [](const SceneSpec& spec) { return std::optional(cloth_counts(spec)); },

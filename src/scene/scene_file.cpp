@@ -18,7 +18,7 @@ std::filesystem::path file_of(std::string_view name) {
   return scene_folder() / (std::string(name) + ".json");
 }
 
-/// In no particular order. The schema beside the scenes, scene.schema.json, is not one of them.
+/// Unordered. The schema next to the scenes, scene.schema.json, is excluded.
 std::vector<std::string> names_in_folder() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(scene_folder())) {
@@ -31,19 +31,17 @@ std::vector<std::string> names_in_folder() {
 
 /// Names the fields of a whole scene file, with their targets in `spec`.
 void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
-  std::string schema;  // for editors; says nothing about the scene
-  fields.text({"$schema", "The path of this schema, for editors; mssim does not use it."}, Presence::optional,
-              schema);
+  std::string schema;  // for editors; not part of the scene
+  fields.text({"$schema", "Path of this schema, for editors; mssim ignores it."}, Presence::optional, schema);
   std::vector<Section> kinds;
   for (const SceneKind* kind : scene_kinds())
     kinds.push_back(
         {{kind->name, kind->description}, [&, kind](FieldVisitor& body) { kind->visit_fields(body, spec); }});
-  fields.one_of({"kind", "The scene kind, which is also the key of the section that describes its content."},
-                kinds);
+  fields.one_of({"kind", "The scene kind; also the key of the section with its content."}, kinds);
   fields.text({"description", "One line for listings."}, Presence::required, spec.description);
   fields.number_or_auto({"dt_s",
-                         "Length of a time step, s; \"auto\" takes half of the stability limit of the least "
-                         "stable integrator."},
+                         "Length of a time step, s; \"auto\" is half of the smallest stability limit of Hong "
+                         "et al.'s integrators."},
                         spec.dt_s, above(0, 1));
   fields.number({"gravity_m_per_s2", "Gravitational acceleration, downwards, m/s^2."}, spec.gravity_m_per_s2,
                 from(0, 1000));
@@ -52,28 +50,29 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
       spec.viscous_damping_per_s, from(0, 1e6));
   fields.object(
       {"floor",
-       "The plane y = height that nothing falls through. It acts once a step, behind the integrator: of a "
+       "The plane y = height, which stops falling nodes. It acts once per step, after the integrator: for a "
        "free node below it, y becomes the height, a falling v_y becomes -restitution * v_y, and the "
-       "horizontal speed loses friction * (1 + restitution) * |v_y|, at most all of it."},
+       "horizontal speed decreases by friction * (1 + restitution) * |v_y|, at most to zero."},
       Presence::required, [&floor = spec.floor](FieldVisitor& section) {
         section.number({"height_m", "Height of the floor, m."}, floor.height, from(-1e6, 1e6));
-        section.number({"restitution", "Share of the falling speed that comes back, without unit."},
+        section.number({"restitution", "Fraction of the falling speed that is reversed, dimensionless."},
                        floor.restitution, from(0, 1));
-        section.number({"friction", "Coulomb's coefficient, without unit."}, floor.friction, from(0, 100));
+        section.number({"friction", "Coulomb's friction coefficient, dimensionless."}, floor.friction,
+                       from(0, 100));
       });
   fields.object(
       {"implicit",
-       "How far the solvers of implicit integrators go (default: tolerance 1e-5, 10 iterations, 10 "
+       "Accuracy of the solvers of implicit integrators (default: tolerance 1e-5, 10 iterations, 10 "
        "substeps)."},
       Presence::optional, [&solver = spec.solver](FieldVisitor& section) {
         section.number(
             {"tolerance",
-             "Of implicit-euler's conjugate gradients and of newton-euler: they end where the norm of what "
-             "is left is this part of what it was."},
+             "Relative tolerance of implicit-euler's linear system and of newton-euler's change of "
+             "velocities."},
             solver.tolerance, above(0, 0.1));
-        section.integer({"fast_springs_iterations", "Local and global steps of fast-springs in each step."},
+        section.integer({"fast_springs_iterations", "Local and global steps of fast-springs per step."},
                         solver.iterations, 1, 10000);
-        section.integer({"xpbd_substeps", "Small steps of xpbd in each step."}, solver.substeps, 1, 1000);
+        section.integer({"xpbd_substeps", "Substeps of xpbd per step."}, solver.substeps, 1, 1000);
       });
 }
 
@@ -102,10 +101,10 @@ std::string scene_schema() {
   SceneSpec unused;
   return json_schema(
       "Scene of mssim",
-      "A mass-spring scene: how it is stepped, what acts on it, and its body. SI units, stated in the keys; "
-      "y points up. mssim checks further that the fields fit together: the pinned row exists, cloth and "
-      "bodies start above the floor, the ripple is at most a tenth of its wavelength and, where there are "
-      "pins, at most the spacing high, and meshes are sound.",
+      "A mass-spring scene: time step, forces, and content. SI units, stated in the keys; "
+      "y points up. mssim also checks that the fields are consistent: the pinned row exists, cloth and "
+      "bodies start above the floor, the ripple is at most a tenth of its wavelength and, if there are "
+      "pins, at most the spacing high, and meshes are valid.",
       [&](FieldVisitor& fields) { visit_scene_fields(fields, unused); });
 }
 
@@ -147,7 +146,7 @@ bool is_path_of_scene(std::string_view name_or_path) {
 }
 
 bool is_scene(std::string_view name_or_path) {
-  std::error_code error;  // a name too long for a file is none
+  std::error_code error;  // a name too long for a file is not a file
   if (is_path_of_scene(name_or_path)) return std::filesystem::exists(name_or_path, error);
   const std::vector<std::string> names = names_in_folder();
   return std::find(names.begin(), names.end(), name_or_path) != names.end();

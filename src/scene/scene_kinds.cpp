@@ -11,8 +11,7 @@
 
 namespace mssim {
 
-// Each stands beside the spec and the builder that it names; garment_kind in garment/scene, of which nothing
-// else is needed here.
+// Defined with their specs and builders; garment_kind in garment/scene, of which nothing else is used here.
 extern const SceneKind cloth_kind, bodies_kind, garment_kind;
 
 namespace {

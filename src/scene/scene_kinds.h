@@ -10,41 +10,41 @@
 
 namespace mssim {
 
-/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is a row beside
-/// what it describes, and an alternative.
+/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is a row, defined
+/// next to its spec and builder, and an alternative.
 std::span<const SceneKind* const> scene_kinds();
 
 /// The row of the scene's kind.
 const SceneKind& kind_of(const SceneSpec& spec);
 
-/// Nodes and springs as the scene's file states them, which costs nothing; none where it does not.
+/// Nodes and springs that the scene's file states, at no cost; nothing if it states none.
 std::optional<SceneCounts> stated_counts(const SceneSpec& spec);
 
-/// What the scene is built from. Throws SceneError, and MissingProgram where bodies cannot be meshed.
+/// The parts that the scene is built from. Throws SceneError, and MissingProgram if bodies cannot be meshed.
 SceneParts read_parts(const SceneSpec& spec);
 
-/// Nodes and springs that the scene has. Reads its parts for that, and throws like read_parts.
+/// Nodes and springs of the scene. Reads its parts, and throws like read_parts.
 SceneCounts counts_of(const SceneSpec& spec);
 
-/// Counts what the scene's System has.
+/// Nodes and springs of the scene's System.
 SceneCounts counts_of(const SceneSpec& spec, const System& system);
 
-/// Throws SceneError when any run of the scene, which has these counts, needs more memory than there is
-/// (memory_needed), naming both amounts.
+/// Throws SceneError, naming both amounts, if any run of the scene, which has these counts, needs more memory
+/// than is available (memory_needed).
 void require_memory(const SceneSpec& spec, const SceneCounts& counts);
 
-/// Throws SceneError when `needed` bytes for a use of the scene are more than the available memory, naming
-/// both and the remedy.
+/// Throws SceneError, naming both amounts and the remedy, if `needed` bytes for a use of the scene exceed the
+/// available memory.
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy);
 
-/// The scene of these parts. Throws like SceneParts::build, and before it like require_memory.
+/// Builds the scene from these parts. Throws like SceneParts::build, and first like require_memory.
 BuiltScene build_scene(const SceneSpec& spec, const SceneParts& parts);
 
-/// The scene, its parts read for it alone. Throws like both.
+/// Reads the parts and builds the scene from them. Throws like both functions.
 BuiltScene build_scene(const SceneSpec& spec);
 
-/// Its System alone.
+/// Builds only the scene's System.
 System build_system(const SceneSpec& spec);
 
 }  // namespace mssim

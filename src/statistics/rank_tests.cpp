@@ -18,7 +18,7 @@ void require_finite(std::span<const double> values) {
 
 double normal_below(double z) { return std::erfc(-z / std::numbers::sqrt2) / 2; }
 
-/// The ranks of values, from 1; equal ones share the mean of theirs.
+/// Ranks of values, from 1; equal values share the mean of their ranks.
 struct Midranks {
   std::vector<double> ranks;  ///< [values]
   double tie_term = 0;        ///< the sum of t^3 - t over groups of t equal values: 0 without ties
@@ -39,8 +39,8 @@ Midranks midranks(std::span<const double> values) {
   return result;
 }
 
-/// What a rank test compares: so many values, all in [least, most]; they may be too many to be written down,
-/// therefore `count_up_to(v)` says how many of them are at most v.
+/// The values that a rank test compares: `count` of them, all in [least, most]. They may be too many to
+/// store, so `count_up_to(v)` returns how many are at most v.
 struct ComparedValues {
   std::size_t count;
   double least, most;
@@ -51,15 +51,15 @@ struct ComparedValues {
 double ranked_value(const ComparedValues& values, std::size_t rank) {
   double low = values.least, high = values.most;
   if (values.count_up_to(low) >= rank) return low;
-  // Halved until no number lies between: then `high` is the smallest that reaches the rank, so the value.
+  // Bisection until no double lies between: then `high`, the smallest that reaches the rank, is the value.
   for (double middle = std::midpoint(low, high); low < middle && middle < high;
        middle = std::midpoint(low, high))
     (values.count_up_to(middle) >= rank ? high : low) = middle;
   return high;
 }
 
-/// Their median, and the interval that inverts the test whose statistic is so distributed: from the k-th
-/// smallest to the k-th largest of them, which misses in `error` of the cases.
+/// The median of the values, and the interval that inverts the test with this distribution: from the k-th
+/// smallest to the k-th largest value, with error probability `error`.
 ShiftEstimate shift_of(const ComparedValues& values, const RankDistribution& distribution, double error) {
   const double upper = ranked_value(values, values.count / 2 + 1);
   ShiftEstimate estimate{upper, values.least, values.most, false};
@@ -101,7 +101,7 @@ double RankDistribution::at_most(double statistic) const {
 }
 
 std::size_t RankDistribution::interval_rank(double error) const {
-  // The first statistic whose tail is more than that, which the mean's is.
+  // Find the first statistic whose tail exceeds that; the mean's tail does.
   std::size_t first = 0, last = static_cast<std::size_t>(mean_);
   while (first < last) {
     const std::size_t middle = std::midpoint(first, last);
@@ -119,8 +119,8 @@ RankDistribution rank_sum_distribution(std::size_t x_size, std::size_t y_size) {
     const auto pairs = static_cast<double>(largest), all = static_cast<double>(x_size + y_size);
     return RankDistribution::normal(pairs / 2, std::sqrt(pairs * (all + 1) / 12));
   }
-  // ways[count][u]: sets of `count` of the ranks so far. The (i+1)-th smallest of x, at rank r counted from
-  // 0, stands above r - i of y.
+  // ways[count][u]: sets of `count` of the ranks so far. The (i+1)-th smallest of x, at rank r from 0, is
+  // above r - i values of y.
   std::vector<std::vector<double>> ways(x_size + 1, std::vector<double>(largest + 1));
   ways[0][0] = 1;
   for (std::size_t rank = 0; rank < x_size + y_size; ++rank)
@@ -164,7 +164,7 @@ RankTest rank_sum_test(std::span<const double> x, std::span<const double> y) {
 ShiftEstimate rank_sum_shift(std::span<const double> x, std::span<const double> y) {
   const std::vector<double> xs = ascending(x), ys = ascending(y);
   const auto differences_up_to = [&](double bound) {
-    // A larger x needs a larger y, so that both samples are passed once.
+    // A larger x needs a larger y, so one pass over both samples is enough.
     std::size_t count = 0, first = 0;
     for (const double value : xs) {
       while (first < ys.size() && value - ys[first] > bound) ++first;
@@ -200,7 +200,7 @@ RankTest signed_rank_test(std::span<const double> differences) {
 ShiftEstimate signed_rank_shift(std::span<const double> differences, double error) {
   const std::vector<double> values = ascending(differences);
   const auto averages_up_to = [&](double bound) {
-    // The larger the second of a pair, the fewer firsts keep the average down.
+    // The larger the second value of a pair, the fewer first values keep the average below.
     std::size_t count = 0, firsts = values.size();
     for (std::size_t second = 0; second < values.size(); ++second) {
       while (firsts > 0 && std::midpoint(values[firsts - 1], values[second]) > bound) --firsts;

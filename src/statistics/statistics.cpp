@@ -13,7 +13,7 @@
 namespace mssim {
 namespace {
 
-/// P(B(n, 1/2) = k). By logarithms, because 2^-n is no double from n = 1075 on.
+/// P(B(n, 1/2) = k). By logarithms, because 2^-n underflows a double from n = 1075 on.
 double fair_binomial(std::size_t n, std::size_t k) {
   const auto log_factorial = [](std::size_t i) { return std::lgamma(static_cast<double>(i) + 1); };
   return std::exp(log_factorial(n) - log_factorial(k) - log_factorial(n - k) -

@@ -11,7 +11,7 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Optimal string alignment distance: Levenshtein's, and a swap of neighbours counts as one edit.
+/// Optimal string alignment distance: Levenshtein's, with a swap of neighbours counting as one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last, last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
@@ -29,7 +29,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-/// Whether a user who knows half of `candidate` may have typed `name`.
+/// Whether `name` may be typed by a user who remembers half of `candidate`.
 bool are_akin(std::string_view name, std::string_view candidate) {
   constexpr std::size_t telling_length = 4;
   return candidate.starts_with(name) || (candidate.size() >= telling_length && name.starts_with(candidate)) ||
@@ -49,8 +49,7 @@ std::vector<std::string_view> likely_names(std::string_view name,
   return name.empty() || akin.size() > most ? std::vector<std::string_view>() : akin;
 }
 
-/// Does the text begin with a control character? In UTF-8 those from U+0080 to U+009F are the bytes C2 80 to
-/// C2 9F.
+/// Does the text begin with a control character? U+0080 to U+009F are the bytes C2 80 to C2 9F in UTF-8.
 bool is_control(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   return byte(0) < 0x20 || byte(0) == 0x7F || (byte(0) == 0xC2 && text.size() > 1 && byte(1) < 0xA0);
@@ -63,7 +62,7 @@ std::string escape_of(unsigned char code) {
   return at == std::string_view::npos ? fmt::format("\\u{:04x}", code) : fmt::format("\\{}", names[at]);
 }
 
-/// Bytes of the character of valid UTF-8 (RFC 3629) that the text begins with; 0 where it begins with none.
+/// Bytes of the valid UTF-8 character (RFC 3629) at the beginning of the text; 0 if there is none.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -79,8 +78,8 @@ std::size_t character_length(std::string_view text) {
   return longer_than_needed || surrogate || beyond_unicode ? 0 : length;
 }
 
-/// Columns of the character that begins with this byte of UTF-8: Chinese and Japanese characters, pictures
-/// and what else begins at U+3000 take two. 0 within a character.
+/// Columns of the character that begins with this byte of UTF-8: two for Chinese and Japanese characters,
+/// pictures and others from U+3000 on. 0 within a character.
 std::size_t width_of_character(char byte) {
   const auto code = static_cast<unsigned char>(byte);
   if ((code & 0xC0U) == 0x80U) return 0;
@@ -149,7 +148,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
   std::size_t nearest_distance = 0;
   for (const std::string_view candidate : candidates) {
     const std::size_t allowed = std::max<std::size_t>(1, candidate.size() / 3);
-    // Also keeps a name of megabytes from costing a table of megabytes.
+    // Also keeps a name of megabytes from allocating a table of megabytes.
     if (name.size() > candidate.size() + allowed) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance > allowed || (!nearest.empty() && distance >= nearest_distance)) continue;
@@ -236,7 +235,7 @@ std::string shell_word(const std::string& text) {
   std::string word = "'";
   for (const char c : text) {
     if (c == '\'')
-      word += "'\\'";  // closes the quotes, a quoted quote, and the next character opens them again
+      word += "'\\'";  // closes the quotes, adds a quoted quote; the next character opens them again
     word += c;
   }
   word += '\'';

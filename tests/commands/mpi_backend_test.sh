@@ -73,7 +73,7 @@ rm told
 grep -q 'unsupported: 50 columns cannot be cut for 5000 ranks: .* at most --ranks ' many/timings.csv || fail "5000 ranks: $(cat many/timings.csv)"
 "$mssim" bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --rounds 1 --launcher ./hosts --out hostless >/dev/null 2>&1 &&
   fail "a launcher that may not be executed starts ranks"
-grep -q 'unavailable: ./hosts is no file that may be executed' hostless/timings.csv || fail "./hosts: $(cat hostless/timings.csv)"
+grep -q 'unavailable: ./hosts is not an executable file' hostless/timings.csv || fail "./hosts: $(cat hostless/timings.csv)"
 
 # A guide has it, and its larger cloths.
 sed 's/"rows": 50/"rows": 20/; s/"columns": 50/"columns": 20/' "$2/scenes/cloth2500.json" >small.json
@@ -162,7 +162,7 @@ for process in "$killed" "$stopped" "$silent" "$orphaned"; do
 done
 echo "failures took $((SECONDS - seconds)) s"
 fails_with 'rank 1 .*exited on signal 9' killed
-fails_with "has heard nothing for 20 seconds from rank 1 on $(uname -n)" stopped
+fails_with "has received nothing for 20 seconds from rank 1 on $(uname -n)" stopped
 fails_with 'mpirun was ended by signal 9' orphaned
 fails_with 'mpirun --host node9 has not started 2 ranks within 25 s' silent
 

@@ -44,5 +44,5 @@ broken() {
     fail "a rank stays behind"
 }
 broken kill 'rank 1 .* on node .* exited on signal 9'
-broken cut 'has heard nothing for 20 seconds from rank 1 on othernode'
+broken cut 'has received nothing for 20 seconds from rank 1 on othernode'
 exit $((failures > 0))

@@ -54,7 +54,7 @@ drivers pocl
 : >vendors/empty.icd
 devices 1 'the OpenCL driver .*/empty.icd names no library$'
 echo "$fakes/changing_layer.so" >vendors/empty.icd
-devices 1 'the OpenCL driver .*/changing_layer.so is no driver that OpenCL.s loader can use (.*/empty.icd registers it)$'
+devices 1 'the OpenCL driver .*/changing_layer.so is not a driver that OpenCL.s loader can use (.*/empty.icd registers it)$'
 drivers deviceless_driver
 devices 0 'the OpenCL driver "A fake driver" offers no device$'
 expect 3 'the OpenCL driver "A fake driver" offers no device$' run --scene cloth2500 --backend opencl
@@ -63,7 +63,7 @@ devices 1 'the OpenCL driver "A fake driver" offers no device$'
 
 # One that ends whoever asks it.
 drivers aborting_driver
-end='the OpenCL driver .*/aborting_driver.so ended with signal 6 when asked for devices: Not enough memory to run on this device\.'
+end='the OpenCL driver .*/aborting_driver.so ended with signal 6 when queried for devices: Not enough memory to run on this device\.'
 devices 0 "$end\$"
 expect 3 "$end\$" run --scene cloth2500 --backend opencl --duration 0.01
 ends 0 list backends --format csv
@@ -72,7 +72,7 @@ ends 0 bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1 --
 [ "$(column_of results/timings.csv verified | grep -c true)" -eq 3 ] || fail "not three rows: $(cat results/timings.csv)"
 [ "$(grep -c "unavailable: $end" results/timings.csv)" -eq 2 ] || fail "not two rows without a device: $(cat results/timings.csv)"
 drivers aborting_device_driver
-devices 0 'the OpenCL driver .*/aborting_device_driver.so ended with signal 6 when asked for devices$'
+devices 0 'the OpenCL driver .*/aborting_device_driver.so ended with signal 6 when queried for devices$'
 drivers aborting_driver pocl
 devices 1 "$end\$"
 OCL_ICD_VENDORS=$work/vendors/aborting_driver.icd devices 0 "$end\$"
@@ -131,7 +131,7 @@ HOME=$work/home devices 1 ''
 [ -d home/.cache/mssim/pocl ] || fail "no cache below HOME"
 HOME=/dev/null XDG_CACHE_HOME=$work/xdg devices 1 ''
 [ -d xdg/mssim/pocl ] || fail "no cache below XDG_CACHE_HOME"
-costs="PoCL's cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), so that every run compiles its kernels anew; set POCL_CACHE_DIR to a folder that can be\$"
+costs="PoCL's cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), so every run compiles its kernels again; set POCL_CACHE_DIR to a folder that can be\$"
 HOME=/dev/null devices 1 "$costs"
 HOME=/dev/null TMPDIR=/dev/null devices 0 'the OpenCL driver "Portable Computing Language" offers no device: its cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), and mssim cannot make a temporary folder in /dev/null (Not a directory); set TMPDIR'
 env -u HOME "$mssim" list devices --format csv >out 2>err || fail "list devices without HOME exits with $?"

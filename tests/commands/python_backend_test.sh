@@ -35,7 +35,7 @@ fails_with '"": line 4: ZeroDivisionError: division by zero' 'def prepare(system
 fails_with '"": line 4: ValueError: no good' 'def prepare(system, method):
     def step(x, v, count): raise ValueError("no\n good")
     return step'
-fails_with 'returned something else than the new x and v' 'def prepare(system, method): return lambda x, v, count: x'
+fails_with 'did not return the new x and v' 'def prepare(system, method): return lambda x, v, count: x'
 fails_with 'the state is an array \[2\] instead of \[2500, 3\]' 'def prepare(system, method): return lambda x, v, count: ([1, 2], [3, 4])'
 fails_with 'prepare returned neither a function' 'def prepare(system, method): return 3'
 fails_with 'unsupported.*not semi-euler' 'def prepare(system, method): raise mssim_backend.Unsupported("not " + method.name)'

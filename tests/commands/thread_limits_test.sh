@@ -13,7 +13,7 @@ row() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; nex
 expect_shortage() {
   [ "$status" -eq 3 ] || fail "$1 without threads exits with $status instead of 3: $(cat err)"
   [ "$(row "$1" serial)" = ok ] || fail "serial has not gone on beside $1: $(cat err)"
-  row "$1" "$1" | grep -Eq '^"?unavailable: 4 threads .* makes [1-3] .*--threads' || fail "$1 says: $(row "$1" "$1")"
+  row "$1" "$1" | grep -Eq '^"?unavailable: 4 threads .* allows [1-3] .*--threads' || fail "$1 says: $(row "$1" "$1")"
 }
 
 # No thread can have such a stack: of OpenMP's, and of all others.

@@ -59,7 +59,7 @@ TEST(Surface, ATriangleTurnedRoundIsRefused) {
 TEST(Surface, ASurfaceThatPointsInwardsIsRefused) {
   Surface surface = unit_cube();
   for (auto& triangle : surface.triangles) std::swap(triangle[0], triangle[1]);
-  EXPECT_THAT(surface_complaint(surface), HasSubstr("encloses a volume of -1 m^3; turn its triangles round"));
+  EXPECT_THAT(surface_complaint(surface), HasSubstr("encloses a volume of -1 m^3; reverse its triangles"));
 }
 
 TEST(Surface, BadPointsAndTrianglesAreNamed) {

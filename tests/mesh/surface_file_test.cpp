@@ -268,13 +268,13 @@ TEST(StlFile, BrokenBinaryNamesTheByte) {
   EXPECT_THAT(complaint(binary_stl(NAN)), StartsWith("a.stl, byte 96: a corner is at (nan, 0, 0)"));
   EXPECT_THAT(complaint(binary_stl(-2e9F)), HasSubstr("for each axis give a number from -1e9 to 1e9"));
   EXPECT_THAT(complaint(binary_stl().substr(0, 280)),
-              StartsWith("a.stl, byte 80: the file promises 4 triangles in 284 bytes, and has 280"));
+              StartsWith("a.stl, byte 80: the file announces 4 triangles in 284 bytes, and has 280"));
   EXPECT_EQ(parse_stl("a.stl", binary_stl() + "\r\n").triangles.size(), 4U);
   EXPECT_THAT(complaint(binary_stl() + std::string(50, '\0')),
-              StartsWith("a.stl, byte 80: the file promises 4 triangles in 284 bytes, and 50 bytes follow"));
+              StartsWith("a.stl, byte 80: the file announces 4 triangles in 284 bytes, and 50 bytes follow"));
   std::string absurd = binary_stl();
   absurd.replace(80, 4, "\xff\xff\xff\xff");
-  EXPECT_THAT(complaint(absurd), HasSubstr("promises 4294967295 triangles"));
+  EXPECT_THAT(complaint(absurd), HasSubstr("announces 4294967295 triangles"));
   EXPECT_THAT(complaint(binary_stl().substr(0, 80) + std::string(4, '\0')), HasSubstr("has no triangles"));
   EXPECT_THAT(complaint(std::string(10, '\0')), HasSubstr("has 10 bytes"));
   EXPECT_THAT(complaint(""), HasSubstr("is empty"));

@@ -280,7 +280,7 @@ TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
   };
   EXPECT_THAT(
       complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),
-      testing::StartsWith("its mesh would have 6000007 points or more, with which TetGen takes longer than"));
+      testing::StartsWith("its mesh would have 6000007 points or more, for which TetGen needs more than"));
   EXPECT_THAT(complaint(SphereShape{1, 1000}, {}), testing::HasSubstr("10000002 points or more"));
   EXPECT_THAT(complaint(TorusShape{2, 1, 2000, 2001}, {}), testing::HasSubstr("4002000 points or more"));
 }

@@ -107,7 +107,7 @@ TEST_F(TetgenTest, ACrashAFailureAndNoMeshAreErrors) {
   EXPECT_THAT(complaint_about(unit_cube()), HasSubstr("ended with signal 11"));
   install_tetgen("kill -KILL $$\n");
   EXPECT_THAT(complaint_about(unit_cube()),
-              HasSubstr("stopped by signal 9, as the system does where memory runs out; give "));
+              HasSubstr("stopped by signal 9, as the system does when memory runs out; give "));
   install_tetgen("echo out of luck >&2; exit 1\n");
   EXPECT_THAT(complaint_about(unit_cube()),
               HasSubstr("ended with exit code 1 after writing \"out of luck\""));

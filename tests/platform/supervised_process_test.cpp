@@ -161,7 +161,7 @@ TEST_F(SupervisedProcesses, SayInOneSentenceThatTheyCannotBeStarted) {
                                   " cannot be entered (No such file or directory)");
   program = shell("");
   program.cpus = {CPU_SETSIZE};
-  EXPECT_EQ(failure(program), "cannot run /bin/sh: it cannot be bound to its processors (Invalid argument)");
+  EXPECT_EQ(failure(program), "cannot run /bin/sh: it cannot be bound to its CPUs (Invalid argument)");
   EXPECT_TRUE(processes().empty());
 }
 
@@ -208,7 +208,7 @@ TEST_F(SupervisedProcesses, EndWithTheirSupervisor) {
     put("started", "");
     if (asked) process.pause();
     EXPECT_EQ(describe(process.end(60s)),
-              "was ended because mssim's program supervise, which watches over it, was ended");
+              "was ended because mssim's program supervise, which monitors it, was ended");
     EXPECT_TRUE(soon([&] { return processes().empty(); }));
     std::filesystem::remove(folder() / "started");
   }

@@ -19,12 +19,12 @@
 namespace mssim {
 namespace {
 
-/// The plain spring list stepped by several threads. The methods on it to avoid the data race of Hong et
-/// al.'s Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that
-/// they differ in the accumulation alone. A Method is made of (const System&, SpringList<float>&,
-/// std::size_t threads), and in every stage each thread calls, with its Team:
-/// - prepare(team), while others may still be in the last stage's `finish` and update: it writes only what no
-///   other thread touches there, and reads no node;
+/// The plain spring list stepped by several threads. All methods on it against the data race of Hong et al.'s
+/// Figure 1 share this step and SpringList's layout, force and update, so they differ only in the
+/// accumulation. A Method is constructed from (const System&, SpringList<float>&, std::size_t threads), and
+/// in every stage each thread calls, with its Team:
+/// - prepare(team), while others may still be in the previous stage's `finish` and update: it writes only
+///   data that no other thread accesses there, and reads no node;
 /// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
 /// - finish(team), after all have added: completes the forces of this thread's slice of the nodes.
 template <class Method>
@@ -60,7 +60,7 @@ class ListMethod final : public Backend {
       list_.template update_nodes<method, stage>(team.begin(list_.nodes()), team.end(list_.nodes()));
     });
     team.meet();
-    if (team.thread == 0) list_.end_step();  // seen by all after the next stage's first barrier
+    if (team.thread == 0) list_.end_step();  // visible to all after the next stage's first barrier
   }
 
   SpringList<float> list_;
@@ -69,16 +69,16 @@ class ListMethod final : public Backend {
   Method accumulation_;
 };
 
-/// What the table of methods holds for an accumulation.
+/// Data of an accumulation for the table of methods.
 template <class Method>
 std::unique_ptr<Backend> make_list_method(const System& system, const Integrator& integrator, double dt_s,
                                           const ExecutionOptions& options) {
   return std::make_unique<ListMethod<Method>>(system, integrator, dt_s, options.threads);
 }
 
-/// A lock of one byte that spins: what it guards, three additions, is over before a thread could be put to
-/// sleep, and a std::mutex would take 40 bytes where a node has 24. Two threads rarely meet at a node, but
-/// one may hold a lock while another process has its core, hence the yield.
+/// A spinlock of one byte: the guarded work, three additions, is done before a thread could be put to sleep,
+/// and a std::mutex would take 40 bytes per node of 24. Two threads rarely meet at a node, but the holder may
+/// be interrupted while another process has its core, hence the yield.
 class ByteLock {
  public:
   void lock() {
@@ -91,7 +91,7 @@ class ByteLock {
   std::atomic_flag taken_;
 };
 
-/// An accumulation that needs neither prepare nor finish.
+/// An accumulation without prepare and finish.
 class Accumulation {
  public:
   explicit Accumulation(SpringList<float>& list) : list_(list) {}
@@ -102,7 +102,7 @@ class Accumulation {
   SpringList<float>& list_;
 };
 
-/// One that adds to the forces of the list.
+/// An accumulation that adds to the forces of the list.
 class AddingAccumulation : public Accumulation {
  public:
   using Accumulation::Accumulation;
@@ -130,7 +130,7 @@ class LockPerNode : public AddingAccumulation {
   std::vector<ByteLock> locks_;  // [nodes]
 };
 
-/// Processors add integers atomically, not floats: this is a loop of compare and exchange.
+/// CPUs add integers atomically, but not floats: this is a compare-exchange loop.
 void add_atomically(Vec3<float>& sum, const Vec3<float>& force) {
   std::atomic_ref(sum.x).fetch_add(force.x, std::memory_order_relaxed);
   std::atomic_ref(sum.y).fetch_add(force.y, std::memory_order_relaxed);
@@ -170,7 +170,7 @@ class ThreadPrivate : public Accumulation {
       Vec3<float> sum;
       for (std::size_t thread = 0; thread < team.threads; ++thread) {
         sum += forces_[thread][node];
-        forces_[thread][node] = {};  // for the next stage: its owner may not, while others still sum
+        forces_[thread][node] = {};  // cleared for the next stage: its owner may not, while others still sum
       }
       list_.force(node) = sum;
     }
@@ -224,8 +224,8 @@ class Gather : public Accumulation {
   }
 
  private:
-  std::vector<std::size_t> begin_;  // [nodes + 1] where a node's springs begin
-  std::vector<Spring> springs_;     // node by node, each spring twice, the node itself the first end
+  std::vector<std::size_t> begin_;  // [nodes + 1] begin of a node's springs
+  std::vector<Spring> springs_;     // node by node, each spring twice, with the node as first end
 };
 
 constexpr MemoryUse with_private_arrays{.node = 17, .pair_node = 24, .thread_node = 12};
@@ -233,7 +233,7 @@ constexpr MemoryUse with_coloured_copy{.node = 25, .pair_node = 24, .spring = 20
 constexpr MemoryUse with_both_ends{.node = 33, .pair_node = 24, .spring = 32};
 constexpr MemoryUse in_padded_rows{.pair_node = 24, .storage = Storage::separate};
 
-/// A method that steps the plain list.
+/// A method that uses the plain list.
 constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, auto make,
                                      const MemoryUse& memory, std::string_view extra_memory,
                                      std::string_view springs_computed, Repeatable repeatable,

@@ -1,5 +1,4 @@
-// The walk over a cloth in padded rows: a gather over nodes.
-// Compiled for the integrators of MSSIM_STAGES.
+// The walk over a cloth in padded rows: every node gathers. Compiled for the integrators of MSSIM_STAGES.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -17,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// The same of one that takes explicit steps.
+/// WalkedRows with the surroundings and coefficients of explicit steps.
 struct ClothConstants : WalkedRows {
   Coefficients<float> coefficients;
   Surroundings surroundings;
@@ -30,7 +29,7 @@ struct ClothConstants : WalkedRows {
         columns(static_cast<std::uint32_t>(cloth.layout.columns)) {}
 };
 
-/// Acceleration that the springs of a vector of nodes give them. `here`: their x in the gathered pair.
+/// Acceleration of a vector of nodes by their springs. `here`: their x in the gathered pair.
 template <class Place>
 HWY_INLINE Lanes3 spring_acceleration(const ClothConstants& constants, const Place& place, const float* here,
                                       const NodeLanes& node) {
@@ -53,16 +52,16 @@ HWY_INLINE Lanes3 spring_acceleration(const ClothConstants& constants, const Pla
   return sum;
 }
 
-/// The acceleration at edges, in a function of its own: a copy in every stage takes long to compile.
+/// The acceleration at edges, not inlined: a copy in every stage would take long to compile.
 HWY_NOINLINE inline Lanes3 edge_acceleration(const ClothConstants& constants, const EdgeVector& place,
                                              const float* here, const NodeLanes& node) {
   return spring_acceleration(constants, place, here, node);
 }
 
-/// Where each pair's arrays begin, by role.
+/// Start of each pair's arrays, by role.
 using Arrays = std::array<float*, pair_kinds>;
 
-/// One stage at a vector of nodes whose x lies `offset` floats behind each array's start.
+/// One stage at a vector of nodes whose x is `offset` floats after each array's start.
 template <std::size_t method, std::size_t stage, class Place>
 HWY_INLINE void step_vector(const ClothConstants& constants, const Place& place, const Arrays& arrays,
                             std::size_t offset) {
@@ -87,7 +86,7 @@ HWY_INLINE void step_vector(const ClothConstants& constants, const Place& place,
           MSSIM_INLINE_LAMBDA { store3(address(index(decltype(slot)::value)), value, pitch); });
 }
 
-/// The vectors of columns [begin, end) of a row, some of whose springs or lanes are not there.
+/// The vectors of columns [begin, end) of a row in which some springs or lanes are missing.
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void step_edge(const ClothConstants& constants, const Arrays& arrays, const PairRows& layout,
                             std::size_t row, std::size_t begin, std::size_t end) {
@@ -99,15 +98,15 @@ HWY_NOINLINE void step_edge(const ClothConstants& constants, const Arrays& array
         arrays, layout.offset(row, column));
 }
 
-/// Asks for the row that the next row's nodes are the first to gather from. Measured on two Zen 4 cores at
-/// 500 x 700, whose state lies in the last-level cache: 1.1 to 1.2 times as fast.
+/// Prefetches the row that the next row's nodes are the first to gather. On two Zen 4 cores at 500 x 700,
+/// whose state is in the last-level cache: 1.1 to 1.2 times as fast.
 HWY_INLINE void prefetch_row_below(const float* here, std::ptrdiff_t pitch) {
   constexpr std::ptrdiff_t components = PairRows::components, rows = PairRows::ring + 1;
   for (std::ptrdiff_t component = 0; component < components; ++component)
-    hwy::Prefetch(here + (rows * components + component) * pitch);  // no address is wrong
+    hwy::Prefetch(here + (rows * components + component) * pitch);  // every address is valid
 }
 
-/// The vectors that begin `begin` to `end` floats behind each array's start, all of whose springs are there.
+/// The vectors from `begin` to `end` floats after each array's start, with all their springs.
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void step_inside(const ClothConstants& all, const Arrays& starts, std::size_t begin,
                               std::size_t end) {
@@ -120,7 +119,7 @@ HWY_NOINLINE void step_inside(const ClothConstants& all, const Arrays& starts, s
   }
 }
 
-/// Puts the pins of a freshly written row of an array back.
+/// Resets the pins of a newly written row of an array.
 HWY_INLINE void put_back_pins(const PaddedRows& cloth, std::size_t row, float* array) {
   const std::size_t pitch = cloth.layout.pitch;
   for (std::size_t i = cloth.first_pin[row]; i < cloth.first_pin[row + 1]; ++i) {
@@ -146,7 +145,7 @@ HWY_INLINE void step_row(const PaddedRows& cloth, const ClothConstants& constant
       put_back_pins(cloth, row, arrays[pair]);
 }
 
-/// What one thread does in `count` steps.
+/// The work of one thread in `count` steps.
 template <std::size_t method>
 HWY_INLINE void take_steps(const PaddedRows& cloth, const Team& team, int count) {
   const ClothConstants constants(cloth);
@@ -155,7 +154,7 @@ HWY_INLINE void take_steps(const PaddedRows& cloth, const Team& team, int count)
   for (int step = 0; step < count; ++step) {
     for_each_stage<method>([&](auto stage) HWY_ATTR {
       for (std::size_t row = begin; row < end; ++row) step_row<method, stage>(cloth, constants, arrays, row);
-      team.meet();  // a stage reads what another has written, and none writes what it reads
+      team.meet();  // a stage reads what other threads have written, and writes nothing that it reads
     });
     std::swap(arrays[index(Pair::state)], arrays[index(Pair::next)]);
   }
@@ -164,8 +163,8 @@ HWY_INLINE void take_steps(const PaddedRows& cloth, const Team& team, int count)
 /// Takes `count` steps of an integrator of these Stages.
 template <std::size_t stages>
 void step_rows(PaddedRows& cloth, int count) {
-  // A node sums its springs in the stencil's order, whichever lane and thread it has: the result is the same
-  // to the last bit for any number of threads.
+  // A node sums its springs in the stencil's order, in any lane and thread: the result is bitwise identical
+  // for any number of threads.
   with_integrator(*cloth.integrator, [&](auto method) HWY_ATTR {
     if constexpr (Stages<stages>::have(integrators[method]))
       with_team(cloth.threads, [&](const Team& team) HWY_ATTR { take_steps<method>(cloth, team, count); });

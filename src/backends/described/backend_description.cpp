@@ -29,15 +29,15 @@ constexpr std::string_view windows = "windows";
 constexpr std::array<std::string_view, 2> state_words{"whole", windows};
 constexpr std::string_view remedy = "give the description of a backend, NAME.json";
 
-/// What a description says, field by field.
+/// The fields of a description.
 struct Description {
   std::vector<std::string> command, scenes, integrators;
   std::string text;
   std::vector<std::pair<std::string, std::string>> environment;
   std::optional<double> time_limit_s;
   std::string install;
-  std::uint32_t processes = 0;  ///< of process_words
-  std::uint32_t states = 0;     ///< of state_words
+  std::uint32_t processes = 0;  ///< index into process_words
+  std::uint32_t states = 0;     ///< index into state_words
 };
 
 void visit(FieldVisitor& fields, Description& description) {
@@ -45,22 +45,21 @@ void visit(FieldVisitor& fields, Description& description) {
       {"command", "The program, in PATH or with a slash relative to this file's folder, and its arguments."},
       Presence::required, 1, most_words, description.command);
   fields.text({"description", "One line for mssim list backends."}, Presence::optional, description.text);
-  fields.texts({"scenes", "What it steps: cloth, bodies (default: both)."}, Presence::optional, 1, 2,
-               description.scenes);
-  fields.texts({"integrators", "Those that it has (default: all explicit ones)."}, Presence::optional, 1,
+  fields.texts({"scenes", "Kinds of scenes that it steps: cloth, bodies (default: both)."},
+               Presence::optional, 1, 2, description.scenes);
+  fields.texts({"integrators", "Supported integrators (default: all explicit ones)."}, Presence::optional, 1,
                all_integrators.size(), description.integrators);
-  fields.named_texts({"environment", "Variables that it is given beside mssim's."}, most_words,
+  fields.named_texts({"environment", "Environment variables in addition to mssim's."}, most_words,
                      description.environment);
-  fields.optional_number({"time_limit_s", "Longest time of an answer, s (default: 120)."},
+  fields.optional_number({"time_limit_s", "Time limit of an answer, s (default: 120)."},
                          description.time_limit_s, above(0, longest_time_limit_s));
-  fields.text({"install", "What to do where the program is missing."}, Presence::optional,
-              description.install);
+  fields.text({"install", "What to do if the program is missing."}, Presence::optional, description.install);
   fields.choice({"processes",
-                 "ranks: it runs in MSSIM_RANKS processes, and builds cloths from the file MSSIM_SCENE_FILE "
+                 "ranks: it runs in MSSIM_RANKS processes and builds cloths from the file MSSIM_SCENE_FILE "
                  "(default: one)."},
                 Presence::optional, process_words, description.processes);
   fields.choice({"states",
-                 "windows: of a cloth it can also restart by itself and give the states of some rows and "
+                 "windows: it can also restart a cloth by itself and return the states of some rows and "
                  "columns; with ranks only (default: whole)."},
                 Presence::optional, state_words, description.states);
 }
@@ -73,7 +72,7 @@ void require_known(const fs::path& file, const std::string& list, const std::vec
              fmt::format("is the text \"{}\": give {}", printable(words[i]), listed(known, "or")));
 }
 
-/// Sets the file that is run, or why there is none.
+/// Sets the file to run, or why it is missing.
 void find_file(BackendProgram& program, const fs::path& file) {
   const std::string& word = program.command.front();
   if (word.find('/') == std::string::npos) {
@@ -86,9 +85,9 @@ void find_file(BackendProgram& program, const fs::path& file) {
   std::error_code error;
   program.program = program.folder / word;
   if (!fs::is_regular_file(program.program, error))
-    program.missing = fmt::format("there is no file {} beside {}", printable(word), escaped(file.string()));
+    program.missing = fmt::format("there is no file {} next to {}", printable(word), escaped(file.string()));
   else if (::access(program.program.c_str(), X_OK) != 0)
-    program.missing = escaped(program.program.string()) + " may not be executed; chmod +x it";
+    program.missing = escaped(program.program.string()) + " is not executable; chmod +x it";
 }
 
 }  // namespace
@@ -126,7 +125,7 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   program.has_windows = state_words.at(description.states) == windows;
   if (program.has_windows && !program.in_ranks)
     refuse(file, "/states",
-           "is \"windows\", which goes with \"processes\": \"ranks\": add that, or leave it out");
+           "is \"windows\", which needs \"processes\": \"ranks\": add that, or leave it out");
   find_file(program, file);
   if (!program.missing.empty() && !description.install.empty())
     program.missing += "; " + printable(description.install);

@@ -85,8 +85,8 @@ constexpr std::array error_names{
 
 using Property = cl_device_partition_property;
 
-/// What asks the driver for a part of `count` compute units, in the way that leaves it least choice; none
-/// where it knows none.
+/// Properties that request a part of `count` compute units from the driver, in the most specific way; nothing
+/// if the driver supports none.
 std::optional<std::vector<Property>> request_for(const cl::Device& device, int count) {
   const std::vector<Property> properties = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
   const auto offers = [&](Property property) {
@@ -100,7 +100,7 @@ std::optional<std::vector<Property>> request_for(const cl::Device& device, int c
   return std::nullopt;
 }
 
-/// The part, or nothing where the driver has none.
+/// The part, or nothing if the driver cannot make it.
 std::optional<cl::Device> make_part(cl::Device device, int count) {
   try {
     const auto request = request_for(device, count);
@@ -108,7 +108,7 @@ std::optional<cl::Device> make_part(cl::Device device, int count) {
     if (request) device.createSubDevices(request->data(), &parts);
     if (!parts.empty()) return parts.front();
   } catch (const cl::Error&) {
-    // Drivers that know no parts, or not this one, say so by an error.
+    // Drivers without support for this kind of part report an error.
   }
   return std::nullopt;
 }
@@ -158,7 +158,7 @@ int lanes_for(const OpenclDevice& device) {
 OpenclDevice part_of(const OpenclDevice& device, int count) {
   if (device.type != OpenclDeviceType::cpu || device.compute_units <= static_cast<std::uint32_t>(count))
     return device;
-  // Never released: a driver may be gone before what would release them at the process's end.
+  // Never released: a driver may be unloaded before a destructor would release them.
   static std::map<std::pair<cl_device_id, int>, OpenclDevice> parts;
   const auto [known, is_new] = parts.try_emplace({device.id, count}, device);
   if (is_new)
@@ -172,7 +172,7 @@ OpenclDevice part_of(const OpenclDevice& device, int count) {
 
 int threads_of(const OpenclDevice& device) {
   if (device.type != OpenclDeviceType::cpu) return 1;
-  // Some drivers have more compute units than there are processors for their threads.
+  // Some drivers have more compute units than there are CPUs for their threads.
   static const std::size_t processors = process_cpus().size();
   const auto units = static_cast<int>(device.compute_units);
   return processors == 0 ? units : std::min(units, static_cast<int>(processors));

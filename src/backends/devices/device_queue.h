@@ -19,7 +19,7 @@
 
 namespace mssim {
 
-/// Does `work`; an OpenCL call in it that fails throws Failure with one sentence.
+/// Does `work`; if an OpenCL call in it fails, throws Failure with one sentence.
 template <class Failure, class Work>
 auto opencl_call(Work&& work) {
   try {
@@ -29,25 +29,25 @@ auto opencl_call(Work&& work) {
   }
 }
 
-/// Text of the files in kernels/, in this order, for `lanes` nodes or springs side by side in one number (1,
-/// 4, 8 or 16). What else a program has must depend on the integrator alone, so that a driver's cache of
-/// built programs serves every scene. Throws std::runtime_error when a file is missing.
+/// Text of the files in kernels/, in this order, for `lanes` nodes or springs in one Real (1, 4, 8 or 16).
+/// The rest of a program must depend only on the integrator, so that a driver's cache of built programs
+/// serves every scene. Throws std::runtime_error if a file is missing.
 std::string program_text(int lanes, std::initializer_list<const char*> files);
-/// The program text where nodes lie in slices of so many.
+/// The program text for nodes in slices of `slice_nodes`.
 std::string slices_program_text(std::size_t slice_nodes, int lanes, std::initializer_list<const char*> files);
 
-/// An array of T that a device's kernels and the host take turns with.
+/// An array of T that a device's kernels and the host use in turn.
 ///
-/// In shared memory, on a device that shares the host's, the array lies in aligned host memory and is never
-/// copied; where the device can, it is fine-grained shared virtual memory, and taking turns costs no command
-/// in the queue: a step of hybrid on bodies38233 takes 0.8 of the time. On a device with memory of its own it
-/// lies there, and the driver copies it whenever the host maps or unmaps it. In copied memory there are two
-/// arrays, one on the device and one on the host; mapping and unmapping are the explicit transfers between
-/// them.
+/// In shared memory, on a device that shares the host's memory, the array is in aligned host memory and is
+/// never copied; if the device supports it, it is fine-grained shared virtual memory, and changing hands
+/// needs no command in the queue: a step of hybrid on bodies38233 takes 0.8 of the time. On a device with its
+/// own memory the array is there, and the driver copies it when the host maps or unmaps it. In copied memory
+/// there are two arrays, one on the device and one on the host; mapping and unmapping are the explicit
+/// transfers between them.
 template <class T>
 class OpenclBuffer {
  public:
-  /// `queue`: in order, of the work that takes turns with the host.
+  /// `queue`: in-order, for the device work that alternates with the host.
   OpenclBuffer(const cl::Context& context, const cl::CommandQueue& queue, const OpenclDevice& device,
                DeviceMemory memory, std::size_t size)
       : queue_(queue),
@@ -55,7 +55,7 @@ class OpenclBuffer {
         exchange_(memory == DeviceMemory::copy                     ? Exchange::copies
                   : device.host_memory == HostMemory::fine_grained ? Exchange::nothing
                                                                    : Exchange::maps) {
-    // Whole pages, because drivers copy what begins or ends within a cache line.
+    // Whole pages, because drivers copy arrays that begin or end within a cache line.
     constexpr std::size_t page = 4096, huge_page = std::size_t{2} << 20;
     const std::size_t alignment = size * sizeof(T) >= huge_page ? huge_page : page;
     const std::size_t bytes = (size * sizeof(T) + alignment - 1) / alignment * alignment;
@@ -66,7 +66,8 @@ class OpenclBuffer {
       aligned(memory_.get());
       if (alignment == huge_page) wish_for_huge_pages(memory_.get(), bytes);
     }
-    // A buffer made of shared virtual memory is that memory (The OpenCL Specification, 3.0, clCreateBuffer).
+    // A buffer made from shared virtual memory is that memory (The OpenCL Specification, 3.0,
+    // clCreateBuffer).
     if (memory_ && exchange_ != Exchange::copies) {
       buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory_.get());
     } else {
@@ -77,10 +78,9 @@ class OpenclBuffer {
   const cl::Buffer& buffer() const { return buffer_; }
   std::size_t size() const { return size_; }
 
-  /// Hands the array to the host. Waits for the queue's work when `block`; else it is the host's once a later
-  /// blocking call on the same queue has returned. `use`: CL_MAP_READ and/or CL_MAP_WRITE. With
-  /// CL_MAP_READ the host sees what kernels wrote; without it, it may not read what they wrote, and finds
-  /// everything else as it left it.
+  /// Hands the array to the host. Waits for the queue's work if `block`; otherwise the host may use it after
+  /// a later blocking call on the same queue. `use`: CL_MAP_READ and/or CL_MAP_WRITE. With CL_MAP_READ the
+  /// host sees what kernels wrote; without it, it must not read that, and finds everything else unchanged.
   std::span<T> map(cl_map_flags use, bool block = true) const {
     const cl_bool blocking = block ? CL_TRUE : CL_FALSE;
     if (exchange_ == Exchange::maps)
@@ -88,17 +88,17 @@ class OpenclBuffer {
     if (exchange_ == Exchange::copies && (use & CL_MAP_READ) != 0) {
       queue_.enqueueReadBuffer(buffer_, blocking, 0, size_ * sizeof(T), memory_.get());
     } else if (block) {
-      queue_.finish();  // kernels, or an earlier transfer to the device, may still be reading
+      queue_.finish();  // kernels, or an earlier transfer to the device, may still read
     }
     return {memory_.get(), size_};
   }
-  /// Hands what `map` gave back, for the same `use`, to the device, for the work that is queued from now on.
+  /// Hands the array from `map` with the same `use` back to the device, for work queued from now on.
   void unmap(std::span<T> mapped, cl_map_flags use) const {
     if (exchange_ == Exchange::maps) queue_.enqueueUnmapMemObject(buffer_, mapped.data());
     if (exchange_ == Exchange::copies && (use & CL_MAP_WRITE) != 0)
       queue_.enqueueWriteBuffer(buffer_, CL_FALSE, 0, size_ * sizeof(T), memory_.get());
   }
-  /// Lets `fill` write the array, a std::span<T>, while the device has nothing to do with it.
+  /// Lets `fill` write the array, a std::span<T>, while the device does not use it.
   template <class Fill>
   void write(Fill&& fill) const {
     const std::span<T> array = map(CL_MAP_WRITE);
@@ -106,7 +106,7 @@ class OpenclBuffer {
     unmap(array, CL_MAP_WRITE);
     queue_.finish();
   }
-  /// What `look` returns of the array, a std::span<const T>, while the device has nothing to do with it.
+  /// Returns the result of `look` on the array, a std::span<const T>, while the device does not use it.
   template <class Look>
   auto read(Look&& look) const {
     const std::span<T> array = map(CL_MAP_READ);
@@ -117,7 +117,7 @@ class OpenclBuffer {
   }
 
  private:
-  /// What taking turns takes.
+  /// Command that changing hands needs.
   enum class Exchange : std::uint8_t { copies, maps, nothing };
   using Memory = std::unique_ptr<T, std::function<void(T*)>>;
 
@@ -129,8 +129,8 @@ class OpenclBuffer {
     return {static_cast<T*>(clSVMAlloc(context(), flags, bytes, 0)),
             [context](T* memory) { clSVMFree(context(), memory); }};
   }
-  /// What the driver gave, if vectors can be loaded from it. OpenCL promises more, but not every driver keeps
-  /// it.
+  /// The driver's memory, if vectors can be loaded from it: not every driver gives the alignment that OpenCL
+  /// requires.
   static T* aligned(void* memory) {
     constexpr std::uintptr_t vector_bytes = 64;
     if (reinterpret_cast<std::uintptr_t>(memory) % vector_bytes != 0)
@@ -138,7 +138,7 @@ class OpenclBuffer {
           "the OpenCL driver gives the host memory that is not aligned to 64 bytes; use --memory copy");
     return static_cast<T*>(memory);
   }
-  /// Without them the array is only slower. For the whole pages of it.
+  /// Requests huge pages for the array's whole pages; without them it is only slower.
   static void wish_for_huge_pages(T* memory, std::size_t bytes) {
     constexpr std::uintptr_t page = 4096;
     const auto address = reinterpret_cast<std::uintptr_t>(memory);
@@ -158,12 +158,12 @@ struct WorkItems {
   cl::NDRange global, local;
 };
 
-/// How the work-items of a launch share work that comes in chunks of `lanes` nodes or springs each. On a CPU,
-/// where a work-item has several lanes, few work-items take many chunks in turn, and yet enough that one that
-/// was held up leaves some of its share to the others. Where it has one lane, each takes one.
+/// How the work-items of a launch share work in chunks of `lanes` nodes or springs. On a CPU, where a
+/// work-item has several lanes, few work-items take many chunks in turn, but enough that others take over
+/// part of a delayed one's share. With one lane, each work-item takes one chunk.
 struct OpenclChunks {
   WorkItems items;
-  std::size_t per_item = 0;  ///< chunks of a work-item
+  std::size_t per_item = 0;  ///< chunks per work-item
 
   OpenclChunks(std::size_t chunks, const OpenclDevice& device, int lanes) {
     constexpr std::size_t good_items_per_unit = 16, good_group = 64;
@@ -175,14 +175,14 @@ struct OpenclChunks {
   }
 };
 
-/// A kernel whose arguments are set.
+/// A kernel with its arguments set.
 struct Launch {
   cl::Kernel kernel;
   WorkItems items;
 };
 
-/// A device as one backend uses it: arrays that host and device take turns with, programs, and a queue of
-/// launches, one behind the other. All of it lets cl::Error through.
+/// A device as used by one backend: arrays that host and device use in turn, programs, and a queue of
+/// launches in order. All functions may throw cl::Error.
 class DeviceQueue {
  public:
   DeviceQueue(const OpenclDevice& device, DeviceMemory memory)
@@ -191,7 +191,7 @@ class DeviceQueue {
         context_(cl::Device(device.id, true)),
         commands_(context_, cl::Device(device.id, true)) {}
 
-  /// An array; of one element where `size` is 0, because OpenCL has no empty ones.
+  /// An array; of one element if `size` is 0, because OpenCL has no empty ones.
   template <class T>
   OpenclBuffer<T> array(std::size_t size) const {
     return {context_, commands_, device_, memory_, std::max<std::size_t>(1, size)};
@@ -209,16 +209,16 @@ class DeviceQueue {
     return buffer;
   }
 
-  /// The built program. Square roots and divisions are correctly rounded where the device can do that.
-  /// Throws Unavailable with the compiler's first complaint.
+  /// The built program. Square roots and divisions are correctly rounded if the device supports it. Throws
+  /// Unavailable with the compiler's first error.
   cl::Program build(const std::string& text) const;
 
   void launch(const Launch& launch) const {
     commands_.enqueueNDRangeKernel(launch.kernel, cl::NullRange, launch.items.global, launch.items.local);
   }
-  /// Waits for all that has been launched.
+  /// Waits for all launches.
   void finish() const { commands_.finish(); }
-  /// Takes steps, each of the launches that `launches_of(step)` gives, and waits for the last one.
+  /// Takes steps, each with the launches of `launches_of(step)`, and waits for the last one.
   template <class LaunchesOf>
   void take_steps(int count, const LaunchesOf& launches_of) const {
     std::size_t queued = 0;
@@ -230,7 +230,7 @@ class DeviceQueue {
     finish();
   }
 
-  /// What a backend says about where its steps run (Backend::device, threads, runs_on_host).
+  /// Answers of a backend about where its steps run (Backend::device, threads, runs_on_host).
   std::string label() const {
     return memory_ == DeviceMemory::copy ? device_.name + " (copied memory)" : device_.name;
   }
@@ -238,8 +238,8 @@ class DeviceQueue {
   bool runs_on_host() const { return device_.type == OpenclDeviceType::cpu; }
 
  private:
-  /// Launches between two waits for the queue to run empty: waiting is rare enough to cost nothing, and a
-  /// driver never has to hold more unfinished commands than this.
+  /// Launches between two waits for an empty queue: waits are rare enough to cost nothing, and a driver never
+  /// has more unfinished commands than this.
   static constexpr std::size_t longest_queue = 256;
 
   OpenclDevice device_;
@@ -248,7 +248,7 @@ class DeviceQueue {
   cl::CommandQueue commands_;
 };
 
-/// Takes some steps and then stands at `start`: drivers finish compiling at a kernel's first launch with a
+/// Takes some steps and then returns to `start`: drivers finish compiling at a kernel's first launch with a
 /// range.
 template <class Stepped>
 void warm_up(Stepped& backend, const State& start, int steps) {

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* usual_folder = "/etc/OpenCL/vendors";
 
-/// Empty where it is not set.
+/// Empty if it is unset.
 std::string value_of(const char* variable) {
   const char* value = std::getenv(variable);
   return value == nullptr ? "" : value;
@@ -44,7 +44,7 @@ std::vector<RegisteredDriver> registered_in(const fs::path& folder) {
 
 constexpr const char* cache_variable = "POCL_CACHE_DIR";
 
-/// Empty where the folder is there, or can be made, and files can be made in it; else what the system says.
+/// Empty if the folder exists or can be made, and files can be made in it; else the system's reason.
 std::string obstacle_to_writing(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -57,7 +57,7 @@ std::string obstacle_to_writing(const fs::path& folder) {
   return "";
 }
 
-/// Where PoCL keeps its cache unless it is told otherwise (lib/CL/pocl_cache.c).
+/// PoCL's default cache (lib/CL/pocl_cache.c).
 fs::path default_cache() {
   if (const std::string caches = value_of("XDG_CACHE_HOME"); !caches.empty())
     return fs::path(caches) / "pocl" / "kcache";
@@ -66,7 +66,7 @@ fs::path default_cache() {
   return "/tmp/pocl/kcache";
 }
 
-/// A folder of mssim's own in the user's caches, or nothing where the user has none for caches.
+/// mssim's own folder in the user's cache folder, or nothing if the user has none.
 fs::path own_cache() {
   if (const fs::path caches = value_of("XDG_CACHE_HOME"); caches.is_absolute())
     return caches / "mssim" / "pocl";
@@ -107,7 +107,7 @@ PoclCache provide_pocl_cache() {
   const fs::path usual = default_cache();
   const std::string obstacle = obstacle_to_writing(usual);
   if (obstacle.empty()) {
-    // Set and empty, it ends PoCL and whoever loads it.
+    // An empty value crashes PoCL's process.
     if (std::getenv(cache_variable) != nullptr) setenv(cache_variable, usual.c_str(), 1);
     return cache;
   }
@@ -119,7 +119,7 @@ PoclCache provide_pocl_cache() {
   try {
     setenv(cache_variable, temporary_folder_of_process().c_str(), 1);
     cache.note =
-        cannot + ", so that every run compiles its kernels anew; set POCL_CACHE_DIR to a folder that can be";
+        cannot + ", so every run compiles its kernels again; set POCL_CACHE_DIR to a folder that can be";
   } catch (const std::runtime_error& error) {
     cache.failure = fmt::format("its cache {} cannot be written ({}), and mssim {}", usual.string(), obstacle,
                                 error.what());

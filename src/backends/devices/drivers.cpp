@@ -33,9 +33,9 @@ constexpr const char* pocl_platform = "Portable Computing Language";
 bool relied_on = false;
 std::function<void(const std::string&)> listener;
 
-/// What the process that asked has found out.
+/// Findings of the query process.
 struct Answer {
-  std::string end;  ///< how asking ended it, for the end of a sentence; empty where it did not
+  std::string end;  ///< how the query crashed, for the end of a sentence; empty if it did not
   std::vector<std::string> troubles;  ///< a sentence for each driver that offers no platform
 };
 
@@ -44,12 +44,12 @@ std::string name_of(const RegisteredDriver& driver) {
          (driver.shared_library.empty() ? driver.file.string() : driver.shared_library);
 }
 
-/// What registers it, for the end of a sentence that has its name_of().
+/// The file that registers a driver, for the end of a sentence with its name_of().
 std::string registration_of(const RegisteredDriver& driver) {
   return driver.shared_library.empty() ? "" : fmt::format(" ({} registers it)", driver.file.string());
 }
 
-/// Asks the drivers in another process.
+/// Queries the drivers in another process.
 Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
                     const std::vector<std::string>& environment) {
   constexpr unsigned cpu_s = 60, elapsed_s = 120;
@@ -57,11 +57,10 @@ Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
   for (const RegisteredDriver& driver : drivers) libraries.push_back(driver.shared_library);
   const ChildResult asked =
       run({helper_program("ask-opencl"), libraries, environment, ".", cpu_s, elapsed_s});
-  Answer answer{failed_end(asked, "asked for devices"), {}};
+  Answer answer{failed_end(asked, "queried for devices"), {}};
   if (asked.out_of_time)
-    answer.end =
-        fmt::format("did not answer within {} s of processor time or {} s in all when asked for devices",
-                    cpu_s, elapsed_s);
+    answer.end = fmt::format("did not answer within {} s of CPU time or {} s in all when queried for devices",
+                             cpu_s, elapsed_s);
   std::istringstream lines(asked.output);
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with(obstacle_mark)) continue;
@@ -74,7 +73,8 @@ Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
   return answer;
 }
 
-/// Asks each driver alone; registers those that survive it in `folder`, and says of the others how it ended.
+/// Queries each driver separately; registers the surviving ones in `folder`, and returns how the others
+/// ended.
 std::vector<std::string> keep_survivors(const std::vector<RegisteredDriver>& drivers,
                                         const std::filesystem::path& folder) {
   std::vector<std::string> troubles;
@@ -89,7 +89,7 @@ std::vector<std::string> keep_survivors(const std::vector<RegisteredDriver>& dri
   return troubles;
 }
 
-/// What `query` fills its argument with, or nothing where the driver answers that there is `none`.
+/// The items that `query` returns, or nothing if the driver's error is `none`.
 template <class Item, class Query>
 std::vector<Item> all_or_none(Query query, cl_int none) {
   std::vector<Item> items;
@@ -110,14 +110,14 @@ OpenclDeviceType type_of(cl_device_type type) {
 
 HostMemory host_memory_of(const cl::Device& device) {
   if (device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_TRUE) return HostMemory::none;
-  // Before OpenCL 2.0 the question is an error.
+  // Before OpenCL 2.0 the query is an error.
   cl_device_svm_capabilities can = 0;
   const cl_int error = clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof can, &can, nullptr);
   return error == CL_SUCCESS && (can & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0 ? HostMemory::fine_grained
                                                                              : HostMemory::mapped;
 }
 
-/// A text from a driver without its closing zero and the spaces that some pad names with.
+/// A driver's text without its terminating zero and the spaces that pad some names.
 std::string trimmed(std::string text) {
   const auto blank = [](char c) { return c == '\0' || std::isspace(static_cast<unsigned char>(c)) != 0; };
   while (!text.empty() && blank(text.back())) text.pop_back();
@@ -125,7 +125,7 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-/// What the device says of itself. Lets cl::Error through.
+/// The properties that the device reports. May throw cl::Error.
 OpenclDevice described(cl_device_id id, const std::string& platform, int number) {
   const cl::Device device(id, true);
   return {.number = number,
@@ -142,12 +142,12 @@ OpenclDevice described(cl_device_id id, const std::string& platform, int number)
           .id = id};
 }
 
-/// Takes what a platform offers.
+/// Adds the devices of a platform to the offer.
 void take_devices(const cl::Platform& platform, const std::string& pocl_failure, OpenclOffer& offer) {
   const std::string name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
   const auto driver = [&] { return fmt::format("the OpenCL driver \"{}\"", name); };
   try {
-    // A driver reports it as an error that it has no device.
+    // A driver reports an error if it has no device.
     const auto devices = all_or_none<cl::Device>(
         [&](auto& all) { platform.getDevices(CL_DEVICE_TYPE_ALL, &all); }, CL_DEVICE_NOT_FOUND);
     for (const cl::Device& device : devices)
@@ -160,18 +160,18 @@ void take_devices(const cl::Platform& platform, const std::string& pocl_failure,
   }
 }
 
-/// Loads drivers into this process that have survived being asked, with that answer; takes what they offer.
+/// Loads into this process the drivers that survived the query, with its answer, and adds their devices.
 void take_devices(Answer answer, const std::string& pocl_failure, OpenclOffer& offer) {
   const OnAllProcessCpus every;  // PoCL starts its threads here
-  // The loader reports it as an error that there is no driver.
+  // The loader reports an error if there is no driver.
   const auto platforms =
       all_or_none<cl::Platform>([](auto& all) { cl::Platform::get(&all); }, CL_PLATFORM_NOT_FOUND_KHR);
   for (const cl::Platform& platform : platforms) take_devices(platform, pocl_failure, offer);
   std::ranges::move(answer.troubles, std::back_inserter(offer.troubles));
 }
 
-/// Loads those drivers that survive it alone, where asking all has ended the process that asked. From then on
-/// they are those of this process, and of the processes that it starts.
+/// Called if a query of all drivers crashed: loads those that survive alone. From then on they are the
+/// registered drivers of this process and its child processes.
 void take_survivors(const std::vector<RegisteredDriver>& drivers, const std::string& pocl_failure,
                     OpenclOffer& offer) {
   const std::filesystem::path survivors = temporary_folder_of_process() / "opencl-drivers";
@@ -204,7 +204,7 @@ OpenclOffer ask() {
   return offer;
 }
 
-/// Arguments of the trial on this device: what tells trials apart.
+/// Arguments of the trial on this device; they identify the trial.
 std::vector<std::string> arguments_of(const DriverTrial& trial, const OpenclDevice& device) {
   return {std::string(driver_trial_word),
           trial.backend,
@@ -215,7 +215,7 @@ std::vector<std::string> arguments_of(const DriverTrial& trial, const OpenclDevi
           std::to_string(static_cast<int>(trial.execution.memory))};
 }
 
-/// Calls `tell` once if it lives for so long.
+/// Calls `tell` once if it lives longer than a limit.
 class Patience {
  public:
   Patience(std::chrono::seconds most, const std::function<void()>& tell)
@@ -231,7 +231,7 @@ class Patience {
   std::jthread watch_;
 };
 
-/// How the trial went where it went wrong, a sentence; else empty.
+/// The failure of the trial, a sentence; empty if it succeeded.
 std::string failure_of(const DriverTrial& trial, const OpenclDevice& device) {
   constexpr unsigned minute_s = 60, most_minutes = 30;  // llvmpipe compiles for minutes
   constexpr std::chrono::seconds told_after{10};
@@ -240,7 +240,7 @@ std::string failure_of(const DriverTrial& trial, const OpenclDevice& device) {
   const Patience patience(told_after, [&] {
     if (listener) listener(fmt::format("{}is compiling {}, which takes some drivers minutes", driver, what));
   });
-  // Processor time is of all threads.
+  // CPU time counts all threads.
   const ChildResult result = run({mssim_program(),
                                   arguments_of(trial, device),
                                   {},
@@ -264,7 +264,7 @@ const OpenclOffer& opencl_offer() {
     } catch (const cl::Error& error) {
       return OpenclOffer{{}, {opencl_failure(error.what(), error.err())}, {}};
     } catch (const std::runtime_error& error) {
-      return OpenclOffer{{}, {std::string("the OpenCL drivers cannot be asked: ") + error.what()}, {}};
+      return OpenclOffer{{}, {std::string("the OpenCL drivers cannot be queried: ") + error.what()}, {}};
     }
   }();
   return offer;

@@ -11,35 +11,34 @@
 
 namespace mssim {
 
-/// What the OpenCL drivers of this machine offer.
+/// The offer of this machine's OpenCL drivers.
 struct OpenclOffer {
-  std::vector<OpenclDevice> devices;  ///< of all platforms, in the order of the drivers
-  std::vector<std::string>
-      troubles;      ///< a sentence for each driver that offers none, or ends whoever asks it
-  std::string note;  ///< what a user of a device should know beside that, a sentence; or empty
+  std::vector<OpenclDevice> devices;  ///< of all platforms, in the drivers' order
+  std::vector<std::string> troubles;  ///< a sentence for each driver that offers none or crashes
+  std::string note;                   ///< a further note for users of a device, a sentence; or empty
 };
 
-/// Asks the drivers, once in a process: first in another process (src/ask_opencl.cpp), since some end the one
-/// that asks them. Those are left out. Throws Interrupted (platform/process.h).
+/// Queries the drivers, once per process: first in another process (src/ask_opencl.cpp), because some drivers
+/// crash. Those are excluded. Throws Interrupted (platform/process.h).
 const OpenclOffer& opencl_offer();
 
-/// From now on nothing is tried in another process first: this one is itself a process that drivers may end.
+/// Disables trials in another process: this process is itself one that drivers may crash.
 void rely_on_opencl_drivers();
 
-/// The device of this machine that `wanted` names (choose_opencl_device). Throws Unavailable where there is
+/// The device of this machine that `wanted` names (choose_opencl_device). Throws Unavailable if there is
 /// none.
 OpenclDevice find_opencl_device(std::string_view wanted);
-/// The one that options.device names, and where that is a processor the part_of() it with options.threads.
+/// The device that options.device names; if it is a CPU, part_of() it with options.threads.
 OpenclDevice device_for(const ExecutionOptions& options);
 
-// Some OpenCL drivers end the process in which they compile, or launch, what they cannot. So a process of its
-// own, mssim too, makes each kind of backend for a small system before this one makes it. Programs depend on
-// the kind alone, so that a driver that keeps what it has compiled, as PoCL does, need not compile it again.
+// Some OpenCL drivers crash when they compile or launch unsupported code. So another process, also mssim,
+// first makes each kind of backend for a small system. Programs depend only on the kind, so a driver with a
+// cache of compiled code, like PoCL, need not compile it twice.
 
-/// What a backend steps, as far as its programs differ by it.
+/// Kinds of systems for which a backend's programs differ.
 enum class SteppedKind : std::uint8_t { cloth, bodies, alike_bodies, garment };
 
-/// What such a process is to make.
+/// A backend to try in another process.
 struct DriverTrial {
   std::string backend;     ///< its name
   std::string integrator;  ///< its name
@@ -47,18 +46,18 @@ struct DriverTrial {
   ExecutionOptions execution;
 };
 
-/// mssim's first argument where it is such a process; those of the trial follow.
+/// mssim's first argument in such a process; the trial's arguments follow.
 inline constexpr std::string_view driver_trial_word = "--driver-trial";
 
-/// The trial of those arguments. They are this program's own: throws std::exception for any others.
+/// Parses the arguments of a trial. They come from mssim itself: throws std::exception for any others.
 DriverTrial driver_trial_from(std::span<char*> arguments);
 
-/// Tries it, once in a process and unless this process is a trial itself (rely_on_opencl_drivers). Throws
-/// Unavailable where the driver has ended the other process or has not come to an end in half an hour; the
-/// sentence has the driver's last words. Throws Interrupted.
+/// Tries it, once per process and unless this process is itself a trial (rely_on_opencl_drivers). Throws
+/// Unavailable if the driver crashed the other process or did not finish in half an hour; the sentence has
+/// the driver's last words. Throws Interrupted.
 void try_driver(const DriverTrial& trial, const OpenclDevice& device);
 
-/// From now on `told` gets a sentence, from another thread, when such a trial takes longer than ten seconds.
+/// From now on, `told` receives a sentence, from another thread, when a trial takes longer than ten seconds.
 void hear_of_slow_drivers(std::function<void(const std::string& sentence)> told);
 
 }  // namespace mssim

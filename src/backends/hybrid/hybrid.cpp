@@ -44,7 +44,7 @@ SpringKernel HostNodes::spring_kernel(int lanes) const {
           "packed_spring_forces",
           packed.unit_count() / units_of_part,
           packed.slots() * record_floats,
-          4 * (packed.unit_count() + 1),  // what lies behind the forces of the units stays zero
+          4 * (packed.unit_count() + 1),  // with a zero force after those of the units
           {std::as_bytes(std::span(packed.units)), std::as_bytes(std::span(packed.entries)),
            std::as_bytes(std::span(materials))}};
 }
@@ -72,12 +72,12 @@ SpringKernel AlikeNodes::spring_kernel(int lanes) const {
 
 namespace {
 
-/// What of `hybrid` lives on the device: the springs for good; the nodes and the forces in memory that it
-/// takes turns with the host to use. Between calls the host has them.
+/// Data of `hybrid` on the device: the springs permanently; the nodes and forces in memory that it shares in
+/// turn with the host. Between calls the host has them.
 class SpringDevice {
  public:
-  /// `lanes`: those that the kernel was written for. `stored`: the pairs that the integrator needs; they and
-  /// the forces are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
+  /// `lanes`: those of the kernel's text. `stored`: the pairs that the integrator needs; they and the forces
+  /// are zero. Throws Unsupported if the data does not fit into the device's memory, and cl::Error.
   SpringDevice(const SpringKernel& spring_kernel, const std::vector<Pair>& stored, const OpenclDevice& device,
                int lanes, DeviceMemory memory)
       : queue_(device, memory) {
@@ -109,7 +109,7 @@ class SpringDevice {
     launch_ = {kernel, chunks.items};
   }
   ~SpringDevice() {
-    // A driver keeps a buffer for ever that is mapped when it is released. As if read: nothing is copied
+    // A driver never frees a buffer that is released while mapped. Unmapped as if read: nothing is copied
     // back.
     try {
       for (std::size_t i = 0; i < pair_kinds; ++i)
@@ -117,7 +117,7 @@ class SpringDevice {
       forces_->unmap(host_forces_, CL_MAP_READ);
       queue_.finish();
     } catch (const cl::Error&) {
-      // After a failure, which has been told, some are not mapped; the process's end frees the others.
+      // After a reported failure, some are not mapped; the end of the process frees the others.
     }
   }
   SpringDevice(const SpringDevice&) = delete;
@@ -128,7 +128,7 @@ class SpringDevice {
   std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }
   const float* forces() const { return host_forces_.data(); }
 
-  /// Computes the forces of all springs in a stored pair, and waits for them. Throws cl::Error.
+  /// Computes the forces of all springs from a stored pair, and waits for them. Throws cl::Error.
   void compute_forces(Pair stored) {
     if (!launch_) return;
     const auto& pair = *pairs_[index(stored)];
@@ -143,15 +143,15 @@ class SpringDevice {
 
  private:
   DeviceQueue queue_;
-  std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are stored
-  std::array<std::span<float>, pair_kinds> host_pairs_;               // as mapped
+  std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], the stored ones
+  std::array<std::span<float>, pair_kinds> host_pairs_;               // mapped
   std::optional<OpenclBuffer<float>> forces_;
-  std::span<float> host_forces_;  // as mapped
+  std::span<float> host_forces_;  // mapped
   std::vector<OpenclBuffer<std::byte>> constants_;
-  std::optional<Launch> launch_;  // none without springs
+  std::optional<Launch> launch_;  // empty without springs
 };
 
-/// Takes turns: the device computes the forces of all springs, then the host's threads sum them at the nodes
+/// Alternates: the device computes the forces of all springs, then the host's threads sum them at the nodes
 /// and integrate. `Nodes`: the layout that both share, HostNodes or AlikeNodes.
 template <class Nodes>
 class Hybrid final : public Backend {
@@ -162,7 +162,7 @@ class Hybrid final : public Backend {
         threads_(threads),
         kernel_(kernel),
         nodes_(std::move(nodes)),
-        // All forces are there before a node is written, so that pairs may share memory.
+        // All forces are complete before a node is written, so pairs may share memory.
         device_(nodes_.spring_kernel(lanes), stored_pairs(integrator_, Storage::in_place), device, lanes,
                 memory) {
     nodes_.forget_units();
@@ -181,7 +181,7 @@ class Hybrid final : public Backend {
   State state() const override { return nodes_.read(device_.pair(present_).data()); }
 
   std::string device() const override { return device_.queue().label(); }
-  /// Threads of the host or the device, whichever takes more: they take turns.
+  /// Threads of the host or the device, whichever are more: they alternate.
   int threads() const override { return std::max(threads_, device_.queue().threads()); }
   bool runs_on_host() const override { return device_.queue().runs_on_host(); }
   std::optional<std::uint64_t> stored_springs() const override {
@@ -190,13 +190,12 @@ class Hybrid final : public Backend {
   }
 
  private:
-  /// Slices that a thread integrates between two looks at what is left: 16, unless those were too many
-  /// chunks.
+  /// Slices per chunk of a thread: 16, unless that makes too many chunks.
   std::size_t chunk_slices() const {
     return std::max<std::size_t>(16, nodes_.slices() / ChunkTickets::most_chunks + 1);
   }
 
-  /// Which stored pair has a role when the state lies in `present`.
+  /// The stored pair of a role if the state is in `present`.
   Pair stored_pair(Pair role, Pair present) const {
     const Pair stored = storage_of(integrator_, role, Storage::in_place);
     if (stored == Pair::state) return present;
@@ -204,12 +203,12 @@ class Hybrid final : public Backend {
     return stored;
   }
 
-  /// Where the state lies before the call's step number `step`.
+  /// The pair that has the state before the call's step number `step`.
   Pair present_at(std::size_t step) const {
     return step % 2 == 0 ? present_ : stored_pair(Pair::next, present_);
   }
 
-  /// Integrates the nodes of one chunk of slices in the stage that the ticket's phase stands for.
+  /// Integrates the nodes of one chunk of slices in the stage of the ticket's phase.
   void work_on(const ChunkTickets::Ticket& ticket) const {
     const Pair present = present_at(ticket.phase / integrator_.stage_count);
     MappedNodes mapped{.pairs = {}, .forces = device_.forces()};
@@ -220,13 +219,13 @@ class Hybrid final : public Backend {
                       std::min(begin + chunk_slices(), nodes_.slices()));
   }
 
-  /// One parallel region for all steps. Thread 0 drives the device; a phase is what the host does in a stage.
+  /// One parallel region for all steps. Thread 0 drives the device; a phase is the host's part of a stage.
   void take_steps(int count) {
     const std::size_t stages = integrator_.stage_count;
     ChunkTickets tickets(static_cast<std::uint32_t>((nodes_.slices() + chunk_slices() - 1) / chunk_slices()),
                          static_cast<std::uint32_t>(threads_));
     const auto act = [&](const ChunkTickets::Ticket& ticket) { work_on(ticket); };
-    std::exception_ptr failure;  // of thread 0; none may leave the region
+    std::exception_ptr failure;  // of thread 0; exceptions must not leave the region
 #pragma omp parallel num_threads(threads_)
     {
       const auto thread = static_cast<std::uint32_t>(omp_get_thread_num());
@@ -244,7 +243,7 @@ class Hybrid final : public Backend {
         }
         tickets.close();
       } else {
-        tickets.work_until_closed(thread, 0, act, [] {});  // a device on the same cores: no spinning
+        tickets.work_until_closed(thread, 0, act, [] {});  // the device may use the same cores: no spinning
       }
     }
     present_ = present_at(static_cast<std::size_t>(count));
@@ -267,8 +266,8 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
   if (threads < 1)
     throw std::invalid_argument(fmt::format("hybrid needs at least one host thread, not {}", threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    // With seven bodies in sixteen lanes a step takes 1.05 to 1.1 times as long as with packed springs,
-    // with thirteen 0.66 times (Intel Xeon).
+    // With seven bodies in sixteen lanes, a step takes 1.05 to 1.1 times as long as with packed springs, with
+    // thirteen 0.66 times (Intel Xeon).
     constexpr double lanes_per_body = 2;
     const auto alike = alike_bodies_for(system, AlikeSprings::slice_nodes, lanes_per_body);
     before(alike ? SteppedKind::alike_bodies : SteppedKind::bodies);

@@ -18,10 +18,10 @@ constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
 static_assert(slice_nodes == AlikeSprings::slice_nodes);
 constexpr std::size_t slice_floats = 4 * slice_nodes;  // of forces
 
-/// A force and a zero in one 128-bit register, which every x86-64 and ARM64 processor has.
+/// A force and a zero in a 128-bit register, which every x86-64 and ARM64 CPU has.
 using Quad = float __attribute__((vector_size(16)));
 
-/// What the slice's nodes are to add, placed as forces are: the sum of its entries, in one stream.
+/// The forces to add at the slice's nodes, in the order of forces: the sum of its entries, in one stream.
 HWY_INLINE void add_forces(const PackedSprings& packed, const float* forces, std::size_t slice, float* sums) {
   const FloatTag d;
   constexpr std::size_t at_a_time = 4 * vector_nodes;
@@ -36,7 +36,7 @@ HWY_INLINE void add_forces(const PackedSprings& packed, const float* forces, std
   }
 }
 
-/// Takes off the sums what the slice's nodes are to subtract.
+/// Subtracts from the sums the forces of springs that end at the slice's nodes.
 HWY_INLINE void subtract_forces(const PackedSprings& packed, const float* forces, std::size_t slice,
                                 float* sums) {
   constexpr std::size_t list_nodes = PackedSprings::list_nodes, lists = slice_nodes / list_nodes;
@@ -56,7 +56,7 @@ HWY_INLINE void subtract_forces(const PackedSprings& packed, const float* forces
   }
 }
 
-/// The sums of a vector of a slice's nodes, from number `node` on.
+/// The sums of a vector of a slice's nodes, starting with number `node`.
 HWY_INLINE Lanes3 load_sums(const float* sums, std::size_t node) {
 #if HWY_TARGET == HWY_SCALAR
   const float* sum = sums + 4 * PackedSprings::force_place(node);
@@ -74,9 +74,9 @@ HWY_INLINE Lanes3 load_sums(const float* sums, std::size_t node) {
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void integrate_slices(const HostNodes& nodes, const MappedNodes& mapped, std::size_t begin,
                                    std::size_t end) {
-  // A few slices a pass, what the nearest cache holds. Added first: that stream brings into the cache what is
-  // then looked up. Summed before vectors of sums are loaded, which could not be right after the narrower
-  // stores.
+  // A few slices per pass, as many as the first-level cache holds. First the additions, whose stream brings
+  // the data of the later lookups into the cache. Sums are complete before they are loaded as vectors: a load
+  // of a vector cannot be forwarded from narrower stores.
   constexpr std::size_t at_a_time = 4;
   alignas(64) float sums[at_a_time * slice_floats];
   const PackedSprings& packed = nodes.packed;

@@ -14,22 +14,23 @@
 
 namespace mssim {
 
-/// How a device computes the forces of springs that lie in some layout.
+/// The computation of the spring forces of a layout on a device.
 struct SpringKernel {
-  std::string text;  ///< of the program
-  const char* name;  ///< of its kernel
-  /// What a work-item takes some of in turn: its last arguments are how many there are and how many it takes.
+  std::string text;  ///< text of the program
+  const char* name;  ///< name of its kernel
+  /// Units of work; a work-item takes some of them in turn: the last arguments are their number and the
+  /// number per item.
   std::size_t parts;
   std::size_t pair_floats, force_floats;  ///< its first two arguments: a pair of nodes, the forces
-  std::vector<std::span<const std::byte>> constants;  ///< the arguments between these
+  std::vector<std::span<const std::byte>> constants;  ///< the arguments between those
 };
 
-/// What the host's threads need to sum the spring forces at the nodes and to integrate them, with one
-/// integrator and one dt (hybrid.cpp makes it). Nodes are records (kernels/records.h), forces lie as
-/// PackedSprings places them, four floats each, N.
+/// Data with which the host's threads sum the spring forces at the nodes and integrate them, for one
+/// integrator and one dt (made in hybrid.cpp). Nodes are records (kernels/records.h), forces are in the order
+/// of PackedSprings, four floats each, N.
 struct HostNodes : ExplicitSteps {
   PackedSprings packed;
-  /// [slices][inverse mass, held][16]: 1/kg; 1 where nothing may move (pinned, or no node), else 0.
+  /// [slices][inverse mass, held][16]: 1/kg; 1 if pinned or padding, else 0.
   AlignedArray constants;
   std::vector<SpringConstants<float>> materials;  ///< System::materials
 
@@ -38,18 +39,17 @@ struct HostNodes : ExplicitSteps {
   std::size_t slices() const { return packed.slices(); }
   void write(const State& state, float* pair) const { write_records(state, packed.slot, pair); }
   State read(const float* pair) const { return read_records(pair, packed.slot); }
-  /// What the device is to do. It refers to this.
+  /// The device's work; refers to this object.
   SpringKernel spring_kernel(int lanes) const;
-  /// Gives up what the device has a copy of.
+  /// Frees the data of which the device has a copy.
   void forget_units();
 };
 
-/// HostNodes for alike bodies: what the host's threads need to sum the forces of their springs and to
-/// integrate.
+/// HostNodes for alike bodies: data with which the host's threads sum the spring forces and integrate.
 struct AlikeNodes : ExplicitSteps {
   AlikeSprings springs;
 
-  /// `bodies`: all of the system.
+  /// `bodies`: all bodies of the system.
   AlikeNodes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
              double dt_s);
 
@@ -57,14 +57,14 @@ struct AlikeNodes : ExplicitSteps {
   void write(const State& state, float* pair) const { springs.slices.write(state, pair); }
   State read(const float* pair) const { return springs.slices.read(pair); }
   std::uint64_t stored_springs() const { return springs.subtracted.size(); }
-  /// What the device is to do. It refers to this.
+  /// The device's work; refers to this object.
   SpringKernel spring_kernel(int lanes) const;
-  /// Gives up what the device has a copy of.
+  /// Frees the data of which the device has a copy.
   void forget_units() { springs.springs = {}; }
 };
 
-/// What a stage reads and writes, as mapped: `pairs` by role, and the forces of all springs, in the layout of
-/// the nodes that it belongs to.
+/// Mapped data of a stage: `pairs` by role, and the forces of all springs, in the layout of the corresponding
+/// nodes.
 struct MappedNodes {
   std::array<float*, pair_kinds> pairs{};
   const float* forces = nullptr;
@@ -74,12 +74,12 @@ struct MappedNodes {
 template <class Nodes>
 struct NodeKernel {
   const char* instruction_set;  ///< Highway's name for it
-  /// Sums the forces at the nodes of the slices [begin, end) and runs the assignments of a stage.
+  /// Sums the forces at the nodes of the slices [begin, end) and executes the assignments of a stage.
   void (*integrate)(const Nodes& nodes, const MappedNodes& mapped, std::size_t stage, std::size_t begin,
                     std::size_t end);
 };
 
-/// The kernels that this processor can run, the best first.
+/// The kernels that this CPU can run, the best first.
 std::vector<NodeKernel<HostNodes>> node_kernels();
 std::vector<NodeKernel<AlikeNodes>> alike_node_kernels();
 

@@ -12,7 +12,7 @@
 namespace mssim {
 namespace {
 
-/// What takes the steps of one solver.
+/// The functions for the steps of one solver.
 struct SolverSteps {
   using Make = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s);
   using MakeOpenMp = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s,
@@ -25,10 +25,10 @@ struct SolverSteps {
   MakeReference* reference;
   MemoryUse reference_memory;
   MakeOpenMp* openmp;
-  MemoryUse openmp_memory;  ///< for a cloth; for bodies what their slices take comes to it
+  MemoryUse openmp_memory;  ///< for a cloth; for bodies, plus the memory of their slices
 };
 
-/// A maker of a room that steps one integrator, and need not be told which, nor when nobody waits for it.
+/// Adapts a maker for a single integrator, without its `integrator` and `stop` parameters.
 template <auto make, class... More>
 std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrator& /*integrator*/,
                                            double dt_s, const More&... more) {
@@ -38,21 +38,21 @@ std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrato
     return make(system, dt_s);
 }
 
-/// Memory of a SpringEquation<float>: of a node what PlainNodes hold, six vectors and a block of P; of a
-/// spring what it adds to A.
+/// Memory of a SpringEquation<float>: per node PlainNodes, six vectors and a block of P; per spring its part
+/// of A.
 constexpr MemoryUse plain_newton{.node = 29 + 6 * 12 + 24, .spring = 20};
 
-/// Entries of a sparse factor in minimum degree order, a node: 5 to 6 and doubling of a cloth of 40,000 to
-/// 160,000 nodes; 5 to 7 and cube root of the number of nodes in the scenes of bodies, and 7 to 13 in one
+/// Entries of a sparse factor in minimum degree order, per node: 5 to 6 per doubling for a cloth of 40,000 to
+/// 160,000 nodes; 5 to 7 per cube root of the number of nodes for the scenes of bodies, and 7 to 13 for one
 /// body of 1,700 to 27,000.
 constexpr double cloth_entries = 6, body_entries = 13;
-/// An entry takes 12 bytes in Eigen's factor, and as many in the copy that is made of it; the matrix itself,
-/// in three forms, takes so much a node.
+/// An entry takes 12 bytes in Eigen's factor, and 12 in its copy; the matrix itself, in three forms, takes
+/// matrix_bytes per node.
 constexpr double entry_bytes = 2 * 12, matrix_bytes = 550;
-/// The blocks of openmp, beside what they are made from.
+/// openmp's blocks, besides their sources.
 constexpr double block_bytes = 38;
 
-/// What slices take, each spring at both its ends, as for explicit integrators.
+/// Memory of slices, with each spring at both its ends, as for explicit integrators.
 constexpr MemoryUse body_slices{.node = 130, .spring = 38};
 
 constexpr SolverSteps newton{
@@ -61,8 +61,8 @@ constexpr SolverSteps newton{
     .reference = make_newton_reference,
     .reference_memory = {.node = 2 * plain_newton.node - 1, .spring = 2 * plain_newton.spring},
     .openmp = make_openmp_newton,
-    // Measured of a cloth of 700,000 nodes: eight vectors, a block, and what they are padded and converted
-    // with.
+    // Measured for a cloth of 700,000 nodes: eight vectors, a block, and temporary data for padding and
+    // conversion.
     .openmp_memory = {.node = 165}};
 
 constexpr SolverSteps local_global{
@@ -94,11 +94,11 @@ constexpr std::array<Row, 4> table{{{Solver::newton_step, newton},
 const SolverSteps& steps_of(const Integrator& integrator) {
   const auto row = std::ranges::find(table, integrator.solver, &Row::solver);
   if (row == table.end())
-    throw std::invalid_argument(std::string(integrator.name) + " is no implicit integrator");
+    throw std::invalid_argument(std::string(integrator.name) + " is not an implicit integrator");
   return row->steps;
 }
 
-/// What the solver's factor takes for a cloth or for bodies.
+/// Memory of the solver including its factor, for a cloth or for bodies.
 MemoryUse filled(MemoryUse use, bool grid) {
   if (!grid) use.cube_root_node = body_entries / cloth_entries * std::exchange(use.doubling_node, 0);
   return use;

@@ -5,12 +5,12 @@
 namespace mssim {
 namespace {
 
-/// Whether a row of the cloth is there.
+/// Whether the row belongs to the cloth.
 bool has_row(const BandLayout& layout, std::ptrdiff_t row) {
   return row >= 0 && row < static_cast<std::ptrdiff_t>(layout.rows);
 }
 
-/// The vectors of a row of the bands.
+/// The constants of a row of the bands.
 std::vector<float> values_of_row(const BandLayout& layout, const std::vector<SpringPerMass>& springs,
                                  float gravity, const ColumnsToEnd& to_end, std::ptrdiff_t band_row) {
   const std::size_t lanes = layout.lanes;
@@ -33,23 +33,23 @@ std::vector<float> values_of_row(const BandLayout& layout, const std::vector<Spr
 
 constexpr std::size_t halo = BandLayout::halo;
 
-/// Bytes of a cache, by its name to sysconf; `usual` where the system does not say.
+/// Bytes of a cache, by its sysconf name; `usual` if the system does not report it.
 std::size_t cache_bytes(int name, long usual) {
   const long found = sysconf(name);
   return static_cast<std::size_t>(found > 0 ? found : usual);
 }
 
-/// Columns of the narrowest partition. Threads recompute two columns a stage and side; a partition narrower
-/// than this would be mostly that. Its ghosts belong to the partitions beside it.
+/// Columns of the narrowest partition. Threads recompute two columns per stage and side; a narrower partition
+/// would mostly recompute. Its ghosts belong to the adjacent partitions.
 std::size_t narrowest_partition(const Integrator& integrator, std::size_t steps_per_pass) {
   return std::max(2 * halo * integrator.stage_count, ghost_columns(integrator, steps_per_pass));
 }
 
-/// Rows that a pass over one of the partitions walks through, as many as take its time.
+/// Rows, including the cost of columns in rows, of a pass over one of the partitions.
 double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                     std::size_t threads, double rows_beside) {
-  // Measured on an Intel Xeon, rounded up: what a column takes whose nodes are not updated, with the copies
-  // that it is read from.
+  // Measured on an Intel Xeon, rounded up: cost of a column whose nodes are not updated, including the copies
+  // it is read from.
   constexpr double partial_column = 0.8;
   const std::size_t columns = (layout.columns + layout.halves - 1) / layout.halves;
   const std::size_t partitions = partitions_for(columns, threads, integrator, steps_per_pass);
@@ -64,7 +64,7 @@ double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std:
   return walked * (static_cast<double>(layout.height) + rows_beside);
 }
 
-/// Measured on an Intel Xeon; for passes of several stages everywhere.
+/// Measured on an Intel Xeon; used on every CPU for passes of several stages.
 ColumnCosts usual_column_costs() { return {0.7, 0.97, cache_bytes(_SC_LEVEL1_DCACHE_SIZE, 32L << 10)}; }
 
 }  // namespace
@@ -93,10 +93,10 @@ std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integ
 
 /// The model: with T steps per pass, a step takes c + m / T per node, where c is the time of arithmetic and
 /// caches, and m that of memory, which grows with the cores that share its bandwidth. scripts/steps-a-pass
-/// measures both. A state that the last-level cache holds (half of it can be counted on) has no m: more
-/// columns under way than the first-level cache holds cost 4 to 12 % at 350,000 nodes. From memory, as many
-/// as there is room for among the stages under way: semi-euler was 1.9 times as fast with four at a million
-/// nodes and 1.8 times with columns of 4,000 rows. Ghost columns must stay a small share.
+/// measures both. If half of the last-level cache holds the state, one step per pass is best: more active
+/// columns than the first-level cache holds cost 4 to 12 % at 350,000 nodes. From memory, as many steps as
+/// fit among the active stages: semi-euler was 1.9 times as fast with four at a million nodes and 1.8 times
+/// with columns of 4,000 rows. Ghost columns must stay a small fraction.
 std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator,
                                std::size_t partitions) {
   constexpr std::size_t columns_per_stage = 16;
@@ -110,15 +110,15 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
 
 ColumnCosts ColumnCosts::here() {
 #if defined(__x86_64__)
-  // On Zen 4 a column takes 1 to 1.4 rows beside its own, and the second-level cache, of which threads and
-  // other arrays need a part, is as quick as the first.
+  // On Zen 4 a column costs 1 to 1.4 rows in addition to its own, and the second-level cache, part of which
+  // threads and other arrays need, is as fast as the first.
   if (__builtin_cpu_is("amd")) return {1, 0.98, cache_bytes(_SC_LEVEL2_CACHE_SIZE, 1L << 20) / 4};
 #endif
   return usual_column_costs();
 }
 
-/// Folded where that leaves fewer rows to walk through, clearly, and where a cache holds the columns under
-/// way: three of the state and two of forces.
+/// Folds if that clearly reduces the rows to walk through, and if a cache holds the active columns: three of
+/// the state and two of forces.
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                        std::size_t threads, const ColumnCosts& of_one_stage) {
   if (layout.lanes < 2) return 1;
@@ -174,7 +174,7 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
 
 void BandGrid::cut(std::size_t most_threads) {
   const std::size_t ghosts = ghost_columns(*integrator, steps_per_pass);
-  const bool is_piece = layout.halves == 1;  // or all: then there is nothing beside it
+  const bool is_piece = layout.halves == 1;  // or all: then there are no adjacent columns
   const bool left = is_piece && own.first > 0, right = is_piece && own.end() < columns;
   const std::size_t edge_columns = ghosts * (std::size_t{left} + std::size_t{right});
   const bool has_edges = own.count >= edge_columns + narrowest_partition(*integrator, steps_per_pass);
@@ -185,7 +185,7 @@ void BandGrid::cut(std::size_t most_threads) {
   }
   if (has_edges && right) inner.count -= ghosts;
   first_inner = partitions.size();
-  // Without edges one partition has them all: messages bring the ghosts of the first and the last alone.
+  // Without edges one partition has all columns: messages bring only the first and the last ghosts.
   threads = (left || right) && !has_edges
                 ? 1
                 : partitions_for(inner.count, most_threads, *integrator, steps_per_pass);
@@ -236,7 +236,7 @@ void BandGrid::add_pins(BandPartition& partition, const System& system) const {
 }
 
 void BandGrid::fill_partition(BandPartition& partition, const State& state) const {
-  // Above the floor, of which there may be none (without_floor): what springs reach must be finite.
+  // Above the floor, if there is one (without_floor): springs to dummies must be finite.
   constexpr double lowest_floor = -1e6;
   const double dummy_height = std::max(static_cast<double>(surroundings.floor_height), lowest_floor) + 1;
   const ColumnRange filled = filled_columns(partition);
@@ -246,8 +246,8 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {
         const std::size_t row = lane % layout.bands * layout.height + r;
         const std::ptrdiff_t of_cloth = partition.cloth_column(column, lane / layout.bands);
-        // Dummies keep the spacing of a cloth at rest, also from those of other pieces: no spring between
-        // them may have length zero, though none has stiffness.
+        // Dummies keep the spacing of a cloth at rest, also from those of other pieces: springs between them
+        // have no stiffness, but must not have length zero.
         Vec3d x{static_cast<double>(static_cast<std::ptrdiff_t>(first_column_) + of_cloth) * spacing_,
                 dummy_height, static_cast<double>(row) * spacing_};
         Vec3d v{};

@@ -19,26 +19,26 @@
 
 namespace mssim {
 
-/// A cloth laid out for vectors of `lanes` floats: the rows are cut into `lanes` bands of `height` rows, and
-/// lane b holds band b. A row of the layout is thus `lanes` nodes that lie `height` rows apart, and every
+/// A cloth laid out for vectors of `lanes` floats: the rows are divided into `lanes` bands of `height` rows,
+/// and lane b has band b. A row of the layout is thus `lanes` nodes that are `height` rows apart, and every
 /// neighbour of a node is an aligned load of the same lane, without a shuffle or a gather.
 ///
 ///     [column][row -2 .. height + 1][x y z u v w][lane]       (u v w: velocity)
 ///
-/// The cloth may be folded: its columns are cut into halves that lie side by side in the lanes, so that there
-/// are lanes / 2 bands, twice as high. Column c of the layout is then two columns of the cloth; which ones,
-/// who walks over them says (BandPartition). A small cloth leaves fewer rows empty so, and columns are half
-/// as many, each of which takes some time beside its rows.
+/// The cloth may be folded: its columns are divided into halves that share the lanes, so there are lanes / 2
+/// bands of twice the height. Column c of the layout is then two columns of the cloth; BandPartition defines
+/// the mapping. Folding leaves fewer empty rows in a small cloth and halves the columns, each of which has a
+/// fixed cost.
 ///
-/// Two halo rows above and below are room for the neighbouring bands' rows: opencl keeps them there, openmp
-/// puts them there only where it reads them. Rows that the last bands have too many are dummies: they stay at
-/// rest and no force from them reaches a node of the cloth (BandRows).
+/// Two halo rows above and below have room for the neighbouring bands' rows: opencl keeps them there, openmp
+/// writes them only where it reads them. Padding rows in the last bands are dummies: they stay at rest and
+/// exert no force on the cloth (BandRows).
 struct BandLayout {
   std::size_t lanes;
-  std::size_t halves;         ///< of the columns, side by side in the lanes: 1 or 2
-  std::size_t bands;          ///< lanes of a half
+  std::size_t halves;         ///< of the columns, which share the lanes: 1 or 2
+  std::size_t bands;          ///< lanes per half
   std::size_t rows, columns;  ///< of the cloth
-  std::size_t height;         ///< rows in a band
+  std::size_t height;         ///< rows per band
 
   static constexpr std::size_t halo = 2;        ///< longest spring, in rows or columns
   static constexpr std::size_t components = 6;  ///< position and velocity
@@ -57,35 +57,35 @@ struct BandLayout {
   std::size_t offset(std::size_t row, std::size_t half = 0) const {
     return (row % height + halo) * row_floats() + half * bands + row / height;
   }
-  /// Floats of one column of forces: rows 0 .. height, three components. The last row holds what
-  /// the first row gives to the column's last row, a lane before.
+  /// Floats of one column of forces: rows 0 .. height, three components. The last row has the forces of the
+  /// first row on the column's last row, one lane before.
   std::size_t force_floats() const { return (height + 1) * 3 * lanes; }
 };
 
-/// For each half of a layout's columns, how many columns of the cloth there are from one of them to the
-/// cloth's end, itself included; 0 if it is none of the cloth's.
+/// For each half of a layout's columns: the number of the cloth's columns from this one to the end, including
+/// this one; 0 if it is not a column of the cloth.
 using ColumnsToEnd = std::array<std::size_t, 2>;
 
-/// What the nodes of each row of a banded cloth compute with, one value a lane: the constants of the springs
-/// that they own, and gravity. All are zero where there is no such spring, or no node: then nothing pulls,
-/// dummies stay at rest, and the vector code needs no masks. Most rows share their values.
+/// Constants for the nodes of each row of a banded cloth, one value per lane: those of the springs that they
+/// own, and gravity. All are zero if there is no such spring or node: then nothing pulls, dummies stay at
+/// rest, and the vector code needs no masks. Most rows share their values.
 class BandRows {
  public:
-  /// The constants of a column that so many are `behind`, unless it is far from the cloth's end. `springs`:
-  /// by GridSpringKind. `gravity` in m/s^2, or in the unit of time of the springs.
+  /// The constants of a column with `to_end` columns to the end, unless it is far from the cloth's end.
+  /// `springs`: by GridSpringKind. `gravity` in m/s^2, or in the springs' unit of time.
   BandRows(const BandLayout& layout, const std::vector<SpringPerMass>& springs, float gravity,
            ColumnsToEnd to_end = {far_from_end, far_from_end});
 
-  /// Columns to the end beyond which springs reach no further.
+  /// Columns to the end beyond which springs do not reach it.
   static constexpr std::size_t far_from_end = BandLayout::halo + 1;
 
   /// Vectors of a row: [spring of grid_stencil][constants, stiffness_rest], then gravity.
   static constexpr std::size_t spring_vectors = spring_constant_count + 1;
   static constexpr std::size_t gravity_vector = grid_stencil.size() * spring_vectors;
 
-  /// Those of row 0; the others' are offset_of_row() floats behind.
+  /// Values of row 0; another row's are offset_of_row() floats later.
   const float* values() const { return values_.data(); }
-  /// Row 0's; those of halo rows stand before and behind the rows'.
+  /// Offset of row 0; those of the halo rows are before and after the rows'.
   const std::uint32_t* offset_of_row() const { return offsets_.data() + BandLayout::halo; }
 
  private:
@@ -93,71 +93,70 @@ class BandRows {
   std::vector<std::uint32_t> offsets_;
 };
 
-/// Columns of a cloth that follow each other.
+/// Consecutive columns of a cloth.
 struct ColumnRange {
   std::size_t first = 0, count = 0;
   std::size_t end() const { return first + count; }
 };
 
-/// One of `parts` parts of these columns, which differ by at most one column: what a process of several takes
-/// of a cloth, and a thread of that.
+/// One of `parts` parts of these columns, which differ by at most one column: the share of a process, and of
+/// one of its threads.
 inline ColumnRange part_of(ColumnRange all, std::size_t part, std::size_t parts) {
   const std::size_t begin = all.count * part / parts, end = all.count * (part + 1) / parts;
   return {all.first + begin, end - begin};
 }
 
-/// These columns, and beside them so many of the others that a cloth of `columns` has.
+/// These columns and up to `ghosts` adjacent ones on each side, within a cloth of `columns`.
 inline ColumnRange with_ghosts(ColumnRange own, std::size_t ghosts, std::size_t columns) {
   const std::size_t begin = own.first - std::min(own.first, ghosts);
   return {begin, std::min(own.end() + ghosts, columns) - begin};
 }
 
-/// Stages under way at once. Each walks two columns behind the one before it, so that what it gathers has
-/// just been written, and all that lives between them are a few columns, which stay in a cache: a step of RK4
-/// moves the state through memory once instead of four times, and steps of few stages go through it several
+/// Stages active at the same time. Each follows the previous one at a distance of two columns, so it gathers
+/// what has just been written, and the data between them are a few columns, which stay in a cache: a step of
+/// RK4 moves the state through memory once instead of four times, and steps of few stages are passed several
 /// at a time.
 inline constexpr std::size_t stages_under_way = 4;
 static_assert(max_stages <= stages_under_way);
 
-/// Columns beside those of a partition that a pass of so many steps needs.
+/// Columns on each side of a partition that a pass of `steps_per_pass` steps needs.
 inline std::size_t ghost_columns(const Integrator& integrator, std::size_t steps_per_pass) {
   return BandLayout::halo * integrator.stage_count * steps_per_pass;
 }
 
-/// How a cloth in bands is cut, where that is not chosen by its size.
+/// How a banded cloth is divided, if not by its size.
 struct BandCut {
-  std::optional<std::size_t> steps_per_pass{};  ///< their stages must not be more than stages_under_way
-  /// The columns that a piece owns; of the others there must be ghost_columns on each side, or none where the
-  /// cloth ends. A piece is not folded.
+  std::optional<std::size_t> steps_per_pass{};  ///< the total of their stages is at most stages_under_way
+  /// The columns that a piece owns; of the others it needs ghost_columns on each side, or none at the end of
+  /// the cloth. A piece is not folded.
   std::optional<ColumnRange> piece{};
   std::optional<std::size_t> halves{};  ///< BandLayout::halves
 };
 
-/// Partitions that so many columns of a layout had best have, of `threads` at most.
+/// Best number of partitions for `columns` columns of a layout, at most `threads`.
 std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integrator& integrator,
                            std::size_t steps_per_pass);
 
-/// Steps that a pass had best take over a cloth of that layout and so many partitions.
+/// Best number of steps per pass over a cloth of that layout, with this number of partitions.
 std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator,
                                std::size_t partitions);
 
-/// What a processor takes for columns where a pass has one stage, on which depends whether a cloth had best
-/// be folded.
+/// A CPU's costs of columns in passes of one stage, which decide whether to fold a cloth.
 struct ColumnCosts {
-  double rows_beside;    ///< a column takes the time of so many rows beside its own
-  double clearly_fewer;  ///< a fold that leaves this share of the rows pays
-  std::size_t bytes;     ///< so much may be under way
+  double rows_beside;    ///< fixed cost of a column, in rows
+  double clearly_fewer;  ///< a fold pays if it reduces the rows to this fraction
+  std::size_t bytes;     ///< available for active columns
 
-  /// Those of this processor.
+  /// Costs on this CPU.
   static ColumnCosts here();
 };
 
-/// Halves in which a cloth of that layout, which has one, had best be walked over by so many threads.
+/// Best number of halves for a cloth of that layout, which has one, with this number of threads.
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                        std::size_t threads, const ColumnCosts& of_one_stage = ColumnCosts::here());
 
-/// How the columns of a cloth at the ends of a piece reach the processes that step the columns beside it, and
-/// theirs this one: what a copy between the threads of a process is, between processes.
+/// Exchange of the edge columns of a piece with the processes that step the adjacent columns: the counterpart
+/// between processes of the copies between threads.
 class ColumnMessages {
  public:
   ColumnMessages() = default;
@@ -165,30 +164,30 @@ class ColumnMessages {
   ColumnMessages& operator=(const ColumnMessages&) = delete;
   virtual ~ColumnMessages() = default;
 
-  /// The columns at the ends are those of the next pass, and nothing reads the ghosts beside them any more
-  /// before finish(). Does not wait.
+  /// Starts to send the edge columns, which are complete for the next pass. The ghosts next to them must not
+  /// be read before finish(). Does not wait.
   virtual void begin() = 0;
-  /// Lets messages that are under way go on. Does not wait.
+  /// Lets messages progress. Does not wait.
   virtual void advance() = 0;
-  /// Waits until the ghosts are the neighbours' columns of the next pass, and the own ones may change again.
-  /// Throws nothing, like the others: threads of a step call them.
+  /// Waits until the ghosts are the neighbours' columns of the next pass and the own edge columns may change
+  /// again. Must not throw, like the other functions: threads of a step call them.
   virtual void finish() = 0;
 };
 
-/// Columns behind the first stage that the last one under way still gathers from, and so the columns that a
-/// trial pair keeps: they are used in turn.
+/// Columns between the first active stage and those that the last one still gathers, and so the columns that
+/// a trial pair keeps, as a ring.
 inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * stages_under_way);
 
-/// The columns at one end of a partition, as the partition beside it reads them: copies, because the walk
-/// writes over the state. Two sets, used in turn, so that a thread that is a pass behind still finds those of
-/// its pass: threads need not meet.
+/// Columns at one end of a partition, for the adjacent partition: copies, because the walk overwrites the
+/// state. Two alternating sets, so that a thread that is one pass behind still finds the data of its pass:
+/// threads need no barrier.
 struct EdgeColumns {
-  /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: without room for halo rows, and without the
-  /// half that nobody else reads, for less to move between caches.
+  /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: without halo rows, and without the half that no
+  /// other thread reads, to move less between caches.
   std::array<AlignedArray, 2> sets;
   ThreadProgress pass;  ///< the next pass that may read its set
 
-  bool exists() const { return sets[0].size() > 0; }  ///< whether there is a partition to read them
+  bool exists() const { return sets[0].size() > 0; }  ///< whether there is a partition that reads them
   static std::size_t column_floats(const BandLayout& layout) {
     return layout.height * BandLayout::components * layout.bands;
   }
@@ -197,28 +196,28 @@ struct EdgeColumns {
   }
 };
 
-/// The columns of one thread, numbered as in the layout, and on each side ghost columns that repeat the
-/// neighbours': two for each stage under way. The thread computes what stages but the last do there a second
-/// time, and so needs nobody until the last is through.
+/// The columns of one thread, numbered as in the layout, with ghost columns on each side that repeat the
+/// neighbours': two for each active stage. The thread recomputes there all stages except the last, so it
+/// needs no other thread until the last is done.
 struct BandPartition {
   std::size_t first = 0;
-  std::size_t count = 0;           ///< columns that are the thread's own
+  std::size_t count = 0;           ///< own columns of the thread
   std::size_t first_of_cloth = 0;  ///< column of the cloth that `first` is in the first half
   std::size_t ghosts = 0;          ///< on each side
-  /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty
-  /// where not stored.
+  /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty if
+  /// not stored.
   std::array<AlignedArray, pair_kinds> pairs;
   std::vector<std::vector<PlacedPin>> pins;  ///< [ghosts + count + ghosts] by column
-  std::vector<const BandRows*> column_rows;  ///< the same: what the rows of a column compute with
-  AlignedArray forces;                       ///< [stages_under_way][2][force_floats], columns under way
-  /// Its first `ghosts` columns for the partition before it and its last ones for the one behind; empty where
-  /// there is none.
+  std::vector<const BandRows*> column_rows;  ///< by column: constants of its rows
+  AlignedArray forces;                       ///< [stages_under_way][2][force_floats], active columns
+  /// Its first `ghosts` columns for the partition before it and its last ones for the next; empty if there is
+  /// none.
   EdgeColumns left, right;
 
-  /// Place of a column in `pins` and in the state; first - ghosts <= column.
+  /// Index of a column in `pins` and in the state; first - ghosts <= column.
   std::size_t local(std::size_t column) const { return column + ghosts - first; }
-  /// The column of the cloth that one of the layout is in a half; may lie beside the cloth. The halves of a
-  /// partition follow each other.
+  /// The cloth's column for a column of the layout in a half; may be outside the cloth. The halves of a
+  /// partition are contiguous.
   std::ptrdiff_t cloth_column(std::size_t column, std::size_t half) const {
     return static_cast<std::ptrdiff_t>(first_of_cloth + column + half * count) -
            static_cast<std::ptrdiff_t>(first);
@@ -236,48 +235,48 @@ struct BandPartition {
   }
 };
 
-/// What the vector code needs to take steps of a cloth. The unit of time is a step: velocities are in m a
-/// step, and what a node moves in a step is added without a multiplication.
+/// Data that the vector code needs to step a cloth. The unit of time is a step: velocities are in m per step,
+/// so a displacement is added without a multiplication.
 ///
-/// The cloth may be a piece of a larger one, whose other columns other processes step: it owns some of its
-/// columns, and those beside them are ghosts, which messages bring. What the others wait for is walked first:
-/// of a wide piece, the columns at its ends are partitions of their own.
+/// The cloth may be a piece of a larger one, whose other columns other processes step: it owns some columns,
+/// and the adjacent ones are ghosts, which messages bring. Columns for other processes are walked first: the
+/// edge columns of a wide piece are partitions of their own.
 struct BandGrid : ExplicitSteps {
   BandLayout layout;
   std::map<ColumnsToEnd, BandRows> band_rows;
-  std::size_t steps_per_pass = 1;  ///< steps under way at once
-  /// Columns of the layout. Those of the cloth; if it is folded, those of a half and ghosts at both ends, in
-  /// which the halves go on where they were cut, and behind the cloth's ends are dummies.
+  std::size_t steps_per_pass = 1;  ///< steps active at once
+  /// Columns of the layout: those of the cloth; if it is folded, those of a half, with ghosts at both ends.
+  /// There the halves continue across the cut, and beyond the cloth's ends are dummies.
   std::size_t columns = 0;
-  ColumnRange own;  ///< of them, what the partitions cover: those of the piece, or of a half
+  ColumnRange own;  ///< those of them that the partitions cover: of the piece, or of a half
   std::deque<BandPartition> partitions;  ///< in the order of their columns
-  std::size_t first_inner = 0;           ///< partitions before this one are an edge
-  std::size_t threads = 0;               ///< partitions from there on that have a thread each; then an edge
-  std::uint64_t passes = 0;              ///< taken so far
-  ColumnMessages* messages = nullptr;    ///< of a piece; outlives the steps
-  TeamGain team_gain;                    ///< of a thread for each inner partition
+  std::size_t first_inner = 0;           ///< earlier partitions are an edge
+  std::size_t threads = 0;   ///< number of inner partitions, with a thread each; the rest are an edge
+  std::uint64_t passes = 0;  ///< so far
+  ColumnMessages* messages = nullptr;  ///< of a piece; must outlive the steps
+  TeamGain team_gain;                  ///< for one thread per inner partition
 
-  /// Cuts the cloth for `lanes` lanes and at most `most_threads` inner partitions. Arrays stay untouched
+  /// Divides the cloth for `lanes` lanes and at most `most_threads` inner partitions. Arrays are untouched
   /// until set_state.
   BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
            std::size_t lanes, std::size_t most_threads, const BandCut& given = {});
-  /// Spreads the state over the partitions, each by a thread of its own, ghosts and dummies included.
+  /// Distributes the state over the partitions, including ghosts and dummies; each thread writes its own.
   void set_state(const State& state);
   State state() const;
-  /// That of the nodes of a window, whose columns it owns.
+  /// The state of the nodes of a window, whose columns it must own.
   State state(const GridWindow& window) const;
 
  private:
   double dt_s_ = 0;
-  double spacing_ = 0;  ///< m, places the dummies, with the next
+  double spacing_ = 0;  ///< m, for the positions of dummies, with the next
   std::size_t first_column_ = 0;
   void cut(std::size_t most_threads);
   void add_partition(ColumnRange its);
   void choose_rows(BandPartition& partition, const std::vector<SpringPerMass>& springs);
   void add_pins(BandPartition& partition, const System& system) const;
-  /// The columns of a partition that are filled: own ones and ghosts, where the layout has them.
+  /// The columns of a partition to fill: own ones and ghosts within the layout.
   ColumnRange filled_columns(const BandPartition& partition) const;
-  /// Copies the state's columns to those that others read.
+  /// Copies the state's columns for the neighbours of a partition.
   void fill_edges(std::size_t p);
   void fill_partition(BandPartition& partition, const State& state) const;
 };

@@ -12,15 +12,15 @@ AlignedArray::AlignedArray(std::size_t size) : size_(size) {
   const std::size_t page = size * sizeof(float) >= huge_page ? huge_page : alignment;
   const std::size_t bytes = round_up(size * sizeof(float), page);
   if (bytes == 0) return;
-  // The system maps one array right below another, and a processor's prefetcher goes on across the end of a
-  // page: it would take the beginning of an array out of the cache of the thread that writes it, for a thread
-  // that reads the end of the one below. So a page that nobody touches lies behind each, of the array's kind,
-  // which keeps what lies below on such a page, too.
+  // The system maps one array directly below another, and a hardware prefetcher continues across the end of a
+  // page: it would take the beginning of one array out of the cache of the thread that writes it, for a
+  // thread that reads the end of the array below. So an unused page follows each array; it is of the same
+  // kind, so that the memory below also stays on such a page.
   const std::size_t mapped = bytes + page;
   void* memory = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();
   if (page == huge_page)
-    madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: without it the array is as good, only slower
+    madvise(memory, bytes, MADV_HUGEPAGE);  // only a hint: without it the array is slower
   data_ = {static_cast<float*>(memory), Unmap{mapped}};
 }
 

@@ -18,44 +18,44 @@ constexpr std::size_t round_up(std::size_t value, std::size_t multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
 
-/// Of numbered things those from `begin` on, before `end`.
+/// Indices from `begin` up to, not including, `end`.
 struct IndexRange {
   std::size_t begin, end;
 };
 
-/// So many floats in whole vectors, an odd number of them: rows and components whose distance is a power of
-/// two share a few sets of the first-level cache.
+/// `floats` in whole vectors, an odd number of them: rows and components at a distance of a power of two
+/// share a few sets of the first-level cache.
 constexpr std::size_t odd_pitch(std::size_t floats, std::size_t lanes) {
   const std::size_t whole = round_up(floats, lanes);
   return whole / lanes % 2 == 0 ? whole + lanes : whole;
 }
 
-/// A vector in space whose components lie `step` floats apart.
+/// Reads a vector in space whose components are `step` floats apart.
 inline Vec3d read_vector(const float* from, std::size_t step) {
   return {double{from[0]}, double{from[step]}, double{from[2 * step]}};
 }
-/// Rounds to float.
+/// Writes such a vector, rounded to float.
 inline void write_vector(float* to, std::size_t step, const Vec3d& value) {
   to[0] = static_cast<float>(value.x);
   to[step] = static_cast<float>(value.y);
   to[2 * step] = static_cast<float>(value.z);
 }
 
-/// A node of a cloth that is put back after every update.
+/// A node of a cloth that is reset after every update.
 struct PlacedPin {
-  std::size_t offset;  ///< floats from where its row's layout or column starts to the node's x
+  std::size_t offset;  ///< floats from the start of its row or column to the node's x
   std::array<float, 3> position;
 };
 
-/// An array of floats whose start suits every vector width and the devices' zero-copy buffers. Its memory is
-/// zero and, where large, asks for huge pages, which made the 350,000-node cloth 2 to 14 % faster.
+/// An array of floats, aligned for every vector width and for the devices' zero-copy buffers. Its memory is
+/// zero and, if large, requests huge pages, which made the 350,000-node cloth 2 to 14 % faster.
 class AlignedArray {
  public:
-  /// Bytes: a page, which is also the granularity of zero-copy buffers.
+  /// Bytes: a page, also the granularity of zero-copy buffers.
   static constexpr std::size_t alignment = 4096;
 
   AlignedArray() = default;
-  /// `size` floats, all zero and not touched yet: the first writer decides where they lie. Throws
+  /// `size` floats, all zero and untouched: the first writer determines their NUMA node. Throws
   /// std::bad_alloc.
   explicit AlignedArray(std::size_t size);
 
@@ -73,26 +73,25 @@ class AlignedArray {
   std::size_t size_ = 0;
 };
 
-/// Nodes as records of eight floats, x y z 0 u v w 0 (u v w: velocity), half a cache line, as
-/// kernels/records.h has them too: a vector of neighbours is gathered by loading whole records and
-/// transposing them in registers. Measured on two Zen 4 cores with 38,148 nodes, that is 3.6 times as fast as
-/// gather instructions on separate components.
+/// Nodes as records of eight floats, x y z 0 u v w 0 (u v w: velocity), half a cache line, as in
+/// kernels/records.h: a vector of neighbours is gathered by loading whole records and transposing them in
+/// registers. On two Zen 4 cores with 38,148 nodes that is 3.6 times as fast as gather instructions on
+/// separate components.
 constexpr std::size_t record_floats = 8;
 
 /// Writes the record of every node: node i's is number `slot[i]`. Rounds to float.
 void write_records(const State& state, std::span<const std::uint32_t> slot, float* records);
 
-/// What `write_records` wrote, or a backend since.
+/// Reads the records that `write_records`, or later a backend, wrote.
 State read_records(const float* records, std::span<const std::uint32_t> slot);
 
-/// Components of each node of a cloth as a structure of arrays, for vectors of nodes beside each other in a
-/// row:
+/// Components of each node of a cloth as a structure of arrays, for vectors of consecutive nodes of a row:
 ///
 ///     [row -2 .. rows + 1][component][column]
 ///
 /// Column 0 begins a vector, and so does each component of each row. A ring of two nodes surrounds the cloth,
-/// so that whatever a spring of the stencil would lead to can be loaded. What lies behind the last column is
-/// also what lies before the first one of the next component: a ring is never written and stays zero.
+/// so that the other end of every stencil spring can be loaded. The floats after the last column are also
+/// those before the first column of the next component: the ring is never written and stays zero.
 template <std::size_t component_count>
 struct RowLayout {
   std::size_t lanes;
@@ -114,17 +113,17 @@ struct RowLayout {
   std::size_t offset(std::size_t row, std::size_t column) const {
     return (row + ring) * row_floats() + margin + column;
   }
-  /// Floats of an array, with a margin behind its last row.
+  /// Floats of an array, with a margin after its last row.
   std::size_t floats() const { return (rows + 2 * ring) * row_floats() + margin; }
 
-  /// Columns of a row, in vectors of `vector_lanes`, whose nodes have all the springs of the stencil.
+  /// Columns of a row, in vectors of `vector_lanes`, whose nodes have all springs of the stencil.
   IndexRange inner_columns(std::size_t row, std::size_t vector_lanes) const {
     if (row < ring || row + ring >= rows || columns < margin + ring) return {0, 0};
     return {margin, margin + (columns - ring - margin) / vector_lanes * vector_lanes};
   }
 };
 
-/// What explicit steps compute with, however nodes lie in memory: one integrator, one dt.
+/// Parameters of explicit steps, independent of the layout: one integrator, one dt.
 struct ExplicitSteps {
   const Integrator* integrator;
   Coefficients<float> coefficients;
@@ -136,13 +135,13 @@ struct ExplicitSteps {
         surroundings(surroundings_of(system)) {}
 };
 
-/// Those whose pairs are arrays of their own.
+/// Explicit steps whose pairs have their own arrays.
 struct SeparateSteps : ExplicitSteps {
-  std::array<AlignedArray, pair_kinds> pairs;  ///< empty where not stored
-  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
+  std::array<AlignedArray, pair_kinds> pairs;  ///< empty if not stored
+  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` swap
 
   using ExplicitSteps::ExplicitSteps;
-  /// Makes the pairs, of so many floats each.
+  /// Allocates the pairs, `floats` floats each.
   void make_pairs(std::size_t floats) {
     for (const Pair pair : stored_pairs(*integrator, Storage::separate)) {
       pairs[index(pair)] = AlignedArray(floats);
@@ -154,7 +153,7 @@ struct SeparateSteps : ExplicitSteps {
 /// A spring divided by the mass of a node, so that its force is an acceleration.
 using SpringPerMass = LinearSpring<float>;
 
-/// rest_length in m, mass in kg. `unit_s`: the unit of time, s.
+/// Makes it from rest_length in m and mass in kg. `unit_s`: the unit of time, s.
 inline SpringPerMass spring_per_mass(const SpringMaterial& material, double rest_length, double mass,
                                      double unit_s = 1) {
   static_assert(spring_constant_count == 2, "scale another constant by its power of time, too");
@@ -165,7 +164,7 @@ inline SpringPerMass spring_per_mass(const SpringMaterial& material, double rest
   return spring_from<float>([mass](double number) { return number / mass; }, spring);
 }
 
-/// Writes the constants of one spring or node, `step` floats apart. Returns where a next one would stand.
+/// Writes the constants of one spring or node, `step` floats apart. Returns the position after the last.
 inline float* write_constants(float* to, std::size_t step, const SpringConstants<float>& constants) {
   for (const float number : std::bit_cast<std::array<float, spring_constant_count>>(constants)) {
     *to = number;
@@ -174,8 +173,8 @@ inline float* write_constants(float* to, std::size_t step, const SpringConstants
   return to;
 }
 
-/// Those of a cloth's springs, by GridSpringKind. `unit_s`: as in spring_per_mass. Throws Unsupported where
-/// its nodes differ in mass.
+/// SpringPerMass of a cloth's springs, by GridSpringKind. `unit_s`: as in spring_per_mass. Throws Unsupported
+/// if its nodes differ in mass.
 inline std::vector<SpringPerMass> springs_per_mass(const System& system, const GridPatch& grid,
                                                    double unit_s = 1) {
   const double mass = require_uniform_mass(system);

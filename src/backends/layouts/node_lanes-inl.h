@@ -1,5 +1,5 @@
-// Springs and nodes of a vector, however they lie in memory, those of a row of a cloth (RowLayout), and what
-// a stage does with them. Compiled once per instruction set, so the guard toggles.
+// Springs and nodes of a vector in any layout, those of a row of a cloth (RowLayout), and the stages on them.
+// Compiled once per instruction set, so the guard toggles.
 #if defined(MSSIM_NODE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_NODE_LANES_INL_H_
 #undef MSSIM_NODE_LANES_INL_H_
@@ -23,7 +23,7 @@ namespace mssim::HWY_NAMESPACE {
 /// Springs in registers.
 using SpringLanes = LinearSpring<Lanes>;
 
-/// The same in every lane.
+/// The constants in every lane.
 HWY_INLINE SpringConstants<Lanes> in_every_lane(const mssim::SpringConstants<float>& constants) {
   return HWY_NAMESPACE::constants_from<Lanes>(std::identity(), constants);
 }
@@ -31,7 +31,7 @@ HWY_INLINE SpringLanes in_every_lane(const mssim::LinearSpring<float>& spring) {
   return {in_every_lane(spring.constants), spring.stiffness_rest};
 }
 
-/// Constants of each lane, a vector of each (write_constants). Leaves `from` behind them.
+/// Loads the constants of each lane, one vector per constant (write_constants). Advances `from` past them.
 HWY_INLINE SpringConstants<Lanes> load_constants(const float*& from) {
   const auto next = [&from]() MSSIM_INLINE_LAMBDA {
     const Lanes number = hn::Load(FloatTag(), from);
@@ -43,8 +43,8 @@ HWY_INLINE SpringConstants<Lanes> load_constants(const float*& from) {
 #undef MSSIM_LOADED
 }
 
-/// What every vector needs of a cloth in rows. A copy, because a vector's store may change anything that has
-/// an address elsewhere, as far as the compiler knows.
+/// Parameters of a cloth in rows for every vector. A copy, because the compiler must assume that a vector
+/// store may change any object in memory.
 struct WalkedRows {
   SpringLanes spring[3];  ///< by GridSpringKind
   std::ptrdiff_t pitch;   ///< RowLayout::pitch
@@ -54,7 +54,7 @@ struct WalkedRows {
         pitch(static_cast<std::ptrdiff_t>(of_layout)) {}
 };
 
-/// The springs of a node, each from the node: those of the stencil and, mirrored, those that end in it.
+/// The springs of a node, each as seen from it: those of the stencil and, mirrored, those that end at it.
 constexpr std::size_t node_springs = 2 * grid_stencil.size();
 constexpr GridSpring spring_of_node(std::size_t i) {
   GridSpring spring = grid_stencil[i / 2];
@@ -65,36 +65,35 @@ constexpr GridSpring spring_of_node(std::size_t i) {
   return spring;
 }
 
-/// A vector of nodes in a row, where all their springs exist.
+/// A vector of nodes in a row with all their springs.
 struct InnerVector {
   HWY_INLINE EveryLane has(int /*rows*/, int /*columns*/) const { return {}; }
 };
 
-/// A vector of nodes in a row, some of whose springs would end outside of the cloth, or some of whose lanes
-/// lie there.
+/// A vector of nodes in a row, where some springs or some lanes would be outside the cloth.
 struct EdgeVector {
   std::uint32_t row;
   Index column;                 ///< of each lane
   std::uint32_t rows, columns;  ///< of the cloth
-  /// Lanes that have a node in the cloth so many rows and columns further.
+  /// Lanes with a node of the cloth at an offset of `down` rows and `right` columns.
   HWY_INLINE Mask has(int down, int right) const {
-    const bool row_exists = row + static_cast<std::uint32_t>(down) < rows;  // above the first it wraps
+    const bool row_exists = row + static_cast<std::uint32_t>(down) < rows;  // above the first row it wraps
     return below(hn::Add(column, hn::Set(IndexTag(), static_cast<std::uint32_t>(right))),
                  row_exists ? columns : 0);
   }
 };
 
-/// Three components of a vector of nodes that need not begin where a vector does.
+/// Three components of a vector of nodes at an unaligned address.
 HWY_INLINE Lanes3 load_components(const float* from, auto pitch) {
   const FloatTag d;
   return {hn::LoadU(d, from), hn::LoadU(d, from + pitch), hn::LoadU(d, from + 2 * pitch)};
 }
-/// The components x y z u v w of such a vector.
+/// The components x y z u v w of a vector of nodes at an unaligned address.
 HWY_INLINE NodeLanes load_node(const float* from, auto pitch) {
   return {load_components(from, pitch), load_components(from + 3 * pitch, pitch)};
 }
 
-/// What the floor does to the new state of the nodes that are `free` (a Mask or EveryLane).
+/// Applies the floor to the new state of the nodes that are `free` (a Mask or EveryLane).
 template <class Free>
 HWY_INLINE void touch_floor(Free free, const Surroundings& surroundings, Lanes3& x, Lanes3& v) {
   const Lanes height(surroundings.floor_height);
@@ -102,14 +101,14 @@ HWY_INLINE void touch_floor(Free free, const Surroundings& surroundings, Lanes3&
               Lanes(surroundings.friction), x, v);
 }
 
-/// One stage at the nodes of one vector. `pull`: the acceleration that the springs give them; `node`: what
-/// they are in the gathered pair; those not `free` (a Mask or EveryLane) stay as they are. `gravity`, m/s^2,
-/// in place of that of `surroundings`. `load` and `store` are update_stage's.
+/// One stage at the nodes of one vector. `pull`: the acceleration from the springs; `node`: the gathered
+/// pair; nodes not `free` (a Mask or EveryLane) are unchanged. `gravity`, m/s^2, replaces that of
+/// `surroundings`. `load` and `store` are update_stage's.
 template <std::size_t method, std::size_t stage, class Free, class Load, class Store>
 HWY_INLINE void update_lanes(const NodeLanes& node, const Lanes3& pull, Free free, Lanes gravity,
                              const Coefficients<float>& coefficients, const Surroundings& surroundings,
                              Load load, Store store) {
-  // What is held is at rest; without acceleration every assignment gives it back as it was.
+  // Held nodes are at rest; without acceleration every assignment returns their old value.
   const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping), gravity));
   update_stage<method, stage>(coefficients, node.x, node.v, a, load, store,
                               [&](Lanes3& x, Lanes3& v)

@@ -14,16 +14,15 @@
 namespace mssim {
 namespace {
 
-/// A spring from its first end on, between slots.
+/// A spring between slots, from its first end.
 struct Unit {
   std::uint32_t kind, second;
   float rest_length;
-  // clang-tidy 14 takes the comparison with zero that this stands for as one with a null pointer.
+  // clang-tidy 14 mistakes its implied comparison with zero for one with a null pointer.
   auto operator<=>(const Unit&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-/// The scene's node at each slot, and for each scene's node how far ahead it is: the end of a spring that is
-/// further ahead is its first.
+/// The scene's node at each slot, and each scene node's rank: a spring's first end is the one of lower rank.
 struct NodeOrder {
   std::vector<std::uint32_t> scene_node, rank;
 };
@@ -40,7 +39,7 @@ NodeOrder node_order(const System& system) {
   node = reverse_cuthill_mckee(system.nodes(), system.springs);
   order.rank = places_in(node);
 
-  std::vector<std::array<std::uint32_t, 2>> forces(system.nodes());  // added, subtracted
+  std::vector<std::array<std::uint32_t, 2>> forces(system.nodes());  // [nodes] added, subtracted
   for (const Spring& spring : system.springs) {
     const bool in_order = order.rank[spring.first] < order.rank[spring.second];
     ++forces[spring.first][in_order ? 0 : 1];
@@ -55,7 +54,7 @@ NodeOrder node_order(const System& system) {
   return order;
 }
 
-/// The units that begin at a slot: by kind, then by their second ends.
+/// The units that begin at a slot, sorted by kind, then by second end.
 void find_units(const System& system, const SpringsByFirstEnd& springs, std::size_t slot,
                 std::vector<Unit>& units) {
   units.clear();
@@ -91,7 +90,7 @@ void PackedSprings::pack_units(const System& system, const std::vector<std::uint
       find_units(system, springs, slice * slice_nodes + i, of_node[i]);
     std::array<std::size_t, slice_nodes> next{};
     while (true) {
-      // The kinds in turn, each until no node of the slice has one left.
+      // One kind after the other, each until no node of the slice has one left.
       std::uint32_t kind = no_kind;
       for (std::size_t i = 0; i < slice_nodes; ++i)
         if (next[i] < of_node[i].size()) kind = std::min(kind, of_node[i][next[i]].kind);

@@ -1,5 +1,5 @@
-// Nodes as records (node_arrays.h) to and from vectors of components, transposed in registers, and what a
-// stage does with them. Compiled once per instruction set, so the guard toggles.
+// Conversion between nodes as records (node_arrays.h) and vectors of components, transposed in registers, and
+// the stages on them. Compiled once per instruction set, so the guard toggles.
 #if defined(MSSIM_RECORDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_RECORDS_INL_H_
 #undef MSSIM_RECORDS_INL_H_
@@ -30,7 +30,7 @@ struct SingleRecord {
 template <std::size_t lanes>
 using TransposedRecords = SingleRecord;
 
-/// Writes `lanes` records that follow each other at `to`.
+/// Writes `lanes` contiguous records at `to`.
 template <std::size_t lanes>
 HWY_INLINE void store_records(float* to, const NodeLanes& node) {
   static_assert(lanes == 1);
@@ -45,7 +45,7 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
 
 #else
 
-/// Transposes in each block of four floats: from four vectors of records to their components, or back.
+/// Transposes each block of four floats: from four vectors of records to their components, or back.
 template <class V>
 HWY_INLINE void transpose_blocks(V r0, V r1, V r2, V r3, V* out) {
   const FloatTag d;
@@ -64,7 +64,7 @@ HWY_INLINE void transpose_blocks(V r0, V r1, V r2, V r3, V* out) {
 template <class V>
 HWY_INLINE V even_blocks(V low, V high) {
 #if HWY_CAP_GE512
-  // vshuff32x4, which has no name in Highway; its intrinsic makes g++ 12 warn of what it left uninitialised.
+  // vshuff32x4, which has no name in Highway; its intrinsic causes a false warning of g++ 12.
   return V{
       __builtin_shufflevector(low.raw, high.raw, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)};
 #else
@@ -83,13 +83,13 @@ HWY_INLINE V odd_blocks(V low, V high) {
 #endif
 }
 
-/// Records of eight floats, one a lane, transposed as far as goes without exchanging blocks of four floats.
+/// Records of eight floats, one per lane, transposed except for an exchange of blocks of four floats.
 template <std::size_t lanes>
 struct TransposedRecords {
   static_assert(lanes == 4 || lanes == 8 || lanes == 16);
   using Vector = hn::Vec<FloatTag>;
-  /// With 4 lanes the components of the first and of the last four floats; with more of both by turns, of the
-  /// first half of the records and of the second.
+  /// With 4 lanes: the components of the first and of the last four floats. With more lanes: blocks of both
+  /// alternate, for the first and the second half of the records.
   Vector low[4], high[4];
 
   template <class Record>
@@ -126,7 +126,7 @@ struct TransposedRecords {
   }
 };
 
-/// Stores the nodes of a vector as records, one behind the other.
+/// Stores the nodes of a vector as contiguous records.
 template <std::size_t lanes>
 HWY_INLINE void store_records(float* to, const NodeLanes& node) {
   const FloatTag d;
@@ -164,7 +164,7 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
 
 #endif
 
-/// The nodes whose records lie at record(0), record(1) ..., one a lane.
+/// Loads the nodes whose records are at record(0), record(1) ..., one per lane.
 template <std::size_t lanes, class Record>
 HWY_INLINE NodeLanes load_records(Record record) {
   const TransposedRecords<lanes> all(record);
@@ -173,17 +173,17 @@ HWY_INLINE NodeLanes load_records(Record record) {
 
 constexpr std::size_t vector_nodes = hn::MaxLanes(FloatTag());
 
-/// Where each pair's nodes start, by role.
+/// Start of each pair's nodes, by role.
 using Pairs = std::array<float*, pair_kinds>;
 
-/// The nodes whose records follow each other from `first` on.
+/// Loads the nodes of contiguous records from `first` on.
 HWY_INLINE NodeLanes load_nodes(const float* first) {
   return load_records<vector_nodes>([&](std::size_t i)
                                         MSSIM_INLINE_LAMBDA { return first + i * record_floats; });
 }
 
-/// One stage at the nodes whose records begin `offset` floats after each pair's. `pull`: the acceleration
-/// that the springs give them; `node`: what they are in the gathered pair; those not `free` stay as they are.
+/// One stage at the nodes whose records begin `offset` floats after each pair's start. `pull`: the
+/// acceleration from the springs; `node`: the gathered pair; nodes not `free` are unchanged.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeLanes& node,
                              const Lanes3& pull, Mask free, const Coefficients<float>& coefficients,

@@ -9,7 +9,7 @@
 namespace mssim {
 namespace {
 
-/// The kind of each node's springs; no_node where it has none. Throws Unsupported where a node has several.
+/// The kind of each node's springs; no_node without springs. Throws Unsupported if a node has several kinds.
 std::vector<std::uint32_t> kind_of_nodes(const System& system) {
   std::vector<std::uint32_t> kinds(system.nodes(), SlicedGraph::no_node);
   for (const Spring& spring : system.springs)
@@ -28,7 +28,7 @@ struct Neighbour {
   float rest_length;
 };
 
-/// Sorts nodes by degree, the largest first, within windows.
+/// Sorts nodes within windows by degree, the largest first.
 void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint32_t>& degree) {
   for (std::size_t begin = 0; begin < nodes.size(); begin += SlicedGraph::window) {
     const std::size_t count = std::min(SlicedGraph::window, nodes.size() - begin);
@@ -37,7 +37,7 @@ void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint
   }
 }
 
-/// A whole as the part that has all of it.
+/// A whole system as a part of itself.
 GraphPart whole_of(const System& system) {
   if (system.springs.size() > SlicedGraph::no_node / 2)
     throw Unsupported("the scene has {} springs; a sliced graph holds at most 2147483647",
@@ -45,7 +45,7 @@ GraphPart whole_of(const System& system) {
   return {places_in(reverse_cuthill_mckee(system.nodes(), system.springs)), system.nodes()};
 }
 
-/// Whether each own node of a part has a ghost for a neighbour.
+/// Whether each own node of a part has a ghost as a neighbour.
 std::vector<bool> edge_nodes(const System& system, std::size_t own) {
   std::vector<bool> edge(own, false);
   for (const Spring& spring : system.springs) {

@@ -11,55 +11,53 @@
 
 namespace mssim {
 
-/// What a system that is a part of another one (the whole) must know of that, so that its steps have the same
-/// bits.
+/// Data of the whole system that a part of it needs for bitwise identical steps.
 struct GraphPart {
-  /// [nodes] where the node stands in the whole's reverse_cuthill_mckee(): a node's springs are added in this
-  /// order of its neighbours.
+  /// [nodes] position in the whole's reverse_cuthill_mckee(): a node's springs are added in this order of its
+  /// neighbours.
   std::vector<std::uint32_t> place;
-  /// Nodes from this one on are ghosts: neighbours of the part's own nodes that are stepped elsewhere.
+  /// Nodes from this one on are ghosts: neighbours of own nodes that other processes step.
   std::size_t own = 0;
 };
 
-/// The springs of a system as every node sees them, for code that gathers: the nodes renumbered so that
-/// neighbours stand near each other (reverse Cuthill-McKee), then sorted by degree within windows, then cut
-/// into slices of `lanes` nodes, whose springs lie side by side (sliced ELLPACK; M. Kreutzer et al., 2014,
-/// call it SELL-C-sigma). The spring law's constants are divided by the mass of the node, so that forces are
+/// The springs of a system as every node sees them, for code that gathers: the nodes are renumbered so that
+/// neighbours are near each other (reverse Cuthill-McKee), then sorted by degree within windows, then divided
+/// into slices of `lanes` nodes, whose springs are interleaved (sliced ELLPACK; M. Kreutzer et al., 2014,
+/// call it SELL-C-sigma). The spring law's constants are divided by the mass of the node, so forces are
 /// accelerations.
 ///
-/// A slice has as many entries as its node of the largest degree, its neighbours in the order before windows
-/// were sorted; entry e of the slice gives each lane's node one neighbour, in elements e * lanes + lane of
-/// `neighbour` and `stiffness_rest`. Nodes of smaller degree end with empty entries: the node itself for a
-/// neighbour, and empty_entry, which is negative as no spring's is, for stiffness_rest. They must give no
-/// force: their length is 0, so that any finite pull gives none.
+/// A slice has as many entries as the largest degree of its nodes; a node's neighbours are in the order
+/// before sorting. Entry e of the slice gives each lane's node one neighbour, in elements e * lanes + lane of
+/// `neighbour` and `stiffness_rest`. Nodes of smaller degree end with empty entries: the node itself as its
+/// neighbour, and empty_entry, which unlike a spring's is negative, as stiffness_rest. They must give no
+/// force: their length is 0, so any finite pull gives none.
 ///
-/// Places after the last node fill up the last slice: held, with empty entries only.
+/// Slots after the last node fill up the last slice: held, with only empty entries.
 ///
-/// A graph may be a part of that of a whole: then its nodes that are neighbours of ghosts (edge nodes) lie in
-/// slices of their own after the others, and the ghosts, which no slice has, behind them.
+/// A graph may be a part of a whole: then its nodes with ghost neighbours (edge nodes) are in slices of their
+/// own after the others, and the ghosts, which are in no slice, come after them.
 struct SlicedGraph {
   static constexpr std::size_t window = 256;  ///< nodes; more saves few empty entries and costs locality
   static constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
   static constexpr float empty_entry = -1;
 
-  std::size_t lanes = 0;                  ///< nodes in a slice
-  std::vector<std::uint32_t> scene_node;  ///< [slots] the scene's number of the node, or no_node
-  /// [nodes] where the scene's node stands; of a part, ghost g stands at slots() + g.
+  std::size_t lanes = 0;                  ///< nodes per slice
+  std::vector<std::uint32_t> scene_node;  ///< [slots] the scene's node number, or no_node
+  /// [nodes] slot of the scene's node; in a part, the slot of ghost g is slots() + g.
   std::vector<std::uint32_t> slot;
-  std::size_t ghosts = 0;            ///< nodes that no slice has
-  std::size_t first_edge_slice = 0;  ///< slices from here on have edge nodes; slices() where there are none
-  std::vector<std::uint32_t>
-      first_entry;                       ///< [slices + 1] of the slice; the last one is the number of entries
-  std::vector<std::uint32_t> neighbour;  ///< [entries][lanes] slots
-  std::vector<float> stiffness_rest;     ///< [entries][lanes] stiffness * rest length / mass, m/s^2
+  std::size_t ghosts = 0;            ///< nodes in no slice
+  std::size_t first_edge_slice = 0;  ///< slices from here on have edge nodes; slices() if there are none
+  std::vector<std::uint32_t> first_entry;         ///< [slices + 1] the last one is the number of entries
+  std::vector<std::uint32_t> neighbour;           ///< [entries][lanes] slots
+  std::vector<float> stiffness_rest;              ///< [entries][lanes] stiffness * rest length / mass, m/s^2
   std::vector<SpringConstants<float>> constants;  ///< [slots] divided by mass, of all springs of the node
-  std::vector<std::uint32_t> held;  ///< [slots] 1 where nothing may move: pinned, or no node; else 0
+  std::vector<std::uint32_t> held;                ///< [slots] 1 if pinned or padding, else 0
 
-  /// Throws Unsupported where springs of unlike materials meet in a node, and for more springs than 32 bits
-  /// number from both ends.
+  /// Throws Unsupported if springs of different materials meet in a node, or if there are too many springs
+  /// for 32-bit indices from both ends.
   SlicedGraph(const System& system, std::size_t slice_lanes);
-  /// Slices a part of a graph: its nodes have the entries of the whole's graph, in the same order, with the
-  /// same constants. Springs between ghosts are left out.
+  /// Slices a part of a graph: its nodes have the same entries as in the whole's graph, in the same order,
+  /// with the same constants. Springs between ghosts are omitted.
   SlicedGraph(const System& system, std::size_t slice_lanes, const GraphPart& part);
 
   std::size_t nodes() const { return slot.size(); }
@@ -68,15 +66,16 @@ struct SlicedGraph {
   std::size_t entries() const { return first_entry.back(); }
 };
 
-/// What entries of slices count records in, in floats: a processor's address can have such a factor.
+/// Unit of record offsets in slice entries, in floats: a scale factor that CPU addressing supports.
 inline constexpr std::size_t slice_offset_floats = 2;
 
-/// Throws Unsupported where bodies have more nodes than entries can name records of so many floats.
+/// Throws Unsupported if there are more nodes than entries can address as records of `floats_of_record`
+/// floats.
 void require_nameable_records(const System& system, std::size_t floats_of_record);
 
-/// [entries][2][lanes] in one stream: where the neighbours' records start, in units of slice_offset_floats
-/// and as std::uint32_t, then SlicedGraph::stiffness_rest. Behind them one that names the first record only,
-/// for code that loads records an entry ahead. record_of(slot): the number of a slot's record.
+/// [entries][2][lanes] in one stream: offsets of the neighbours' records, in units of slice_offset_floats and
+/// as std::uint32_t, then SlicedGraph::stiffness_rest. An entry that names only the first record follows, for
+/// code that loads records one entry ahead. record_of(slot): the number of a slot's record.
 template <class RecordOf>
 AlignedArray slice_entries(const SlicedGraph& graph, std::size_t floats_of_record, RecordOf record_of) {
   const std::size_t lanes = graph.lanes;
@@ -92,7 +91,7 @@ AlignedArray slice_entries(const SlicedGraph& graph, std::size_t floats_of_recor
   return entries;
 }
 
-/// What the slices before `slice` cost, in entries: a slice has its own cost beside theirs.
+/// Cost of the slices before `slice`, in entries: a slice has a fixed cost besides its entries.
 inline std::size_t cost_of_slices_before(const std::vector<std::uint32_t>& first_entry, std::size_t slice) {
   constexpr std::size_t slice_cost = 4;
   return first_entry[slice] + slice * slice_cost;

@@ -5,9 +5,9 @@
 namespace mssim {
 namespace {
 
-/// A node at the rim of the component of `node`: the farthest one, of least degree among those, seen from the
+/// A peripheral node of the component of `node`: the farthest one, of least degree among those, from the
 /// farthest one, and so on until the distance no longer grows (A. George and J. Liu, 1979). `distance` must
-/// be unreached for the component's nodes, and is again afterwards.
+/// be `unreached` for the component's nodes, and is so again afterwards.
 std::uint32_t rim_node(const Adjacency& graph, std::uint32_t node, std::vector<std::uint32_t>& distance,
                        std::uint32_t unreached) {
   std::vector<std::uint32_t> queue;
@@ -76,7 +76,7 @@ std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order) {
 
 std::vector<std::size_t> component_ends(std::span<const Spring> springs,
                                         std::span<const std::uint32_t> place) {
-  std::vector<std::size_t> reach(place.size());  // how far springs lead from each place on
+  std::vector<std::size_t> reach(place.size());  // [places] farthest place that springs reach from here
   std::iota(reach.begin(), reach.end(), std::size_t{0});
   for (const Spring& spring : springs) {
     const auto [near, far] = std::minmax(place[spring.first], place[spring.second]);
@@ -104,7 +104,7 @@ SpringColouring colour_springs(std::span<const Spring> list, std::size_t nodes) 
   const std::vector<std::uint32_t> degree = degrees_of(nodes, list);
   const std::size_t largest = degree.empty() ? 0 : *std::ranges::max_element(degree);
   const std::size_t words = (2 * largest + word_bits - 1) / word_bits;
-  std::vector<std::uint64_t> taken(nodes * words, 0);  // [nodes][words] a bit for each colour of a node
+  std::vector<std::uint64_t> taken(nodes * words, 0);  // [nodes][words] one bit for each colour at a node
   std::vector<std::uint32_t> colour_of;
   colour_of.reserve(list.size());
   SpringColouring colouring;

@@ -11,7 +11,7 @@
 
 namespace mssim {
 
-/// [nodes] How many springs end in each node.
+/// [nodes] number of springs at each node.
 std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs);
 
 /// The neighbours of every node, ascending: node i's are neighbours[first[i]] to neighbours[first[i + 1] -
@@ -40,30 +40,29 @@ struct Adjacency {
   }
 };
 
-/// An order of the nodes in which neighbours stand near each other, so that what a node gathers lies in few
-/// cache lines: breadth first from a node at the rim of its connected component, the neighbours of each node
-/// by ascending degree, and each component backwards (E. Cuthill and J. McKee, 1969; A. George, 1971).
-/// Components follow each other in the order of their lowest node. Returns the node at each slot: [nodes], a
-/// permutation.
+/// An order of the nodes in which neighbours are near each other, so that a node gathers from few cache
+/// lines: breadth first from a peripheral node of each connected component, the neighbours of each node by
+/// ascending degree, and each component reversed (E. Cuthill and J. McKee, 1969; A. George, 1971). Components
+/// are in the order of their lowest nodes. Returns the node at each slot: [nodes], a permutation.
 std::vector<std::uint32_t> reverse_cuthill_mckee(std::size_t nodes, std::span<const Spring> springs);
 
-/// [nodes] Where each node stands in an order of them.
+/// [nodes] the position of each node in an order of them.
 std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order);
 
-/// Behind which places the connected components end, ascending, where each component's nodes stand together.
+/// Ends of the connected components in an order in which each component's nodes are contiguous, ascending.
 std::vector<std::size_t> component_ends(std::span<const Spring> springs,
                                         std::span<const std::uint32_t> place);
 
-/// Springs by the end that comes first in an order of their nodes: found by counting, since sorting a copy of
+/// Springs by the end that comes first in an order of their nodes: a counting sort, because sorting a copy of
 /// all springs takes four times as long on a large cloth.
 class SpringsByFirstEnd {
  public:
-  /// `slot`: [nodes] where each node stands; `rank`: [nodes] how far ahead it is, by which first ends are
-  /// chosen. The springs, and both, must outlive this.
+  /// `slot`: [nodes] the slot of each node; `rank`: [nodes] the position by which first ends are chosen. The
+  /// springs and both arrays must outlive this object.
   SpringsByFirstEnd(std::span<const Spring> springs, std::span<const std::uint32_t> slot,
                     std::span<const std::uint32_t> rank);
 
-  /// Numbers of the springs that begin at a slot, ascending; none at a slot without a node.
+  /// Indices of the springs that begin at a slot, ascending; empty for a slot without a node.
   std::span<const std::uint32_t> at(std::size_t slot) const {
     if (slot + 1 >= begin_.size()) return {};
     return std::span(order_).subspan(begin_[slot], begin_[slot + 1] - begin_[slot]);
@@ -84,10 +83,10 @@ class SpringsByFirstEnd {
   std::vector<std::uint32_t> order_;  // [springs]
 };
 
-/// A list of springs sorted into colours, no two springs of a colour sharing a node.
+/// A list of springs sorted into colours: no two springs of a colour share a node.
 struct SpringColouring {
   std::vector<Spring> springs;     ///< [springs] colour by colour, in the order of the list within each
-  std::vector<std::size_t> first;  ///< [colours + 1] where a colour begins
+  std::vector<std::size_t> first;  ///< [colours + 1] begin of each colour
 
   std::size_t colours() const { return first.size() - 1; }
   std::span<const Spring> of_colour(std::size_t colour) const {
@@ -95,8 +94,8 @@ struct SpringColouring {
   }
 };
 
-/// Gives each spring in turn the first colour that neither of its ends has: at most twice as many colours,
-/// less one, as the largest degree of a node. `nodes`: above all node numbers of the springs.
+/// Gives each spring in turn the first colour that neither of its ends has: at most twice the largest degree
+/// of a node, minus one, colours. `nodes`: greater than all node numbers of the springs.
 SpringColouring colour_springs(std::span<const Spring> list, std::size_t nodes);
 
 }  // namespace mssim

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t halo = BandLayout::halo;
 
-/// What the kernels of both shapes are told about a cloth.
+/// Parameters of a cloth for the kernels of both shapes.
 GridParameters grid_parameters_of(const System& system, const GridPatch& patch) {
   GridParameters grid{};
   grid.rows = static_cast<int>(patch.rows);
@@ -27,7 +27,7 @@ GridParameters grid_parameters_of(const System& system, const GridPatch& patch) 
   return grid;
 }
 
-/// Masks of numbers, one for every row or column that differs from the others.
+/// Masks of integers, one for every row or column that differs from the others.
 struct Masks {
   std::vector<cl_int> mask_of;  ///< [rows or columns] a mask, or a negative number
   std::vector<cl_int> numbers;  ///< [masks][length]
@@ -35,7 +35,7 @@ struct Masks {
 
   Masks(std::size_t count, std::size_t mask_length) : mask_of(count, -1), length(mask_length) {}
 
-  /// The mask of a row or column; made from `model` where there is none.
+  /// The mask of a row or column; copied from `model` if it has none.
   std::span<cl_int> mask(std::size_t number, const std::vector<cl_int>& model) {
     if (mask_of[number] < 0) {
       mask_of[number] = static_cast<cl_int>(numbers.size() / length);
@@ -45,7 +45,7 @@ struct Masks {
   }
 };
 
-/// One work-item a node (kernels/grid_nodes.cl).
+/// One work-item per node (kernels/grid_nodes.cl).
 struct NodeShape {
   GridPatch grid;
   std::array<std::size_t, 2> local;   // along a row, rows
@@ -55,8 +55,8 @@ struct NodeShape {
   static constexpr std::size_t halo_rows = 2;   // above and below, as far as the stencil reaches
   static constexpr std::size_t left_halo = 16;  // floats; keeps every row aligned to what hardware reads
 
-  // A tile, so that most neighbours of a group's nodes are its own; 64 wide, as wide as any hardware's groups
-  // of lanes.
+  // A tile, so that most neighbours of a group's nodes are its own; 64 wide, at least as wide as the SIMD
+  // groups of any hardware.
   NodeShape(const GridPatch& patch, const OpenclDevice& device) : grid(patch) {
     const std::size_t largest = cl::Device(device.id, true).getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
     local = {std::min<std::size_t>(64, largest), std::clamp<std::size_t>(largest / 64, 1, 4)};
@@ -95,7 +95,7 @@ std::unique_ptr<Backend> make_grid_nodes(const System& system, const NodeShape& 
           {cl::NDRange(shape.global[0], shape.global[1]), cl::NDRange(shape.local[0], shape.local[1])}});
 }
 
-/// A cloth in bands, a launch a few steps.
+/// A cloth in bands, with several steps per launch.
 class OpenclBands final : public OpenclBackend {
  public:
   OpenclBands(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
@@ -129,7 +129,7 @@ class OpenclBands final : public OpenclBackend {
     add_argument(bytes_of(parameters));
     add_argument(bytes_of(free.mask_of));
     add_argument(bytes_of(free.numbers));
-    // Zeros in the padding, so that no arithmetic there meets a denormal number, which can be slow.
+    // Zeros in the padding too, so that no arithmetic meets a denormal number, which can be slow.
     arguments_.push_back(queue_.zeros<std::byte>(ring_bytes(shape, integrator)));
     arguments_.push_back(queue_.array<std::byte>(sum_bytes(shape)));
     const cl::Program program = queue_.build(grid_program_text(integrator, static_cast<int>(bands.lanes)));
@@ -175,7 +175,7 @@ class OpenclBands final : public OpenclBackend {
 
   PairLayout ghost_layout_;
   int steps_per_launch_;
-  OpenclBuffer<float> state_, ghosts_;  // ghosts: those to read and to leave, which change roles
+  OpenclBuffer<float> state_, ghosts_;  // ghosts: to be read and to be written, alternating
 };
 
 }  // namespace
@@ -195,10 +195,10 @@ BandShape::BandShape(const GridPatch& grid, const Integrator& integrator, std::s
                      std::size_t units, std::uint64_t cache_bytes,
                      std::optional<std::size_t> steps_in_a_launch)
     : bands(grid, lanes) {
-  constexpr std::size_t most_stages = 16;  // whose columns still fit a second-level cache
+  constexpr std::size_t most_stages = 16;  // whose columns still fit in a second-level cache
   constexpr std::size_t most_partitions_per_unit = 4;
-  // A state that half of the cache does not hold comes from memory: more steps a launch also make fewer
-  // passes over it, as in the host's walk.
+  // If half of the cache does not hold the state, it comes from memory: more steps per launch then also mean
+  // fewer passes over it, as in the host's walk.
   const bool fits = bands.columns * bands.column_floats() * sizeof(float) <= cache_bytes / 2;
   const std::size_t fewest = fits ? 1 : stages_under_way / integrator.stage_count;
   const std::size_t first = steps_in_a_launch.value_or(fewest);
@@ -217,20 +217,20 @@ BandShape BandShape::with(std::size_t steps_in_a_launch, std::size_t most_partit
   BandShape shape = *this;
   shape.steps = steps_in_a_launch;
   shape.ghosts = halo * integrator.stage_count * shape.steps;
-  // A partition's ghosts belong to the partitions beside it.
+  // A partition's ghosts belong to the adjacent partitions.
   shape.partitions = std::clamp<std::size_t>(bands.columns / shape.ghosts, 1, most_partitions);
   return shape;
 }
 
 double BandShape::step_cost(const Integrator& integrator, std::size_t units) const {
-  // In units of 4 ns, which a node and stage takes with PoCL on two cores of Zen 4 or of an Intel Xeon. A
-  // launch that wakes both threads of a virtual machine takes 36 to 41 microseconds on the Xeon; on Zen 4 one
-  // of next to nothing, which wakes one, took 4. With a number between them the steps chosen were at most 2 %
-  // from the best on the Xeon, and are so where a launch takes 6 microseconds, if these costs hold. More
-  // steps make fewer launches and more ghosts, which are computed twice; more partitions leave some of the
-  // share of a compute unit that was held up to the others.
+  // In units of 4 ns, the time of a node and stage with PoCL on two cores of Zen 4 or of an Intel Xeon. A
+  // launch that wakes both threads of a virtual machine takes 36 to 41 microseconds on the Xeon; on Zen 4 a
+  // nearly empty one, which wakes one thread, took 4. With a value between them, the chosen steps were at
+  // most 2 % from the best on the Xeon, and would also be if a launch took 6 microseconds and these costs
+  // hold. More steps mean fewer launches and more ghosts, which are computed twice; more partitions let
+  // others take over part of a delayed compute unit's share.
   constexpr double launch = 6000;
-  constexpr double unevenness = 0.05;  // of a partition's time, by which the last one is later
+  constexpr double unevenness = 0.05;  // fraction of a partition's time by which the last one is late
   const auto number = [](std::size_t count) { return static_cast<double>(count); };
   // The first stage walks over all ghosts of a side, the last one over none.
   const double sides = std::min(number(partitions) - 1, 2.0);

@@ -24,7 +24,7 @@ PairLayout record_layout(const SlicedGraph& graph) {
   return pair;
 }
 
-/// [slices][spring_constant_count][lanes] of the nodes.
+/// [slices][spring_constant_count][lanes] constants of the nodes.
 std::vector<float> slice_constants(const SlicedGraph& graph) {
   std::vector<float> constants(graph.slots() * spring_constant_count);
   for (std::size_t slot = 0; slot < graph.slots(); ++slot)
@@ -34,7 +34,7 @@ std::vector<float> slice_constants(const SlicedGraph& graph) {
   return constants;
 }
 
-/// How work-items share the nodes of bodies, `lanes` in a tile.
+/// How work-items share the nodes of bodies, with `lanes` nodes per tile.
 struct MeshTiles {
   OpenclChunks chunks;
   MeshParameters parameters;
@@ -45,18 +45,18 @@ struct MeshTiles {
                    static_cast<cl_uint>(chunks.per_item)} {}
 };
 
-/// The bodies as the kernels see them (kernels/alike_stage.cl).
+/// The bodies in the layout of the kernels (kernels/alike_stage.cl).
 struct AlikeGraph {
   struct Slice {
     cl_uint first_spring, end_spring, first_slice, pinned;
   };
   struct Neighbour {
-    cl_uint node;  // of the body
+    cl_uint node;  // in the body
     cl_uint stiffness_rest;
   };
   std::vector<Slice> slices;
-  std::vector<Neighbour> springs;  // of a shape, from both ends, by node, ascending by neighbour
-  std::vector<SpringConstants<float>> constants;  // of slices
+  std::vector<Neighbour> springs;  // of a shape, seen from both ends, by node, ascending by neighbour
+  std::vector<SpringConstants<float>> constants;  // [slices]
   std::uint64_t stored_springs = 0;
 
   AlikeGraph(const std::vector<AlikeBodies>& bodies, const AlikeSlices& layout);
@@ -75,7 +75,7 @@ std::vector<std::vector<AlikeGraph::Neighbour>> neighbours_of(const AlikeBodies&
 }
 
 AlikeGraph::AlikeGraph(const std::vector<AlikeBodies>& bodies, const AlikeSlices& layout) {
-  std::vector<std::vector<Slice>> of_shape;  // but for the first slice
+  std::vector<std::vector<Slice>> of_shape;  // [shapes] without the first slice
   for (const AlikeBodies& of : bodies) {
     stored_springs += of.springs.size();
     of_shape.emplace_back();
@@ -94,7 +94,7 @@ AlikeGraph::AlikeGraph(const std::vector<AlikeBodies>& bodies, const AlikeSlices
     }
 }
 
-/// Throws Unsupported where the kernels' numbers do not suffice for tiles and springs.
+/// Throws Unsupported if the kernels' integers are too small for the tiles and springs.
 void require_numbers(const std::vector<AlikeBodies>& bodies, std::size_t slots) {
   constexpr std::size_t most = std::numeric_limits<cl_uint>::max();
   std::size_t springs = 0;
@@ -129,8 +129,8 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
       before(SteppedKind::cloth);
       return make_opencl_grid(system, *grid, integrator, dt_s, device, memory, lanes);
     }
-    // With thirteen bodies in sixteen lanes a step takes 0.61 of the time that a sliced graph takes (PoCL on
-    // an Intel Xeon): so it is worth it from nine on.
+    // With thirteen bodies in sixteen lanes a step takes 0.61 of the time of a sliced graph (PoCL on an Intel
+    // Xeon), so it pays off from nine bodies on.
     constexpr double lanes_per_body = 1.8;
     const auto alike = alike_bodies_for(system, alike_slice_lanes(lanes), lanes_per_body);
     before(alike ? SteppedKind::alike_bodies : SteppedKind::bodies);
@@ -147,7 +147,7 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
                      mesh_program_text(integrator, lanes),
                      tiles.chunks.items});
     }
-    // To the same bits.
+    // Bitwise identical with the general kernels.
     const AlikeSlices slices(*alike, alike_slice_lanes(lanes));
     require_numbers(*alike, slices.scene_node.size());
     const AlikeGraph graph(*alike, slices);

@@ -16,10 +16,10 @@ namespace {
 constexpr std::array<std::string_view, pair_kinds> pair_names{"state", "next", "trial_a", "trial_b"};
 std::string name(Slot slot) { return std::string(name_of(slot)); }
 
-/// The name by which kernels know the arrays of `stored`.
+/// The name of the arrays of `stored` in kernels.
 std::string name_of(Pair stored) { return std::string(pair_names[index(stored)]); }
 
-/// The sum of an assignment, the last term first, so that the large first term is added last.
+/// The sum of an assignment, the last term first, so the large first term is added last.
 std::string sum_of_terms(const Assignment& assignment, std::size_t stage, std::size_t number) {
   const auto factor = [&](std::size_t term) {
     return fmt::format("(Real)(step->coefficients[{}][{}][{}])", stage, number, term);
@@ -40,7 +40,7 @@ bool writes_stored(const StoredStage& stage, Pair stored) {
   return false;
 }
 
-/// The pairs of stage_arguments as parameters, and as arguments of a call, each with a comma behind it.
+/// The pairs of stage_arguments as parameters, and as arguments of a call, each followed by a comma.
 std::string pair_parameters(const StoredStage& stage) {
   std::string text;
   for (const Pair pair : stage_arguments(stage))
@@ -55,15 +55,15 @@ std::string pair_names_of(const StoredStage& stage) {
   return text;
 }
 
-/// The call that reads or writes the slot's memory: kernels/*_stage.cl have these functions.
+/// The call that reads or writes the slot's memory; kernels/*_stage.cl define these functions.
 std::string access(const char* what, Slot slot, Pair arrays, const std::string& value = "") {
   return fmt::format("{}_part({}{}, {}, tile, shape)", what, value, name_of(arrays), index(slot) % 2);
 }
 Pair pair_of(Slot slot) { return static_cast<Pair>(index(slot) / 2); }
 
-/// `update_N`: the assignments of stage N for the nodes of a tile, once their springs are summed. It takes
-/// the pairs, the tile, its nodes, the spring forces per mass, the shape of the topology and the step
-/// parameters, and asks the topology for Tile, Shape, load_part and store_part.
+/// `update_N`: the assignments of stage N for the nodes of a tile, after the sum of their springs. Its
+/// parameters are the pairs, the tile, its nodes, the spring forces per mass, the shape of the topology and
+/// the step parameters. The topology must define Tile, Shape, load_part and store_part.
 std::string update_text(const StoredStage& stored_stage) {
   const auto& [integrator, number, storage] = stored_stage;
   const Stage& stage = stored_stage.stage();
@@ -105,7 +105,7 @@ static_assert(grid_stencil.size() == 6 && is(grid_stencil[0], 1, 0, structural) 
                   is(grid_stencil[5], 0, 2, bending),
               "kernels/grid_bands.cl walks over these springs");
 
-/// Both ends of every spring of the stencil, each for itself.
+/// Both ends of every spring of the stencil, separately.
 std::string gather_springs_text() {
   std::ostringstream text;
   text << "static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node, "
@@ -141,14 +141,14 @@ std::string nodes_kernel_text(const StoredStage& stage) {
   return text.str();
 }
 
-/// The pairs besides the state that a walk keeps columns of, in the order of their rings.
+/// The pairs other than the state of which a walk keeps columns, in the order of their rings.
 std::vector<Pair> ring_pairs(const Integrator& integrator) {
   std::vector<Pair> pairs = stored_pairs(integrator, Storage::in_place);
   std::erase(pairs, Pair::state);
   return pairs;
 }
 
-/// Where row 0 of a column of the arrays of `stored` begins.
+/// The expression for row 0 of a column of the arrays of `stored`.
 std::string column_of(const Integrator& integrator, Pair stored, const std::string& column) {
   const std::string end = column + ", walk, grid)";
   if (stored == Pair::state) return "state_column(" + end;
@@ -157,8 +157,8 @@ std::string column_of(const Integrator& integrator, Pair stored, const std::stri
   return fmt::format("ring_column({}, {}", ring, end);
 }
 
-/// Takes the stage through one column, if it is one of those that it updates or of the two before them, whose
-/// springs act on them. `number`: of the stage in the launch, before `after` others.
+/// Executes the stage in one column, if it updates that or one of the next two, on which its springs act.
+/// `number`: index of the stage in the launch; `after`: number of later stages.
 std::string walk_stage_text(const StoredStage& stage) {
   const Integrator& integrator = stage.integrator;
   const Pair gather = stage.stored(stage.stage().gather);
@@ -229,7 +229,7 @@ std::string walk_kernel_text(const Integrator& integrator) {
   return text.str();
 }
 
-/// What a kernel is given of the bodies, and what it knows of them.
+/// Parameters of a kernel for bodies.
 struct MeshText {
   const char* parameters;
   const char* members;  ///< of Mesh
@@ -265,7 +265,7 @@ std::string kernel_text(const StoredStage& stage, const MeshText& mesh) {
   return text.str();
 }
 
-/// A kernel for each stage behind what they have in common.
+/// The common text followed by a kernel for each stage.
 std::string with_kernels(std::string text, const Integrator& integrator, const MeshText& mesh) {
   for (std::size_t number = 0; number < integrator.stage_count; ++number) {
     const StoredStage stage{integrator, number, Storage::separate};
@@ -312,7 +312,7 @@ std::string grid_program_text(const Integrator& integrator, int lanes) {
 }
 
 std::size_t mesh_slice_lanes(int lanes) {
-  // Where a work-item owns one node, hardware reads the entries of 32 of them at once.
+  // If a work-item owns one node, hardware reads the entries of 32 of them at once.
   return lanes > 1 ? static_cast<std::size_t>(lanes) : 32;
 }
 
@@ -324,7 +324,7 @@ std::string mesh_program_text(const Integrator& integrator, int lanes) {
 }
 
 std::size_t alike_slice_lanes(int lanes) {
-  // Where a work-item owns one node, slices of as many bodies as vectors hold elsewhere leave few lanes
+  // If a work-item owns one node, slices of as many bodies as vectors on CPUs have lanes leave few lanes
   // empty.
   return lanes > 1 ? static_cast<std::size_t>(lanes) : 16;
 }

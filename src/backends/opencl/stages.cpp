@@ -12,7 +12,7 @@ namespace {
 
 constexpr Storage storage = Storage::separate;
 
-/// The bytes of all buffers.
+/// The sizes of all buffers, bytes.
 std::vector<std::uint64_t> buffers_of(const Integrator& integrator, const StageKernels& kernels) {
   std::vector<std::uint64_t> bytes(stored_pairs(integrator, storage).size(),
                                    kernels.layout.floats * sizeof(float));

@@ -16,7 +16,7 @@
 
 namespace mssim {
 
-/// The bytes of an array, or of one object.
+/// The bytes of an array or of one object.
 template <class T>
 std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
@@ -26,21 +26,21 @@ std::span<const std::byte> bytes_of(const T& value) {
   return std::as_bytes(std::span(&value, 1));
 }
 
-/// How a topology's nodes lie in the buffer of a pair.
+/// Layout of a topology's nodes in the buffer of a pair.
 struct PairLayout {
   std::size_t floats;             ///< in the buffer
-  std::vector<std::size_t> node;  ///< [nodes] where the node's numbers begin
-  /// Where a node's numbers stand besides: where they begin, and the node. Kernels keep them up to date.
+  std::vector<std::size_t> node;  ///< [nodes] offset of the node's numbers
+  /// Copies of nodes: offset and node. Kernels keep them up to date.
   std::vector<std::pair<std::size_t, std::size_t>> copies;
-  std::array<std::size_t, 6> component;  ///< from there on x, y, z, u, v, w
+  std::array<std::size_t, 6> component;  ///< offsets from there of x, y, z, u, v, w
 
-  /// Components that lie so many floats apart, and no nodes yet.
+  /// Components `step` floats apart, and no nodes yet.
   PairLayout(std::size_t of_buffer, std::size_t step)
       : floats(of_buffer), component{0, step, 2 * step, 3 * step, 4 * step, 5 * step} {}
 };
 
-/// What all OpenCL backends have: a device, the arguments of their kernels, and two sets of launches. Their
-/// buffers change roles from one launch to the next, so that every other one is `swapped`.
+/// Common part of all OpenCL backends: a device, the kernels' arguments, and two sets of launches. Buffers
+/// swap roles from one launch to the next, so every other launch is `swapped`.
 class OpenclBackend : public Backend {
  public:
   std::string device() const override { return queue_.label(); }
@@ -48,18 +48,18 @@ class OpenclBackend : public Backend {
   bool runs_on_host() const override { return queue_.runs_on_host(); }
 
  protected:
-  /// Throws Unsupported unless the device can hold `buffers`, all bytes. The step parameters are the first
-  /// argument.
+  /// Throws Unsupported unless the device can hold `buffers`, sizes in bytes. The step parameters are the
+  /// first argument.
   OpenclBackend(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
                 DeviceMemory memory, const PairLayout& layout, std::span<const std::uint64_t> buffers);
 
-  /// The next argument of every kernel: a buffer with a copy of these bytes.
+  /// Adds an argument to every kernel: a buffer with a copy of these bytes.
   void add_argument(std::span<const std::byte> bytes) { arguments_.push_back(queue_.copy_of(bytes)); }
-  /// A launch whose kernel object has its arguments set once and for all: the common ones from `argument` on.
+  /// Adds a launch whose kernel object keeps its arguments: the common ones from `argument` on.
   void add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items);
 
-  /// Writes the state into a buffer of this layout that begins `first` floats into `buffer`: ghosts have one
-  /// of their own, and nothing is read from them. This and read_state throw std::runtime_error where the
+  /// Writes the state into a buffer of this layout that begins `first` floats into `buffer`; ghosts have
+  /// their own layout, and nothing is read from them. This and read_state throw std::runtime_error if the
   /// driver fails.
   void write_state(const OpenclBuffer<float>& buffer, const PairLayout& layout, const State& state,
                    std::size_t first = 0) const;
@@ -69,23 +69,23 @@ class OpenclBackend : public Backend {
   DeviceQueue queue_;
   std::vector<OpenclBuffer<std::byte>> arguments_;
   std::array<std::vector<Launch>, 2> launches_;  ///< [swapped]
-  /// The next launch is: the state lies in the pair `next`, or ghosts are read from the second half of
-  /// theirs.
+  /// Whether the next launch is swapped: the state is in the pair `next`, or ghosts are read from the second
+  /// half of theirs.
   bool swapped_ = false;
 };
 
-/// What one kernel per stage of the integrator needs of a system.
+/// Data of a system for the kernels, one per stage of the integrator.
 struct StageKernels {
   PairLayout layout;
-  /// Those of every kernel behind its pairs (stage_arguments) and the step parameters. They are copied.
+  /// Arguments of every kernel after its pairs (stage_arguments) and the step parameters. They are copied.
   std::vector<std::span<const std::byte>> arguments;
   std::string program;  ///< text
   WorkItems items;
   std::optional<std::uint64_t> stored_springs = {};  ///< Backend::stored_springs
 };
 
-/// Steps a system by one kernel per stage of the integrator, all steps queued one behind the other: what the
-/// `opencl` backend does unless it walks over a cloth (cloth.h).
+/// Steps a system with one kernel per stage of the integrator, all steps queued in order: the `opencl`
+/// backend, except for the walk over a cloth (cloth.h).
 class OpenclStages final : public OpenclBackend {
  public:
   /// Throws Unsupported unless the device can hold the integrator's pairs and the arguments.
@@ -98,10 +98,10 @@ class OpenclStages final : public OpenclBackend {
   std::optional<std::uint64_t> stored_springs() const override { return stored_springs_; }
 
  private:
-  /// The arrays that hold `pair`; `state` and `next` change roles after every step.
+  /// The arrays of `pair`; `state` and `next` swap roles after every step.
   const OpenclBuffer<float>& arrays(Pair pair, bool swapped) const;
 
-  std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are needed
+  std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], the required ones
   std::optional<std::uint64_t> stored_springs_;
 };
 

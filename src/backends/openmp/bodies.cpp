@@ -10,18 +10,18 @@
 namespace mssim {
 namespace {
 
-/// What a chunk costs, in entries of slices or in springs of all lanes, unless these were too many chunks:
-/// some microseconds.
+/// Cost of a chunk, in entries of slices or in springs of all lanes, unless that makes too many chunks: some
+/// microseconds.
 constexpr std::size_t chunk_cost = 1024;
 
-/// Chunks for each thread where chunks of that cost would be fewer: who is awake can then take work of who is
-/// not in small parts. More chunks cost time in a scene whose stage takes microseconds.
+/// Minimum number of chunks per thread: awake threads can then take over small parts of a sleeping thread's
+/// work. More chunks cost time in a scene whose stage takes microseconds.
 constexpr std::size_t least_chunks = 4;
 
-/// BodySteps::spins, of slices: some microseconds.
+/// BodySteps::spins for slices: some microseconds.
 constexpr int slice_spins = 300;
 
-/// Cuts these slices into `count` ranges of about the same number of entries.
+/// Divides these slices into `count` ranges of about equal numbers of entries.
 std::vector<IndexRange> balanced_chunks(const std::vector<std::uint32_t>& first_entry, IndexRange slices,
                                         std::size_t count) {
   const std::size_t before = cost_of_slices_before(first_entry, slices.begin);
@@ -41,21 +41,21 @@ SlicedGraph graph_of_whole(const System& system, std::size_t lanes) {
   return {system, lanes};
 }
 
-/// What a node costs beside its springs, in springs.
+/// Cost of a node besides its springs, in springs.
 constexpr std::size_t node_cost = 2;
 
-/// Springs for each time that a waiting thread looks whether others are ready: it takes 35 ns on an Intel
-/// Xeon, where a vector of springs takes 5. A thread that slept while another one did its share must wake up
-/// before that one is done with both, or it would do so for good.
+/// Springs per spin of a waiting thread: a spin takes 35 ns on an Intel Xeon, a vector of springs 5. A thread
+/// that slept while another one did its share must wake up before the other thread has finished both shares;
+/// otherwise that one would keep doing both.
 constexpr std::size_t springs_a_spin = 4;
 
-/// No thread burns its core for longer, a tenth of a millisecond or so.
+/// Limit of spinning: about a tenth of a millisecond.
 constexpr std::size_t most_spins = 4096;
 
 /// Components of a position or a velocity.
 constexpr std::size_t components = 3;
 
-/// What some nodes of a shape cost, in springs of all lanes.
+/// Costs of ranges of a shape's nodes, in springs of all lanes.
 class PieceCosts {
  public:
   explicit PieceCosts(const AlikeBodies& shape)
@@ -64,11 +64,11 @@ class PieceCosts {
     std::partial_sum(ended_before_.begin(), ended_before_.end(), ended_before_.begin());
   }
   std::size_t nodes() const { return ended_before_.size() - 1; }
-  /// Cost of nodes [begin, end): every spring with an end there.
+  /// Cost of nodes [begin, end): all springs with an end there.
   std::size_t of(std::size_t begin, std::size_t end) const {
     return begun_before_[end] - ended_before_[begin] + (end - begin) * node_cost;
   }
-  /// Where nodes from `begin` on end that cost at most `most`, but at least one node further.
+  /// Largest end of nodes from `begin` on that cost at most `most`, but at least one node.
   std::size_t end_of(std::size_t begin, std::size_t most) const {
     std::size_t low = begin + 1, high = nodes();
     while (low < high) {
@@ -86,12 +86,12 @@ class PieceCosts {
   std::vector<std::size_t> ended_before_;    // [nodes + 1]
 };
 
-/// Nodes of a group that a thread has in its share.
+/// A share of a thread: nodes of a group.
 struct Cut {
   std::size_t group, begin, end, share, cost;
 };
 
-/// Cuts groups, one after the other, into shares that cost at most `most`.
+/// Divides groups, one after the other, into shares that cost at most `most`.
 std::vector<Cut> cut_groups(const std::vector<AlikeSlices::Group>& groups,
                             const std::vector<PieceCosts>& costs, std::size_t most) {
   std::vector<Cut> cuts;
@@ -100,7 +100,7 @@ std::vector<Cut> cut_groups(const std::vector<AlikeSlices::Group>& groups,
     const PieceCosts& of = costs[groups[g].shape];
     for (std::size_t begin = 0; begin < of.nodes();) {
       const std::size_t end = of.end_of(begin, left), cost = of.of(begin, end);
-      if (cost > left && left < most) {  // not even one node
+      if (cost > left && left < most) {  // not even one node fits
         ++share;
         left = most;
         continue;
@@ -113,7 +113,7 @@ std::vector<Cut> cut_groups(const std::vector<AlikeSlices::Group>& groups,
   return cuts;
 }
 
-/// Cuts groups into so many shares or fewer, which cost as little as possible.
+/// Divides groups into at most `count` shares with the lowest maximum cost.
 std::vector<Cut> cut_groups_into(const std::vector<AlikeSlices::Group>& groups,
                                  const std::vector<PieceCosts>& costs, std::size_t shares) {
   std::size_t low = 1, high = 1;

@@ -1,10 +1,10 @@
 // The walk down one column of a banded cloth: every spring computed once, every node updated as soon as the
 // forces on it are complete. Compiled once per instruction set, so the guard toggles.
 //
-// A spring belongs to its upper or left end (grid_stencil). Its force on the other end waits: in registers
-// for the rows below, in two columns of forces for the two columns to the right. Walking the columns from
-// left to right and each from the top, a node meets its own springs last; nothing conflicts, and nothing
-// behind the walk is read again, so the update may write over the state it was computed from.
+// A spring belongs to its upper or left end (grid_stencil). Its force on the other end is kept: in registers
+// for the rows below, in two columns of forces for the two columns to the right. The columns are walked from
+// left to right and each from the top, so a node's own springs are its last; nothing conflicts, and nothing
+// behind the walk is read again, so the update may overwrite the state that it was computed from.
 #if defined(MSSIM_COLUMN_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_COLUMN_WALK_INL_H_
 #undef MSSIM_COLUMN_WALK_INL_H_
@@ -37,11 +37,11 @@ HWY_INLINE void store_nodes(const NodeLanes& nodes, float* column, std::ptrdiff_
   store3(to + row_floats() / 2, nodes.v);
 }
 
-/// In a component of a node that is not there: far from all nodes, because springs without stiffness reach
-/// it, which must not have length zero.
+/// Component of a missing node: far from all nodes, because the length of springs without stiffness to it
+/// must not be zero.
 constexpr float far_away = 1e9F;
 
-/// A row of which each lane has what the lane before, or behind, it has in this one.
+/// The row with each lane's values taken from the lane before, or after.
 HWY_INLINE NodeLanes of_lane_before(const NodeLanes& row, std::size_t bands) {
   return {from_lane_before(row.x, far_away, bands), from_lane_before(row.v, far_away, bands)};
 }
@@ -49,7 +49,7 @@ HWY_INLINE NodeLanes of_lane_behind(const NodeLanes& row, std::size_t bands) {
   return {from_lane_behind(row.x, far_away, bands), from_lane_behind(row.v, far_away, bands)};
 }
 
-/// Writes row -1 of a column of so many rows.
+/// Writes row -1 of a column of `height` rows.
 HWY_INLINE void write_row_above(float* column, std::ptrdiff_t height, std::size_t bands) {
   store_nodes(of_lane_before(nodes_of(column, height - 1), bands), column, -1);
 }
@@ -73,27 +73,27 @@ static_assert(grid_stencil[3].rows == -1 && grid_stencil[3].columns == 1, "right
 static_assert(grid_stencil[4].rows == 2 && grid_stencil[4].columns == 0, "down_2");
 static_assert(grid_stencil[5].rows == 0 && grid_stencil[5].columns == 2, "right_2");
 
-/// Where the walk reads and writes. Pointers to columns stand at row 0.
+/// The data that the walk reads and writes in a column. Pointers to columns are to row 0.
 struct ColumnView {
-  const BandRows* rows;                  ///< what this column computes with
-  float* here;                           ///< gathered pair, this column; its halo rows may be written
-  float* next;                           ///< the column to the right; the same
-  const float* next_2;                   ///< the one after
-  std::array<float*, pair_kinds> pairs;  ///< this column of every pair that is stored, for the update
-  /// [row][x y z][lane] from columns already walked; where a row has been read, those on the column after
-  /// the next one take its place, so that there is room for more rows in the first-level cache.
+  const BandRows* rows;                  ///< constants of this column
+  float* here;                           ///< gathered pair, this column; its halo rows may be overwritten
+  float* next;                           ///< the column to the right, likewise
+  const float* next_2;                   ///< the column after that
+  std::array<float*, pair_kinds> pairs;  ///< this column of every stored pair, for the update
+  /// [row][x y z][lane] from earlier columns; when a row has been read, the forces on the column after the
+  /// next replace it, so more rows fit in the first-level cache.
   float* forces_here;
   float* forces_next;
 };
 
-/// What every row needs of the bands. A copy, as the walk's ColumnView is: a vector's store may change
-/// anything that has an address elsewhere, as far as the compiler knows, which then reads all of it again in
-/// every row. Measured on two Zen 5 cores at 500 x 700: copies 1.04 to 1.16 times as fast.
+/// Parameters of the bands for every row. A copy, like the walk's ColumnView: the compiler must assume that a
+/// vector store may change any object in memory, and would reload all of it in every row. On two Zen 5 cores
+/// at 500 x 700, copies are 1.04 to 1.16 times as fast.
 struct RowConstants {
   Coefficients<float> coefficients;
   Surroundings surroundings;
   const float* values;                 ///< BandRows::values
-  const std::uint32_t* offset_of_row;  ///< the same
+  const std::uint32_t* offset_of_row;  ///< BandRows::offset_of_row
   std::ptrdiff_t height;               ///< of the bands
   std::size_t bands;                   ///< in a half of the lanes
   HWY_INLINE RowConstants(const BandGrid& grid, const ColumnView& column)
@@ -103,7 +103,7 @@ struct RowConstants {
         offset_of_row(column.rows->offset_of_row()),
         height(static_cast<std::ptrdiff_t>(grid.layout.height)),
         bands(grid.layout.bands) {}
-  /// The vectors of a row (BandRows).
+  /// The constants of a row (BandRows).
   HWY_INLINE const float* of_row(std::ptrdiff_t row) const { return values + offset_of_row[row]; }
 };
 
@@ -115,20 +115,20 @@ HWY_INLINE SpringLanes spring_of_row(const float* of_row, SpringSet spring) {
   return {constants, hn::Load(FloatTag(), of_spring)};
 }
 
-/// Forces that wait for the rows below while the walk goes down.
+/// Forces on later rows, kept while the walk goes down.
 struct Carry {
   Lanes3 below;        ///< on the next row of this column
   Lanes3 below_2;      ///< on the row after that
   Lanes3 right_below;  ///< on the next row of the next column
-  /// On the previous row of the next column: complete but for this row's spring to it.
+  /// On the previous row of the next column: complete except for this row's spring to it.
   Lanes3 right_above;
 };
 
 HWY_INLINE Carry nothing_carried() { return {zero3(), zero3(), zero3(), zero3()}; }
 
-/// A spring whose length is known and whose force is not. A reciprocal root takes long, and a processor looks
-/// about one row ahead: each spring is begun before the last one is finished. Measured on Zen 4, one thread:
-/// 0.98 of the time at 200 x 200 and 0.99 at 500 x 700.
+/// A spring of known length and unknown force. A reciprocal root has a long latency, and a CPU looks about
+/// one row ahead, so each spring is begun before the previous one is finished. On Zen 4, one thread: 0.98 of
+/// the time at 200 x 200 and 0.99 at 500 x 700.
 struct BegunSpring {
   Lanes3 d;  ///< from the other end to this one
   Lanes closing, inverse_length;
@@ -139,29 +139,28 @@ HWY_INLINE BegunSpring begin_spring(const NodeLanes& node, const NodeLanes& othe
   return {d, dot(node.v - other.v, d), inverse_length(dot(d, d))};
 }
 
-/// Its force on the other end; the owner gets the opposite one.
+/// The force on the other end; the owner gets the opposite.
 HWY_INLINE Lanes3 force_of(const BegunSpring& begun, const SpringLanes& spring) {
   return spring_pull_at(begun.inverse_length, begun.closing, spring) * begun.d;
 }
 
-/// Asks for the row of a column of states that the walk comes to next but so many. Measured on Zen 5 at 500 x
-/// 700, whose state lies in the last-level cache: 1.04 to 1.1 times as fast with two threads, up to twice
-/// with one.
+/// Prefetches the row that the walk reaches a fixed number of rows later. On Zen 5 at 500 x 700, whose state
+/// is in the last-level cache: 1.04 to 1.1 times as fast with two threads, up to twice with one.
 HWY_INLINE void prefetch_row(const float* row) {
-  constexpr std::ptrdiff_t rows_ahead = 16;  // behind a column's end lies the next one; no address is wrong
+  constexpr std::ptrdiff_t rows_ahead = 16;  // columns are contiguous: every address is valid
   constexpr std::ptrdiff_t line_floats = 16;
   for (std::ptrdiff_t i = 0; i < row_floats(); i += line_floats)
     hwy::Prefetch(row + rows_ahead * row_floats() + i);
 }
 
-/// Forces of springs that are known before their row is walked, on their other ends.
+/// Forces, on their other ends, of springs that are known before their row is walked.
 struct KnownForces {
-  unsigned set = 0;  ///< of which springs
+  unsigned set = 0;  ///< the springs
   Lanes3 down, down_2, right_down;
 };
 
-/// Takes the springs of `set` that a row owns one step further. The force of springs of this and earlier rows
-/// on its nodes, with `received` those of earlier columns too. `prefetch`: the state is gathered.
+/// Adds the springs of `set` that a row owns. Returns the force on its nodes from springs of this and earlier
+/// rows, and with `received` from earlier columns too. `prefetch`: the state is gathered.
 template <bool prefetch>
 HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& column, const NodeLanes& node,
                            unsigned set, const KnownForces& known, bool received, Carry& carry,
@@ -221,14 +220,14 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
   return force;
 }
 
-/// Where a stage finds or leaves the position (slot 0) or velocity (1) of a row's nodes in a pair.
+/// Address of the position (slot 0) or velocity (1) of a row's nodes in a pair.
 HWY_INLINE float* stored_at(const ColumnView& column, Pair pair, std::size_t slot, std::ptrdiff_t row) {
   return column.pairs[index(pair)] + row * row_floats() +
          static_cast<std::ptrdiff_t>(slot % 2) * row_floats() / 2;
 }
 
-/// One stage at the nodes of a row, once the force on them is complete, but for the floor: `lowest` becomes
-/// their new height where that is less. Forces are accelerations already.
+/// One stage at the nodes of a row, once the force on them is complete, without the floor: `lowest` becomes
+/// their new height if that is less. Forces are already accelerations.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& column, const NodeLanes& node,
                            const Lanes3& force, std::ptrdiff_t row, Lanes& lowest) {
@@ -250,8 +249,8 @@ HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& colu
       [&](const Lanes3& x, const Lanes3&) MSSIM_INLINE_LAMBDA { lowest = Lanes(hn::Min(x.y.v, lowest.v)); });
 }
 
-/// What the floor does to a column after a step, if a node has come below it: one look a column, because
-/// on Zen 4 comparisons take the units that multiply and minima those that add.
+/// Applies the floor to a column after a step, if a node is below it: one test per column, because on Zen 4
+/// comparisons use the units that multiply, and minima those that add.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void touch_floor_in_column(const RowConstants& constants, const ColumnView& column,
                                       const Lanes& lowest) {
@@ -269,14 +268,13 @@ HWY_INLINE void touch_floor_in_column(const RowConstants& constants, const Colum
   }
 }
 
-/// Forces of springs that reach across the end of a band, of its last two rows.
+/// Forces of springs that cross the end of a band, on its last two rows.
 struct EndForces {
   KnownForces last_but_one, last;
 };
 
-/// A lane's last rows are the rows above the next lane's band: the forces of those springs of `set` that
-/// reach across are found once, here, for the rows that own the springs and, a lane further, for those at the
-/// top.
+/// A lane's last rows are the rows above the next lane's band: the forces of springs of `set` across the end
+/// are computed once, here, for the rows that own the springs and, one lane further, for the top rows.
 template <unsigned set>
 HWY_INLINE EndForces forces_across_ends(const RowConstants& constants, const ColumnView& column) {
   const auto force = [&](const NodeLanes& node, const NodeLanes& other, std::ptrdiff_t row,
@@ -304,8 +302,8 @@ HWY_INLINE EndForces forces_across_ends(const RowConstants& constants, const Col
   return ends;
 }
 
-/// Takes the springs of `set` of a column further, row by row. act(row, node, force): the force of springs of
-/// this and, if `received`, of earlier columns on a row's nodes. `prefetch`: as pull_row.
+/// Adds the springs of `set` of a column, row by row. act(row, node, force): the force on a row's nodes from
+/// springs of this and, if `received`, of earlier columns. `prefetch`: as in pull_row.
 template <unsigned set, bool prefetch, bool received, class Act>
 HWY_INLINE void walk_rows(const RowConstants& constants, const ColumnView& column, Act act) {
   const auto height = constants.height, force_floats = static_cast<std::ptrdiff_t>(3 * lane_count());
@@ -329,14 +327,14 @@ HWY_INLINE void walk_rows(const RowConstants& constants, const ColumnView& colum
   for (std::ptrdiff_t row = 0; row < height - 2; ++row) walk_row(row, {});
   walk_row(height - 2, ends.last_but_one);
   walk_row(height - 1, ends.last);
-  // The spring from a band's first row up to the right reaches the last row of the lane before.
+  // The spring from a band's first row up to the right ends at the last row of the lane before.
   if constexpr ((set & right_up) != 0)
     store3(column.forces_next + (height - 1) * force_floats,
            carry.right_above +
                from_lane_behind(load3(column.forces_next + height * force_floats), none, constants.bands));
 }
 
-/// A column whose nodes own all springs and are updated: all but a few.
+/// A column whose nodes own all springs and are updated: the usual case.
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& view) {
   constexpr bool gathers_state = integrators[method].stages[stage].gather == Pair::state;
@@ -350,7 +348,7 @@ HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& vie
   touch_floor_in_column<method, stage>(constants, column, lowest);
 }
 
-/// A column before those that are updated, on which its springs of `set` act, whatever the stage.
+/// A column before the updated ones, whose springs of `set` act on them, in any stage.
 template <unsigned set>
 HWY_NOINLINE void walk_column_before(const BandGrid& bands, const ColumnView& view) {
   const RowConstants constants(bands, view);
@@ -359,8 +357,8 @@ HWY_NOINLINE void walk_column_before(const BandGrid& bands, const ColumnView& vi
                                [](std::ptrdiff_t, const NodeLanes&, const Lanes3&) MSSIM_INLINE_LAMBDA {});
 }
 
-/// A column at the end of the cloth, without springs that would reach beyond, whatever the stage: the forces
-/// on its nodes, which are complete now, take the place of those from earlier columns.
+/// A column at the end of the cloth, without springs beyond it, in any stage: the complete forces on its
+/// nodes replace those from earlier columns.
 template <unsigned set>
 HWY_NOINLINE void pull_last_column(const BandGrid& bands, const ColumnView& view) {
   const RowConstants constants(bands, view);
@@ -371,7 +369,7 @@ HWY_NOINLINE void pull_last_column(const BandGrid& bands, const ColumnView& view
       });
 }
 
-/// A column at the end of the cloth, behind which there are so few others.
+/// A column at the end of the cloth, with less than BandLayout::halo columns after it.
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void walk_last_column(const BandGrid& bands, const ColumnView& view, std::size_t behind) {
   if (behind == 0)

@@ -7,7 +7,7 @@
 
 namespace mssim {
 
-// They are the same for all integrators, and for cloths and bodies.
+// Identical for all integrators, and for cloths and bodies.
 std::vector<std::string_view> openmp_instruction_sets() {
   return instruction_sets_of(step_kernels<SlicedBodies>(integrators.front()));
 }
@@ -18,10 +18,10 @@ bool has_exact_roots(std::string_view instruction_set) {
 
 namespace {
 
-/// The narrowest of the kernels that takes no more vectors for the springs of these bodies than `best`,
-/// rounds as often, and has `roots`: seven bodies leave nine of 16 lanes empty. Measured on two Zen 4 cores,
-/// bodies20587, AVX2 in place of AVX-512: 0.75 of the time with one thread and 0.57 to 0.70 with two,
-/// although AVX2's code takes roots and divisions.
+/// The narrowest kernel that needs no more vectors for the springs of these bodies than `best`, rounds as
+/// often, and has `roots`: seven bodies leave nine of 16 lanes empty. On two Zen 4 cores, bodies20587, AVX2
+/// instead of AVX-512: 0.75 of the time with one thread and 0.57 to 0.70 with two, although AVX2's code uses
+/// roots and divisions.
 StepKernel<BodyLanes> narrowest_kernel(const std::vector<StepKernel<BodyLanes>>& kernels,
                                        const StepKernel<BodyLanes>& best,
                                        const std::vector<AlikeBodies>& bodies, Roots roots) {
@@ -34,7 +34,7 @@ StepKernel<BodyLanes> narrowest_kernel(const std::vector<StepKernel<BodyLanes>>&
   return narrowest;
 }
 
-/// `roots`: none where only this instruction set is to do.
+/// `roots`: empty to use only this instruction set.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      std::size_t threads, std::string_view instruction_set,
                                      std::optional<Roots> roots) {

@@ -1,5 +1,4 @@
-// The walk over a banded cloth: stages one behind the other, partitions beside each other, ghosts between
-// them.
+// The walk over a banded cloth: stages follow each other, partitions are adjacent, with ghosts between them.
 // Compiled for the integrators of MSSIM_STAGES.
 #include "backends/vectors/instruction_sets.h"
 
@@ -18,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Copies half a vector `count` times, from each `from_stride` floats to each `to_stride`.
+/// Copies half a vector `count` times; the sources are from_stride floats apart, the targets to_stride.
 HWY_INLINE void copy_half(float* to, std::size_t to_stride, const float* from, std::size_t from_stride,
                           std::size_t count) {
   const hn::Half<FloatTag> d;
@@ -26,8 +25,8 @@ HWY_INLINE void copy_half(float* to, std::size_t to_stride, const float* from, s
     hn::Store(hn::Load(d, from + n * from_stride), d, to + n * to_stride);
 }
 
-/// Copies the ghost columns of a pass at one side of a partition, in a half, from the partition beside it, as
-/// soon as they are there. Adds to `waited` how long that took if it was long.
+/// Copies the ghost columns of a pass at one side of a partition, in one half, from the adjacent partition,
+/// as soon as they are available. Adds the time to `waited` if it was long.
 HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& partition, EdgeColumns& edge,
                                      std::size_t first, std::size_t half, std::uint64_t pass,
                                      TeamGain::Duration& waited) {
@@ -43,8 +42,8 @@ HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& pa
   }
 }
 
-/// Copies the ghost columns of a pass where the halves of a folded partition were cut: each half has, in its
-/// own lanes, the columns at the other one's end.
+/// Copies the ghost columns of a pass at the cut between the halves of a folded partition: each half gets, in
+/// its own lanes, the columns at the other one's end.
 HWY_NOINLINE inline void take_ghosts_of_halves(const BandLayout& layout, BandPartition& partition) {
   const auto copy = [&](std::size_t to, std::size_t to_half, std::size_t from) HWY_ATTR {
     const auto lanes_of = [&](std::size_t column, std::size_t half) HWY_ATTR {
@@ -60,23 +59,23 @@ HWY_NOINLINE inline void take_ghosts_of_halves(const BandLayout& layout, BandPar
   }
 }
 
-/// Asks for the memory of an edge of a partition before it is needed, a few lines at a time while the thread
-/// walks: what it is going to read lies in the cache of the thread beside it, and what it is going to write,
-/// too, which has read it. A core has few requests under way at once, which its own columns need as well, so
-/// that all at one time would hold up the walk. Time of a step with two threads on an Intel Xeon, against all
-/// of it two columns ahead or where a pass begins: 0.93 at 50 x 50, 0.97 at 100 x 100, 0.98 at 200 x 200.
+/// Prefetches the memory at an edge of a partition, a few lines at a time during the walk: the lines to be
+/// read, and those to be written, which the adjacent thread has read, are in that thread's cache. A core has
+/// few outstanding requests, which its own columns need too, so all requests at once would delay the walk.
+/// Time of a step with two threads on an Intel Xeon, relative to all requests two columns ahead or at the
+/// start of a pass: 0.93 at 50 x 50, 0.97 at 100 x 100, 0.98 at 200 x 200.
 class EdgeAhead {
  public:
-  /// `mine`: the edge that is left for the partition beside, in which `theirs` is read in a pass.
+  /// `mine`: the edge for the adjacent partition, from which `theirs` is read in a pass.
   HWY_INLINE EdgeAhead(const BandLayout& layout, EdgeColumns& mine, EdgeColumns& theirs, std::uint64_t pass)
       : write_(mine.column(layout, pass + 1, 0)),
         read_(theirs.column(layout, pass, 0)),
         theirs_(&theirs),
         pass_(pass) {}
-  EdgeAhead() = default;  ///< of an end of the cloth: nothing is asked for
+  EdgeAhead() = default;  ///< at an end of the cloth: no prefetch
 
-  /// Asks for `floats` floats more, of so many, once the other thread has left what is read: then it has read
-  /// what is written, too.
+  /// Prefetches `floats` more floats, of `all`, once the other thread has published the data to be read: it
+  /// has then also read the data to be overwritten.
   HWY_INLINE void ask(std::size_t floats, std::size_t all) {
     constexpr std::size_t line_floats = 16;
     if (!theirs_ || asked_ >= all || !theirs_->pass.has_reached(pass_)) return;
@@ -102,8 +101,7 @@ class EdgeAhead {
   std::size_t asked_ = 0;
 };
 
-/// Copies a column of a partition that is complete in a pass, if it is a ghost of another one in the next
-/// pass.
+/// Copies a complete column of a partition if it is a ghost of another one in the next pass.
 HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition, std::size_t column,
                              std::uint64_t pass) {
   const auto leave = [&](EdgeColumns& edge, std::size_t number, std::size_t half) HWY_ATTR {
@@ -122,8 +120,8 @@ HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition,
     leave(partition.right, partition.ghosts - behind, layout.halves - 1);
 }
 
-/// Puts the pins of a freshly written column back in every pair that the stage has written and that a later
-/// stage, or the next step's first, gathers from.
+/// Resets the pins of a newly written column in every pair that the stage has written and that a later stage,
+/// or the next step's first, gathers.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition, std::size_t column) {
   const auto put_back = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
@@ -142,16 +140,16 @@ HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition
   (std::make_index_sequence<pair_kinds>{});
 }
 
-/// Forces on the column that a stage is at and on the next one, as ColumnView has them.
+/// Forces on a stage's current column and on the next one, as in ColumnView.
 using ForcesUnderWay = std::array<float*, 2>;
 
-/// One of the stages under way in a partition.
+/// One of the active stages in a partition.
 struct StageUnderWay {
   std::size_t begin, end;  ///< columns that it updates
   ForcesUnderWay forces;
 };
 
-/// What a stage that gathers `gather` sees of a column.
+/// The view of a column for a stage that gathers `gather`.
 HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& partition,
                                        const StageUnderWay& under_way, Pair gather, std::size_t column) {
   const std::size_t to_row_0 = layout.offset(0);
@@ -169,8 +167,7 @@ HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& 
   return view;
 }
 
-/// Takes the stage through one column, if it is one of those that it updates or of the two before them, whose
-/// springs act on them.
+/// Executes the stage in one column, if it updates that or one of the next two, on which its springs act.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, StageUnderWay& under_way,
                            std::size_t column) {
@@ -191,13 +188,13 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
   std::swap(under_way.forces[0], under_way.forces[1]);
 }
 
-/// So many stages of a pass over a partition, before its first column.
+/// The first `count` stages of a pass over a partition, before its first column.
 inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGrid& bands,
                                                                   BandPartition& partition,
                                                                   std::size_t count) {
   std::array<StageUnderWay, stages_under_way> stages;
   for (std::size_t i = 0; i < count; ++i) {
-    // What the stages behind need of the neighbours' columns is computed here too.
+    // Includes the neighbours' columns that later stages need.
     const std::size_t reach = BandLayout::halo * (count - 1 - i);
     stages[i].begin = partition.first - std::min(partition.first, reach);
     stages[i].end = std::min(partition.first + partition.count + reach, bands.columns);
@@ -208,22 +205,22 @@ inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGrid
   return stages;
 }
 
-/// A pass of a thread over partitions.
+/// A thread's pass over partitions.
 struct BandPass {
-  std::uint64_t number;        ///< of all passes over the cloth
-  std::size_t steps;           ///< that it takes at once
-  TeamGain::Duration& waited;  ///< as take_ghosts
+  std::uint64_t number;        ///< index among all passes over the cloth
+  std::size_t steps;           ///< steps in this pass
+  TeamGain::Duration& waited;  ///< see take_ghosts
 };
 
-/// Takes the steps of a pass over the columns of a partition, the stages one behind the other. Messages that
-/// are under way meanwhile go on (null: there are none). `handed_on`: null, or of the thread that walks over
-/// all partitions, the forces that the one before has left, if any, and that this one leaves; with one stage
-/// under way in a cloth that is not folded they are those that the columns before this partition would give
-/// once more.
+/// Takes the steps of a pass over the columns of a partition, one stage after the other. `messages` progress
+/// meanwhile (null: none). `handed_on`: null, or, for the thread that walks over all partitions, the forces
+/// left by the previous partition, if any, and by this one; with one active stage in a cloth that is not
+/// folded they replace recomputing the columns before this partition.
 ///
-/// The columns of other partitions in the pass before are read as late as possible, and the own ones left for
-/// them as soon as they are complete. No set is written that is still read: who leaves columns for a pass has
-/// seen those that the reader left in the pass before, after it had read the same set.
+/// Columns of other partitions from the previous pass are read as late as possible, and own columns are
+/// published as soon as they are complete. No set is overwritten while it is read: a thread that publishes
+/// columns for a pass has seen those that the reader published in the previous pass, after reading the same
+/// set.
 template <std::size_t method>
 HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& pass, ColumnMessages* messages,
                                std::optional<ForcesUnderWay>* handed_on) {
@@ -239,7 +236,7 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& p
   const std::size_t own_end = partition.first + partition.count;
   constexpr std::size_t columns_an_advance = 8;  // some microseconds
   const bool has_next = p + 1 < bands.partitions.size();
-  // What the next pass begins with, and what this one ends with; both in two thirds of the columns.
+  // Edges of the next pass and of this one; both within two thirds of the columns.
   EdgeAhead left_ahead, right_ahead;
   if (p > 0 && !handed_on)
     left_ahead = EdgeAhead(bands.layout, partition.left, bands.partitions[p - 1].right, pass.number + 1);
@@ -257,7 +254,7 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& p
       left_ahead.ask(floats_ahead, edge_floats);
       right_ahead.ask(floats_ahead, edge_floats);
     }
-    // Before any of the own last columns is left for others.
+    // Before any of the last own columns is published.
     if (has_next && head + partition.ghosts == own_end)
       take_ghosts(bands.layout, partition, bands.partitions[p + 1].left, own_end, bands.layout.halves - 1,
                   pass.number, pass.waited);
@@ -276,10 +273,10 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& p
   if (handed_on) *handed_on = under_way[0].forces;
 }
 
-/// Passes after which the threads of a cloth meet, to see whether they gain by being several: so many that
-/// this is a small part of their time.
+/// Passes between meetings of a cloth's threads, which check whether several threads pay off: enough to make
+/// meetings a small fraction of the time.
 HWY_INLINE std::size_t passes_between_meetings(const BandGrid& bands) {
-  constexpr std::size_t updates = 100'000;  // of nodes: some tenth of a millisecond
+  constexpr std::size_t updates = 100'000;  // node updates: about a tenth of a millisecond
   const std::size_t of_a_pass = bands.layout.rows * bands.layout.halves * bands.own.count *
                                 bands.steps_per_pass * bands.integrator->stage_count;
   return std::max<std::size_t>(1, updates / std::max<std::size_t>(1, of_a_pass));
@@ -287,12 +284,12 @@ HWY_INLINE std::size_t passes_between_meetings(const BandGrid& bands) {
 
 template <std::size_t method>
 HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
-  // Every thread computes its own columns whole, whatever their number: the order of every sum depends on the
-  // cloth alone, and the result is the same to the last bit for any number of threads, and of processes.
+  // Every thread computes its own columns completely: the order of every sum depends only on the cloth, and
+  // the result is bitwise identical for any number of threads and processes.
   const std::size_t partitions = bands.partitions.size();
   const bool has_edges = bands.threads < partitions;
   const std::size_t passes = (count + bands.steps_per_pass - 1) / bands.steps_per_pass;
-  // Of every stride-th inner partition from `first` on; the first thread before that of the edges.
+  // Every stride-th inner partition from `first` on; the first thread walks the edges before.
   const auto walk = [&](std::size_t first, std::size_t stride, std::size_t pass,
                         TeamGain::Duration& waited) HWY_ATTR {
     const BandPass its{bands.passes + pass,
@@ -320,8 +317,8 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   };
   const std::size_t begin = bands.team_gain.take_rounds(pass_alone);
   const std::size_t between_meetings = passes_between_meetings(bands);
-  // Until all threads are there, and until all have ended, others wait: in a call of a few passes on a busy
-  // machine that may be all of its time.
+  // Other threads wait until all have started, and until all have ended: in a call of a few passes on a busy
+  // machine that may be all of the time.
   using Clock = TeamGain::Clock;
   const Clock::time_point call = Clock::now();
   Clock::time_point first_has_ended = call;

@@ -1,6 +1,5 @@
-// The walks over bodies: over those in slices, chunk by chunk, and over alike ones, one a lane, node by node
-// and each spring once.
-// Compiled for the integrators of MSSIM_STAGES.
+// The walks over bodies: over slices, chunk by chunk, and over alike bodies, one per lane, node by node and
+// each spring once. Compiled for the integrators of MSSIM_STAGES.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -23,16 +22,16 @@ HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
 /// spring_pull (kernels/spring_law.h) between nodes `to_other` apart (m), the other one moving by `closing`
-/// against this one (m/s). Finite also where there is no spring and both ends are the same node: 1e-36 is
-/// added to the length squared. Elsewhere that can only decide a tie; a spring of length zero gives no force,
-/// where serial's gives NaN.
+/// relative to this one (m/s). Finite even without a spring, if both ends are the same node: 1e-36 is added
+/// to the length squared. Elsewhere that can only decide a tie; a spring of length zero gives no force,
+/// whereas serial gives NaN.
 HWY_INLINE Lanes body_spring_pull(const Lanes3& to_other, const Lanes3& closing, const SpringLanes& spring) {
   return spring_pull_at(inverse_length(dot_add(to_other, to_other, Lanes(1e-36F))), dot(closing, to_other),
                         spring);
 }
 
-/// The pairs in a stage, counted from the first one of a call: `state` and `next` change places every step.
-/// `base`: in the first one.
+/// The pairs in a stage, counted from the first one of a call: `state` and `next` swap in every step. `base`:
+/// those of the first stage.
 template <std::size_t method>
 HWY_INLINE Pairs pairs_in(const Pairs& base, std::uint32_t stage) {
   Pairs pairs = base;
@@ -41,14 +40,14 @@ HWY_INLINE Pairs pairs_in(const Pairs& base, std::uint32_t stage) {
   return pairs;
 }
 
-/// Calls act(thread, ticket) for every chunk of so many phases, one phase after the other. Whoever has
-/// finished the n-th one calls between(n), while all others wait.
+/// Calls act(thread, ticket) for every chunk of `phases` phases, one phase after the other. The thread that
+/// finishes phase n calls between(n), while all others wait.
 template <class Act, class Between>
 HWY_INLINE void work_in_phases(const BodySteps& bodies, std::uint32_t phases, const Act& act,
                                const Between& between) {
   ChunkTickets tickets(static_cast<std::uint32_t>(bodies.chunks.size()),
                        static_cast<std::uint32_t>(bodies.threads));
-  std::uint32_t opened = 1;  // only whoever has finished a phase touches it
+  std::uint32_t opened = 1;  // used only by the thread that has finished a phase
   tickets.open();
 #pragma omp parallel num_threads(static_cast <int>(bodies.threads))
   {
@@ -64,28 +63,28 @@ HWY_INLINE void work_in_phases(const BodySteps& bodies, std::uint32_t phases, co
   }
 }
 
-/// Entries one after the other, whatever their slices. The records that the next one names are loaded and
-/// transposed before the springs of this one are computed: that takes long, and a processor does not look far
-/// enough ahead. Measured on an Intel Xeon, one thread, bodies3858 and bodies38233: 0.97 and 0.90 of the
-/// time; with AVX2 or SSE4, bodies3858: 0.95 and 0.93.
+/// Entries in order, across slices. The records of the next entry are loaded and transposed before the
+/// springs of this one are computed: that has a long latency, and a CPU does not look far enough ahead. On an
+/// Intel Xeon, one thread, bodies3858 and bodies38233: 0.97 and 0.90 of the time; with AVX2 or SSE4,
+/// bodies3858: 0.95 and 0.93.
 class EntryWalk {
  public:
-  /// `pair`: what is gathered.
+  /// `pair`: the gathered one.
   HWY_INLINE EntryWalk(const SlicedBodies& bodies, const float* pair, std::size_t first_slice)
       : pair_(pair), entry_(first_entry(bodies, first_slice)), next_(load()) {}
 
-  /// Where the entries of a slice begin.
+  /// Start of a slice's entries.
   static HWY_INLINE const float* first_entry(const SlicedBodies& bodies, std::size_t slice) {
     return bodies.entries.data() + bodies.first_entry[slice] * floats;
   }
   HWY_INLINE bool is_before(const float* end) const { return entry_ < end; }
   /// SlicedGraph::stiffness_rest of this entry.
   HWY_INLINE Lanes stiffness_rest() const { return hn::Load(FloatTag(), entry_ + vector_nodes); }
-  /// The neighbours that this entry names; goes on to the next one.
+  /// Returns the neighbours of this entry and advances to the next.
   HWY_INLINE NodeLanes take() {
     const NodeLanes taken = next_;
     entry_ += floats;
-    next_ = load();  // slice_entries() has one more behind the last one
+    next_ = load();  // slice_entries() has an extra entry after the last one
     return taken;
   }
 
@@ -103,8 +102,8 @@ class EntryWalk {
   NodeLanes next_;
 };
 
-/// Acceleration that the springs of a slice's nodes give them, neighbour by neighbour in the order of
-/// entries, which end at `end`.
+/// Acceleration of a slice's nodes by their springs, neighbour by neighbour in the order of entries up to
+/// `end`.
 HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, const NodeLanes& node,
                                       const SpringConstants<Lanes>& constants) {
   Lanes3 sum = zero3();
@@ -143,7 +142,7 @@ HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, Inde
 /// Positions and velocities of a node in all lanes: [x y z u v w][lanes].
 HWY_INLINE NodeLanes load_bodies(const float* from) { return {load3(from), load3(from + 3 * vector_nodes)}; }
 
-/// Adds to the forces on a piece's nodes those of springs from nodes before it.
+/// Adds the forces of springs from earlier pieces to those on a piece's nodes.
 HWY_NOINLINE inline void add_cut_springs(const AlikeBodies& shape, const BodyLanes::Piece& piece,
                                          const float* gathered, float* forces) {
   const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
@@ -157,14 +156,14 @@ HWY_NOINLINE inline void add_cut_springs(const AlikeBodies& shape, const BodyLan
   }
 }
 
-/// One stage at the nodes of a piece. `forces` are zero, and are zero again afterwards.
+/// One stage at the nodes of a piece. `forces` must be zero, and is zero afterwards.
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const BodyLanes::Piece& piece,
                              float* const forces) {
   constexpr std::size_t force_floats = 3 * vector_nodes;
   const AlikeBodies& shape = bodies.shapes[piece.shape];
   const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
-  // Copies: a vector's store may change all else, as far as the compiler knows.
+  // Copies, because the compiler must assume that a vector store may change any object in memory.
   const Coefficients<float> coefficients = bodies.coefficients;
   const Surroundings surroundings = bodies.surroundings;
   const std::size_t end = piece.end, reach = piece.reach;
@@ -211,7 +210,7 @@ HWY_INLINE void step_chunk(BodyLanes& bodies, const Pairs& base, IndexRange chun
     step_piece<method, stage>(bodies, base, bodies.pieces[piece], bodies.forces[thread].data());
 }
 
-/// A thread works on a chunk in a stage, counted from the first one of the call.
+/// A thread's work on a chunk in a stage, counted from the first one of the call.
 template <std::size_t method, class Bodies>
 HWY_INLINE void work_on(Bodies& bodies, std::uint32_t number, IndexRange chunk, std::uint32_t thread) {
   const Pairs base = pairs_in<method>(bodies.base, number);
@@ -221,7 +220,7 @@ HWY_INLINE void work_on(Bodies& bodies, std::uint32_t number, IndexRange chunk, 
   });
 }
 
-/// Takes so many stages.
+/// Executes `stages` stages.
 template <std::size_t method, class Bodies>
 HWY_INLINE void take_stages(Bodies& bodies, std::uint32_t count) {
   work_in_phases(
@@ -231,8 +230,8 @@ HWY_INLINE void take_stages(Bodies& bodies, std::uint32_t count) {
       [](std::uint32_t) {});
 }
 
-/// Each stage of a part is two phases: nodes without ghosts for neighbours are stepped while messages bring
-/// the ghosts; then the edge nodes, which are sent as soon as they are complete.
+/// Each stage of a part has two phases: nodes without ghost neighbours are stepped while messages bring the
+/// ghosts; then the edge nodes, which are sent as soon as they are complete.
 template <std::size_t method>
 HWY_INLINE void take_stages(SlicedBodies& bodies, std::uint32_t count) {
   if (bodies.messages == nullptr) return take_stages<method, SlicedBodies>(bodies, count);
@@ -260,8 +259,8 @@ HWY_INLINE void take_stages(SlicedBodies& bodies, std::uint32_t count) {
 
 template <std::size_t method, class Bodies>
 HWY_INLINE void take_steps(Bodies& bodies, int count) {
-  // A node's sums have the order of its neighbours, whichever thread computes them and wherever bodies are
-  // cut: the result is the same to the last bit for any number of threads.
+  // A node's sums are in the order of its neighbours, on any thread and for any division of bodies: the
+  // result is bitwise identical for any number of threads.
   const auto stages =
       static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(integrators[method].stage_count);
   if (stages == 0 || bodies.chunks.empty()) return;
@@ -275,7 +274,7 @@ void step_bodies(Bodies& bodies, int count) {
   with_integrator(*bodies.integrator, [&](auto method) HWY_ATTR {
     if constexpr (Stages<stages>::have(integrators[method])) {
       const auto take = [&](int some) HWY_ATTR { take_steps<method>(bodies, some); };
-      constexpr int most = 1 << 20;  // a ticket numbers a call's phases, of which a stage may have two
+      constexpr int most = 1 << 20;  // a ticket numbers a call's phases; a stage may have two
       static_assert(2 * most * integrators[method].stage_count <= ChunkTickets::most_phases);
       for (; count > most; count -= most) take(most);
       take(count);

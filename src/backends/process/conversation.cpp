@@ -17,12 +17,12 @@
 namespace mssim {
 namespace {
 
-/// Longest line, its newline included.
+/// Maximum length of a line, including its newline.
 constexpr std::size_t longest_line = 4096;
-/// How long a wait goes on before it looks at the clock, the program and the signals.
+/// Interval at which a wait checks the clock, the program and the signals.
 constexpr int slice_ms = 100;
 
-/// Where the names of sockets, which have 107 bytes, are short.
+/// A folder for sockets if another folder's name is too long: socket names have at most 107 bytes.
 constexpr const char* folder_of_short_name = "/tmp";
 
 using Cause = ConversationFailure::Cause;
@@ -32,12 +32,12 @@ bool is_readable(int descriptor) {
   return descriptor >= 0 && ::poll(&waiting, 1, 0) > 0;
 }
 
-/// What of a line can be shown in a sentence.
+/// The printable form of a line for a sentence.
 std::string in_quotes(std::string_view line) { return '"' + printable(line) + '"'; }
 
 constexpr int most_threads = 4096;
 
-/// A line's first word, and what follows it.
+/// A line's first word, and the rest.
 std::pair<std::string_view, std::string_view> split(std::string_view line) {
   const std::size_t space = line.find(' ');
   return {line.substr(0, space), space == std::string_view::npos ? "" : line.substr(space + 1)};
@@ -78,7 +78,7 @@ Conversation::Conversation(const std::filesystem::path& folder) : socket_(folder
       ::listen(listener_.get(), 2) != 0)
     throw std::runtime_error(
         fmt::format("cannot listen at {} ({}); set TMPDIR to a writable folder, and raise the limit of open "
-                    "files (ulimit -n) where it is too low",
+                    "files (ulimit -n) if it is too low",
                     socket_.string(), std::strerror(errno)));
 }
 
@@ -87,7 +87,7 @@ void Conversation::begin(std::chrono::duration<double> time_limit, int end_descr
   end_descriptor_ = end_descriptor;
   deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit);
   accept();
-  // A wait for bytes alone is the fastest answer there is; every slice it looks at all else.
+  // Waiting only for bytes gives the fastest answer; everything else is checked once per slice.
   const timeval slice{0, slice_ms * 1000};
   if (::setsockopt(connection_.get(), SOL_SOCKET, SO_RCVTIMEO, &slice, sizeof slice) != 0)
     throw std::runtime_error(fmt::format("cannot set a socket's time limit ({})", std::strerror(errno)));
@@ -101,8 +101,8 @@ void Conversation::accept() {
     connection_ = Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (connection_.is_open()) return;
     if (errno == EMFILE || errno == ENFILE)
-      throw std::runtime_error(std::string("cannot take the program's connection (") + std::strerror(errno) +
-                               "); raise the limit of open files (ulimit -n)");
+      throw std::runtime_error(std::string("cannot accept the program's connection (") +
+                               std::strerror(errno) + "); raise the limit of open files (ulimit -n)");
     if (is_readable(end_descriptor_))
       throw ConversationFailure(Cause::closed, "before it connected to MSSIM_SOCKET");
     if (Clock::now() > deadline_)
@@ -119,7 +119,7 @@ void Conversation::ask(std::string_view lines, const std::string& asked) {
   }
   if (!received_.empty())
     throw ConversationFailure(Cause::answer,
-                              fmt::format("sent {} after its answer to {}, where nothing was asked",
+                              fmt::format("sent {} after its answer to {}, although nothing was requested",
                                           in_quotes(received_.substr(0, received_.find('\n'))), asked_));
   asked_ = '"' + asked + '"';
   deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit_);
@@ -147,8 +147,7 @@ std::string Conversation::answer() {
     searched = received_.size();
     throw_if_ending_signal_noted();
     std::array<char, longest_line> bytes;
-    // Once the time is over, what has come by then counts, and nothing is waited for, however little is
-    // missing.
+    // After the deadline, only data that has already arrived counts, even if little is missing.
     const int waiting = Clock::now() > deadline_ ? MSG_DONTWAIT : 0;
     const ssize_t count = ::recv(connection_.get(), bytes.data(), bytes.size(), waiting);
     if (count > 0)
@@ -162,7 +161,7 @@ std::string Conversation::answer() {
 
 void Conversation::look_around() const {
   throw_if_ending_signal_noted();
-  // What it sent before it ended has been read.
+  // Everything that it sent before its end has been read.
   if (is_readable(end_descriptor_)) throw ConversationFailure(Cause::closed, "before it answered " + asked_);
   if (is_readable(listener_.get()))
     throw ConversationFailure(Cause::answer, "connected a second time before it answered " + asked_);

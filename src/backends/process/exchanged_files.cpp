@@ -22,9 +22,9 @@ namespace {
 
 constexpr const char* shared_memory = "/dev/shm";
 
-static_assert(sizeof(Vec3d) == 3 * sizeof(double), "the file has three numbers a node");
+static_assert(sizeof(Vec3d) == 3 * sizeof(double), "the file has three numbers per node");
 
-/// A quiet NaN with letters for a payload.
+/// A quiet NaN whose payload is text.
 constexpr std::uint64_t unwritten = 0x7ff86d737369'6d21;
 
 bool is_unwritten(const Vec3d& vector) {
@@ -34,7 +34,7 @@ bool is_unwritten(const Vec3d& vector) {
 
 std::size_t bytes_of(std::size_t nodes) { return 2 * sizeof(Vec3d) * nodes; }
 
-/// Reads the whole of `data`, from that byte on; false where the file ends before it.
+/// Reads `bytes` bytes from offset `byte` into `data`; false if the file ends before.
 bool read_at(const Descriptor& file, std::size_t byte, void* data, std::size_t bytes) {
   while (bytes > 0) {
     const ssize_t count = ::pread(file.get(), data, bytes, static_cast<off_t>(byte));
@@ -52,7 +52,7 @@ hid_t file_type(std::uint32_t /*number*/) { return H5T_STD_U32LE; }
 hid_t memory_type(double /*number*/) { return H5T_NATIVE_DOUBLE; }
 hid_t memory_type(std::uint32_t /*number*/) { return H5T_NATIVE_UINT32; }
 
-/// A dataset in one piece; no extents: of one number.
+/// A contiguous dataset; without extents: of one number.
 template <class Number>
 Hdf5Dataset create(hid_t file, const std::string& path, const std::string& unit,
                    const std::vector<hsize_t>& extents) {
@@ -73,8 +73,8 @@ void write_number(hid_t file, const std::string& path, const std::string& unit, 
   dataset.close("writing " + path);
 }
 
-/// A list of `rows` of `width` numbers each; `row_of(i)` is an array of those of row i. Some rows at a time,
-/// because all springs of a large scene take as much memory again as the scene.
+/// A list of `rows` rows of `width` numbers; `row_of(i)` is row i as an array. Written in parts, because all
+/// springs of a large scene at once would need as much memory as the scene.
 template <class Number, std::size_t width, class RowOf>
 void write_list(hid_t file, const std::string& path, const std::string& unit, std::size_t rows,
                 const RowOf& row_of) {
@@ -171,7 +171,7 @@ bool StateFile::make(const std::filesystem::path& folder) {
   path_ = folder / "state";
   file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   if (!file_.is_open()) return false;
-  // Room that is there now will not be missing in the middle of a run.
+  // Reserve the space now, so that it is not missing during a run.
   const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes_of(nodes_)));
   errno = error;
   return error == 0;

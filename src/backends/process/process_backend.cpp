@@ -22,9 +22,8 @@
 namespace mssim {
 namespace {
 
-/// NAME=VALUE: what the program finds in its environment beside this process's. `socket`: where mssim
-/// listens. `memory`: a folder that is removed when the program has ended, in shared memory where that has
-/// room.
+/// NAME=VALUE: the program's environment in addition to this process's. `socket`: mssim's socket. `memory`: a
+/// folder that is removed when the program has ended, in shared memory if that has room.
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
                                         const std::filesystem::path& memory, const Integrator& integrator,
                                         const ExecutionOptions& options) {
@@ -46,7 +45,7 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
   return all;
 }
 
-/// The first of the processors that mssim may use; none where the program may use all of them.
+/// The first CPUs that mssim may use; empty if the program may use all of them.
 std::vector<int> first_cpus(int threads) {
   std::vector<int> cpus = process_cpus();
   if (cpus.size() <= static_cast<std::size_t>(threads)) return {};
@@ -56,16 +55,15 @@ std::vector<int> first_cpus(int threads) {
 
 using namespace std::chrono_literals;
 
-/// How long a program that was asked to end gets to do so.
+/// Time for a program to end after it was asked to.
 constexpr std::chrono::milliseconds patience = 2s;
-/// Patience with a program that has closed its connection: it may be about to say why, and what has started
-/// its processes on other machines takes seconds to hear of their end.
+/// Time after a program has closed its connection: it may still print the reason, and a launcher takes
+/// seconds to learn that its remote processes have ended.
 constexpr std::chrono::milliseconds patience_for_reasons = 8s;
-/// Lines that a program may say of itself before it is ready.
+/// Maximum number of a program's answers to `prepare`.
 constexpr int most_lines = 100;
 
-/// The last line of a program's output that has words: no frame, and not env's advice about what it has just
-/// said.
+/// The last line of a program's output that has words: not a frame, and not env's advice after its error.
 std::string last_line(std::string_view output) {
   while (!output.empty()) {
     const std::size_t begin = output.find_last_of('\n') + 1;
@@ -77,8 +75,8 @@ std::string last_line(std::string_view output) {
   return "";
 }
 
-/// Calls `work`. What goes wrong there with files, sockets and processes concerns this program alone, and not
-/// those beside it: throws BackendFailure for it.
+/// Calls `work`. A failure with files, sockets or processes concerns only this program: throws BackendFailure
+/// for it.
 template <class Work>
 std::invoke_result_t<Work> failing_alone(const Work& work) {
   try {
@@ -94,12 +92,12 @@ std::invoke_result_t<Work> failing_alone(const Work& work) {
   }
 }
 
-/// Throws Unsupported for what the program is known not to have.
+/// Throws Unsupported for scenes and integrators that the program is known not to support.
 void require_support(const BackendProgram& program, const System& system, const Integrator& integrator) {
   const bool cloth = std::holds_alternative<GridPatch>(system.topology);
   if (!(cloth ? program.steps_cloths : program.steps_bodies))
     throw Unsupported(std::string("it does not step ") + (cloth ? "cloths" : "bodies"));
-  // One that is told nothing but stages would take a step of none for no step.
+  // Without stages to send, a program that only reads stages would do nothing in a step.
   const bool any = program.integrators.empty() && !is_implicit(integrator);
   if (!any && std::ranges::find(program.integrators, integrator.name) == program.integrators.end())
     throw Unsupported("it has no " + std::string(integrator.name));
@@ -107,7 +105,7 @@ void require_support(const BackendProgram& program, const System& system, const 
 
 class ProcessBackend final : public WindowBackend {
  public:
-  /// `nodes`: of the states that are exchanged.
+  /// `nodes`: number of nodes in exchanged states.
   ProcessBackend(const BackendProgram& program, const System& system, const Integrator& integrator,
                  double dt_s, const ExecutionOptions& options, std::size_t nodes)
       : program_(program),
@@ -116,7 +114,7 @@ class ProcessBackend final : public WindowBackend {
         conversation_(folder_.path()),
         state_file_(nodes, folder_.path()) {
     const std::filesystem::path system_file = folder_.path() / "system.h5";
-    // A cloth of a program in several processes is built by each for itself, and may be large.
+    // With several processes, each builds its part of a cloth itself, and the cloth may be large.
     if (!program.in_ranks || !std::holds_alternative<GridPatch>(system.topology))
       write_system(system_file, system);
     const int processors = processors_of(program, options);
@@ -138,12 +136,12 @@ class ProcessBackend final : public WindowBackend {
       conversation_.ask(lines, "prepare");
       introduce();
     });
-    std::error_code ignored;  // it goes with its folder in any case
+    std::error_code ignored;  // its folder is removed in any case
     std::filesystem::remove(system_file, ignored);
   }
 
   ~ProcessBackend() override {
-    // Where a wait was cut short there is no time for manners.
+    // After an interrupted wait, skip the orderly shutdown.
     if (std::uncaught_exceptions() == 0) end_politely();
   }
 
@@ -190,7 +188,7 @@ class ProcessBackend final : public WindowBackend {
   }
 
  private:
-  /// Calls `converse`, and turns what goes wrong with the program into BackendFailure.
+  /// Calls `converse` and turns the program's failures into BackendFailure.
   template <class Converse>
   std::invoke_result_t<Converse> conversing(const Converse& converse) const {
     using Cause = ConversationFailure::Cause;
@@ -208,8 +206,8 @@ class ProcessBackend final : public WindowBackend {
     }
   }
 
-  /// Ends the program and throws BackendFailure: its name, this predicate and, where it is wanted, the last
-  /// thing that it wrote.
+  /// Ends the program and throws BackendFailure: its name, this predicate and, if requested, the last line of
+  /// its output.
   [[noreturn]] void fail(const std::string& predicate, bool with_last_line = false, bool late = false) const {
     const std::string output = process_->end(0ms).output;
     std::string sentence = program_.name + ' ' + predicate;
@@ -218,7 +216,7 @@ class ProcessBackend final : public WindowBackend {
     throw BackendFailure(sentence, output, late);
   }
 
-  /// Takes lines until one of them is the last.
+  /// Takes lines until the last one.
   template <class Take>
   void take_answers(const std::string& asked, const Take& take) const {
     for (int lines = 0; lines < most_lines; ++lines)
@@ -231,13 +229,13 @@ class ProcessBackend final : public WindowBackend {
     const auto take = [&](const std::string& line) { return take_introduction(introduction_, line); };
     try {
       take_answers("prepare", take);
-    } catch (const Error&) {  // Unsupported or Unavailable: it may have to tidy up
+    } catch (const Error&) {  // Unsupported or Unavailable: let it end in order
       end_politely();
       throw;
     }
   }
 
-  /// Asks for states and reads them.
+  /// Requests states and reads them.
   State get(const std::string& line) const {
     failing_alone([&] { state_file_.clear(); });
     request(line);
@@ -248,7 +246,7 @@ class ProcessBackend final : public WindowBackend {
     }
   }
 
-  /// Asks for something and waits until it is done. `timed`: the program may say how long it took.
+  /// Sends a request and waits until it is done. `timed`: the program may report its time.
   void request(const std::string& request, bool timed = false) const {
     resume();
     conversing([&] {
@@ -269,10 +267,10 @@ class ProcessBackend final : public WindowBackend {
   }
 
   const BackendProgram& program_;
-  const double ahead_s_;  ///< which the program's positions are ahead of the state's
+  const double ahead_s_;  ///< time by which the program's positions are ahead of the state's
   const double floor_height_;
   TemporaryFolder folder_;
-  // Asking is part of what does not change the simulation.
+  // Requests do not change the simulation, so const functions may send them.
   mutable Conversation conversation_;
   mutable bool paused_ = false;
   StateFile state_file_;
@@ -319,7 +317,7 @@ std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& progra
                                                     std::optional<std::size_t> window_nodes) {
   if (!program.missing.empty()) throw Unavailable(program.missing);
   require_support(program, system, integrator);
-  // Whether or not somebody waits for these signals already: folders of this backend must not stay behind.
+  // Catch these signals even if nothing else does yet: this backend's folders must be removed.
   const EndingSignals during_preparation(note_ending_signal, 0);
   return failing_alone([&] {
     return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options,

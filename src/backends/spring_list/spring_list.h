@@ -20,9 +20,9 @@ namespace mssim {
 #undef MSSIM_INLINE
 #undef MSSIM_INLINE_LAMBDA
 
-/// A mass-spring system as a straightforward program holds it: an array of nodes and a list of springs, each
-/// spring adding its force to both ends. The parts of a step are member functions over ranges, so that one
-/// thread or many can run them; nothing here knows about threads.
+/// A mass-spring system as in a straightforward program: an array of nodes and a list of springs, each of
+/// which adds its force to both ends. The parts of a step are member functions over ranges, so one or many
+/// threads can run them; this code has no knowledge of threads.
 template <class Real>
 class SpringList {
  public:
@@ -49,7 +49,7 @@ class SpringList {
   void set_state(const State& state) {
     for (std::size_t pair = 0; pair < pair_kinds; ++pair)
       place_[pair] = index(storage_of(integrator_, static_cast<Pair>(pair), storage));
-    for (std::vector<Node>& nodes : pairs_)  // the trial pairs too: pinned nodes are never updated
+    for (std::vector<Node>& nodes : pairs_)  // including trial pairs: pinned nodes are never updated
       for (std::size_t i = 0; i < nodes.size(); ++i)
         nodes[i] = {vec3_cast<Real>(state.position[i]), vec3_cast<Real>(state.velocity[i])};
   }
@@ -83,9 +83,9 @@ class SpringList {
     force_[spring.first] += force;
     force_[spring.second] -= force;
   }
-  /// What has been added up for a node, N, for those who add in another way.
+  /// The sum of forces on a node, N, for code that adds in another way.
   Vec3<Real>& force(std::size_t node) { return force_[node]; }
-  /// The table's assignments for nodes first .. last - 1, once all forces are complete.
+  /// Executes the stage's assignments for nodes first .. last - 1, once all forces are complete.
   template <std::size_t method, std::size_t stage>
   void update_nodes(std::size_t first, std::size_t last) {
     const std::vector<Node>& gathered = array(integrators[method].stages[stage].gather);
@@ -111,13 +111,13 @@ class SpringList {
           });
     }
   }
-  /// Ends a step: what the last stage wrote becomes the state.
+  /// Ends a step: the last stage's result becomes the state.
   void end_step() {
     if (swaps_state(integrator_, storage)) std::swap(place_[index(Pair::state)], place_[index(Pair::next)]);
   }
 
  private:
-  /// All forces of a stage are known before a node is updated, so pairs may share arrays.
+  /// All forces of a stage are computed before a node is updated, so pairs may share arrays.
   static constexpr Storage storage = Storage::in_place;
   const std::vector<Node>& array(Pair pair) const { return pairs_[place_[index(pair)]]; }
   std::vector<Node>& array(Pair pair) { return pairs_[place_[index(pair)]]; }
@@ -129,7 +129,7 @@ class SpringList {
   std::vector<std::uint8_t> pinned_;                 ///< [nodes]
   std::vector<Real> inverse_mass_;                   ///< [nodes] 1/kg
   std::vector<Vec3<Real>> force_;                    ///< [nodes] N
-  std::array<std::vector<Node>, pair_kinds> pairs_;  ///< [nodes] each; empty where not stored
+  std::array<std::vector<Node>, pair_kinds> pairs_;  ///< [nodes] each; empty if not stored
   std::array<std::size_t, pair_kinds> place_{};      ///< role -> element of pairs_
 };
 

@@ -15,13 +15,13 @@
 namespace mssim {
 namespace {
 
-/// Springs whose forces a thread computes between two entries into the critical section. The paper does not
-/// say how much one lock covers; with one spring a lock nearly all time goes into locking (and its speed-up
-/// of 3 to 4.6 on four cores could not have been), so a thread gathers a block, small enough to stay in its
-/// first-level cache.
+/// Springs that a thread computes per critical section. The paper does not state how many springs one lock
+/// covers; with one spring per lock nearly all time would be spent on locking (and the paper's speed-up of 3
+/// to 4.6 on four cores would be impossible), so a thread computes a block, small enough for its first-level
+/// cache.
 constexpr std::size_t block_springs = 512;
 
-/// Its threads wait, asleep, from one call to the next, and end where it is to rest.
+/// Its threads sleep between calls and end in rest().
 class ThreadsMutex final : public Backend {
  public:
   ThreadsMutex(const System& system, const Integrator& integrator, double dt_s, int threads)
@@ -46,7 +46,7 @@ class ThreadsMutex final : public Backend {
 
  private:
   void make_threads() {
-    std::promise<bool> complete;  // whether all threads are there: they would wait for those that are not
+    std::promise<bool> complete;  // whether all threads exist: those that do would wait for the missing ones
     const std::shared_future<bool> all_are_there = complete.get_future();
     try {
       const OnAllProcessCpus inherited;
@@ -58,7 +58,7 @@ class ThreadsMutex final : public Backend {
       complete.set_value(false);
       const std::size_t made = group_.size() + 1;
       group_.clear();
-      throw BackendFailure(fmt::format("the system has made {} of {} threads ({}): ask for fewer with "
+      throw BackendFailure(fmt::format("the system has created {} of {} threads ({}): request fewer with "
                                        "--threads, or end other programs",
                                        made, threads_, error.code().message()),
                            "");

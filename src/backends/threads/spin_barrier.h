@@ -13,20 +13,19 @@
 
 namespace mssim {
 
-/// A barrier for threads that meet every few microseconds (spin_wait.h says how it waits). At the end of a
-/// round of their work one of them may take rounds alone, where that is faster.
+/// A barrier for threads that synchronise every few microseconds; see spin_wait.h for how it waits. At the
+/// end of a round, one of them may take rounds alone if that is faster.
 class SpinBarrier {
  public:
   explicit SpinBarrier(std::size_t threads) : threads_(threads) {}
-  /// `gain` lives as long, and is called by no other thread meanwhile. `begin`: since when the threads are
-  /// under way.
+  /// `gain` must outlive it, and no other thread may call it meanwhile. `begin`: start of the threads' work.
   SpinBarrier(std::size_t threads, TeamGain& gain, TeamGain::Clock::time_point begin = TeamGain::Clock::now())
       : threads_(threads), gain_(&gain) {
     gain.begin(begin);
   }
 
-  /// Returns when all threads have called it, or end_round(), as often as this one. What they wrote before is
-  /// visible after.
+  /// Returns when all threads have called it, or end_round(), as often as this one. Earlier writes are then
+  /// visible.
   void wait() {
     const Arrival mine = arrive();
     if (mine.is_last)
@@ -35,10 +34,10 @@ class SpinBarrier {
       wait_for_others(mine);
   }
 
-  /// Meets the others at the end of a round. Meanwhile one thread may take rounds for all: take_round(n) with
-  /// n from 0 on does the work of all threads in the (n + 1)th round after this one, or returns false where
-  /// none is left. Returns to every thread how many rounds that were. `waited`: how long this thread has
-  /// waited for others since the last such meeting, apart from here.
+  /// Synchronises at the end of a round. Meanwhile one thread may take rounds for all: take_round(n), n = 0,
+  /// 1, ..., does the work of all threads in the (n + 1)th round after this one, or returns false if none is
+  /// left. Returns the number of these rounds to every thread. `waited`: time that this thread has waited for
+  /// others since the last call, apart from here.
   template <class TakeRound>
   std::size_t end_round(TakeRound&& take_round, TeamGain::Duration waited = {}) {
     TeamGain::Duration::rep longest = longest_wait_.load(std::memory_order_relaxed);
@@ -59,7 +58,7 @@ class SpinBarrier {
     const unsigned now =
         mine.is_last ? wait_for_change(phase_, mine.phase + 1, spins) : wait_for_others(mine);
     if (now == mine.phase + 1) {
-      if (mine.is_first) {  // nothing has kept it from arriving: it has a processor
+      if (mine.is_first) {  // not delayed: it has a core
         rounds_alone_ = gain_->take_rounds(take_round);
         gain_->begin(Clock::now());
         release(mine.phase);
@@ -73,7 +72,7 @@ class SpinBarrier {
  private:
   using Clock = TeamGain::Clock;
 
-  /// Some microseconds: about as long as the parts of a balanced step differ.
+  /// Some microseconds: about the imbalance of a balanced step.
   static constexpr int spins = 300;
 
   struct Arrival {
@@ -92,41 +91,42 @@ class SpinBarrier {
     change_and_notify(phase_, phase + 2);
   }
 
-  /// Who arrives before the last one. Reads the clock in waits only that are long already: a step of the
-  /// smallest cloths takes as long as a few hundred readings.
+  /// For threads before the last one. Reads the clock only in long waits: a step of the smallest cloths takes
+  /// as long as a few hundred readings.
   unsigned wait_for_others(const Arrival& mine) {
     if (!mine.is_first || !gain_) return wait_for_change(phase_, mine.phase, spins);
     constexpr int first_spins = spins / 10;
     if (const unsigned now = spin_for_change(phase_, mine.phase, first_spins); now != mine.phase) return now;
     const Clock::time_point begin = Clock::now();
     const unsigned now = wait_for_change(phase_, mine.phase, spins - first_spins);
-    // The last one may be the next to use it, but not before this thread has arrived again.
+    // The last thread may use it next, but not before this thread has arrived again.
     gain_->add_wait(Clock::now() - begin);
     return now;
   }
 
   const std::size_t threads_;
-  TeamGain* const gain_ = nullptr;  // of who is last, of the first in a wait, or of who works alone
+  TeamGain* const gain_ = nullptr;  // used by the last, the first waiting, or the lone thread
   std::atomic<std::size_t> arrived_{0};
-  std::atomic<TeamGain::Duration::rep> longest_wait_{0};  // of the threads' own since the last end_round()
-  std::atomic<unsigned> phase_{0};  // two more after every meeting; one more while a thread is alone
+  std::atomic<TeamGain::Duration::rep> longest_wait_{
+      0};                           // maximum over the threads since the last end_round()
+  std::atomic<unsigned> phase_{0};  // two more after every meeting; one more while a thread works alone
   std::size_t rounds_alone_ = 0;
 };
 
-/// The threads that take a step together, as one of them sees them.
+/// The threads that take a step together, from the view of one of them.
 struct Team {
   std::size_t thread;
   std::size_t threads;
   SpinBarrier& barrier;
 
   void meet() const { barrier.wait(); }
-  /// SpinBarrier::end_round.
+  /// See SpinBarrier::end_round.
   template <class TakeRound>
   std::size_t end_round(TakeRound&& take_round, TeamGain::Duration waited = {}) const {
     return barrier.end_round(std::forward<TakeRound>(take_round), waited);
   }
 
-  /// Where this thread's slice of `count` things begins; the next thread's begins where it ends.
+  /// Begin of this thread's slice of `count` items; the next thread's begins at its end.
   std::size_t begin(std::size_t count) const { return count * thread / threads; }
   std::size_t end(std::size_t count) const { return count * (thread + 1) / threads; }
   template <class T>
@@ -135,8 +135,8 @@ struct Team {
   }
 };
 
-/// Calls act(team) on so many threads of OpenMP's, or on fewer where it gives no more. `gain`: what
-/// SpinBarrier takes beside their number.
+/// Calls act(team) on `threads` OpenMP threads, or fewer if OpenMP gives no more. `gain`: SpinBarrier's
+/// further arguments.
 template <class Act, class... Gain>
 void with_team(std::size_t threads, const Act& act, Gain&&... gain) {
   std::optional<SpinBarrier> barrier;

@@ -1,19 +1,19 @@
 #pragma once
 
-// What Highway compiles vector code for, and what of it this processor can run. A file of vector code
-// (step_*.cpp) is compiled once per instruction set: hwy/foreach_target.h includes it again for each. Highway
-// reads the macro below when it is included, so this header comes first there.
+// The instruction sets for which Highway compiles vector code, and those that this CPU can run. A file of
+// vector code (step_*.cpp) is compiled once per instruction set: hwy/foreach_target.h includes it again for
+// each. Highway reads the macro below when it is included, so include this header first.
 #ifdef HIGHWAY_HWY_DETECT_TARGETS_H_
 #error "backends/vectors/instruction_sets.h must be included before Highway"
 #endif
 
-// On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, "AVX3" to Highway). By SSE4 Highway means SSE4.2 with AES
-// and carry-less multiplication, which a few processors up to about 2013 lack; plain floats for them would be
-// a quarter of the time that vector code takes to compile. Not what Highway has beyond AVX3, in lower bits:
-// newer versions of it would compile the same code for Zen 4 and for Sapphire Rapids again. On arm64 NEON
-// (4). Not Arm's SVE: a vector whose length is known only at run time cannot be a member of a struct, as
-// Lanes needs it, and the phones that have SVE have vectors of 128 bits, no longer than NEON's. On any other
-// processor what its compiler takes for granted, or plain floats, one lane.
+// On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, Highway's "AVX3"). Highway's SSE4 is SSE4.2 with AES and
+// carry-less multiplication, which a few CPUs up to about 2013 lack; plain floats for them would take a
+// quarter of the compile time of vector code. No targets beyond AVX3 (lower bits): newer versions of Highway
+// would compile the same code again for Zen 4 and for Sapphire Rapids. On arm64 NEON (4), not Arm's SVE: a
+// vector whose length is known only at run time cannot be a struct member, as Lanes requires, and phones with
+// SVE have vectors of 128 bits, no longer than NEON's. On other CPUs the compiler's baseline, or plain
+// floats, one lane.
 #define HWY_DISABLED_TARGETS ((HWY_AVX3 - 1) | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #if defined(__x86_64__) && !defined(__SSE4_2__)
 #define HWY_BASELINE_TARGETS HWY_SSE4
@@ -33,9 +33,8 @@
 
 namespace mssim {
 
-/// The kernels in one of Highway's dispatch tables (functions that return a kernel) that this processor can
-/// run, the best first. Unlike HWY_DYNAMIC_DISPATCH, which knows only the best. Throws Unavailable where
-/// there is none.
+/// The kernels in one of Highway's dispatch tables (functions that return a kernel) that this CPU can run,
+/// the best first. (HWY_DYNAMIC_DISPATCH gives only the best.) Throws Unavailable if there is none.
 template <class Kernel, std::size_t size>
 std::vector<Kernel> kernels_of_this_processor(Kernel (*const (&table)[size])()) {
   std::vector<Kernel> kernels;
@@ -45,12 +44,11 @@ std::vector<Kernel> kernels_of_this_processor(Kernel (*const (&table)[size])()) 
     target.Update(rest & -rest);
     kernels.push_back(table[size == 1 ? 0 : target.GetIndex()]());
   }
-  if (kernels.empty())
-    throw Unavailable("this processor lacks SSE4.2 or AES, the least that vector code is compiled for");
+  if (kernels.empty()) throw Unavailable("this CPU lacks SSE4.2 or AES, the minimum for vector code");
   return kernels;
 }
 
-/// The kernels that a file of vector code has for a `Data`, by MSSIM_COMPILED_KERNELS.
+/// The kernels for a `Data`; MSSIM_COMPILED_KERNELS defines it.
 template <class Data, std::size_t stages>
 struct CompiledHere;
 
@@ -61,7 +59,7 @@ std::vector<StepKernel<Data>> compiled_kernels() {
 
 }  // namespace mssim
 
-/// Makes compiled_kernels<Data, MSSIM_STAGES>(), in mssim and once for all instruction sets, of functions
+/// Defines compiled_kernels<Data, MSSIM_STAGES>(), in mssim and once for all instruction sets, from functions
 /// `kernel` in HWY_NAMESPACE that return a StepKernel<Data>.
 // NOLINTBEGIN(bugprone-macro-parentheses): a type has no parentheses
 #define MSSIM_COMPILED_KERNELS(Data, kernel)                        \

@@ -1,5 +1,5 @@
-// One vector of floats as a number type, on Highway: the widest that the instruction set under compilation
-// has, up to 16 lanes. Compiled once per instruction set (hwy/foreach_target.h), so the guard toggles.
+// One vector of floats as a number type, on Highway: the widest of the current target's instruction set, up
+// to 16 lanes. Compiled once per instruction set (hwy/foreach_target.h), so the guard toggles.
 #if defined(MSSIM_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_LANES_INL_H_
 #undef MSSIM_LANES_INL_H_
@@ -27,7 +27,7 @@ using Index = hn::Vec<IndexTag>;
 #define MSSIM_INLINE HWY_INLINE
 #define MSSIM_INLINE_LAMBDA HWY_ATTR __attribute__((always_inline))
 
-/// Floats side by side, one of each node of a vector.
+/// Floats in one vector, one per node.
 struct Lanes {
   hn::Vec<FloatTag> v;
   Lanes() = default;
@@ -41,8 +41,8 @@ HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v, b.v); }
 HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
 HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
 HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
-/// -a, not computed where a multiplication and an addition can take it: they negate for nothing, and can read
-/// `a` from memory then.
+/// -a, not computed if a multiply-add can absorb it: those negate at no cost, and can then read `a` from
+/// memory.
 struct NegatedLanes {
   hn::Vec<FloatTag> v;
   HWY_INLINE operator Lanes() const { return hn::Neg(v); }
@@ -54,7 +54,7 @@ HWY_INLINE Lanes mul_add(NegatedLanes a, Lanes b, Lanes c) { return hn::NegMulAd
 HWY_INLINE Lanes square_root(Lanes a) { return hn::Sqrt(a.v); }
 HWY_INLINE Lanes inverse_sqrt(Lanes a) { return hn::Div(hn::Set(FloatTag(), 1.0F), hn::Sqrt(a.v)); }
 
-/// Whether a multiplication and an addition are rounded once. Where they are rounded twice, results differ.
+/// Whether multiply-adds are rounded once. If they are rounded twice, results differ.
 constexpr bool fuses = HWY_NATIVE_FMA != 0;
 
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
@@ -63,27 +63,27 @@ constexpr bool exact_roots = false;
 constexpr bool exact_roots = true;
 #endif
 
-/// The kernel of this instruction set.
+/// The kernel for the current target's instruction set.
 template <class Data>
 StepKernel<Data> kernel_here(void (*step)(Data&, int)) {
   return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, fuses, step};
 }
 
-/// a / 2, where that is neither zero nor denormal: one less in the exponent. An integer's subtraction,
-/// because multiplications limit the loops over springs: 0.97 to 0.99 of the time of a step on Zen 4.
+/// a / 2 if that is neither zero nor denormal: decrements the exponent. An integer subtraction, because
+/// multiplications limit the loops over springs: 0.97 to 0.99 of the time of a step on Zen 4.
 HWY_INLINE Lanes halved(Lanes a) {
   constexpr std::uint32_t exponent_one = std::uint32_t{1} << 23;
   return hn::BitCast(FloatTag(), hn::Sub(hn::BitCast(IndexTag(), a.v), hn::Set(IndexTag(), exponent_one)));
 }
 
-/// 1 / sqrt(a) of a spring's length squared, for loops that have little else to do meanwhile. A 512-bit root
-/// and division keep their unit busy for 16 to 22 cycles (Zen 4, Sapphire Rapids). AVX-512 has an estimate of
-/// 14 bits, which one Newton step, y + y/2 (1 - a y^2), takes to 1.04 units in the last place (Zen 4); root
-/// and division, each correctly rounded, come to 1.49. Time of a step of 500 x 700 against theirs: Sapphire
-/// Rapids 0.74, Zen 4 0.95, Zen 5 1.00 to 1.03. The price: the estimate is the processor's own, so only
-/// processors of a kind give the same bits (Roots::exact does without). Other instruction sets estimate 8 to
-/// 12 bits, too few for one step. tests/backends/vectors/inverse_length_test.cpp holds the error for every
-/// mantissa.
+/// 1 / sqrt(a) of a spring's length squared, for loops with little other work to overlap. A 512-bit root and
+/// division keep their unit busy for 16 to 22 cycles (Zen 4, Sapphire Rapids). AVX-512 has an estimate of 14
+/// bits, which one Newton step, y + y/2 (1 - a y^2), takes to 1.04 units in the last place (Zen 4); root and
+/// division, each correctly rounded, come to 1.49. Step time of 500 x 700 relative to theirs: Sapphire Rapids
+/// 0.74, Zen 4 0.95, Zen 5 1.00 to 1.03. The price: the estimate depends on the CPU, so results are bitwise
+/// identical only between CPUs of the same design (Roots::exact avoids it). Other instruction sets estimate 8
+/// to 12 bits, too few for one step. tests/backends/vectors/inverse_length_test.cpp checks the error for
+/// every mantissa.
 HWY_INLINE Lanes inverse_length(Lanes length_squared) {
   if constexpr (exact_roots) return inverse_sqrt(length_squared);
   const FloatTag d;
@@ -99,18 +99,18 @@ HWY_INLINE Lanes where_less(Lanes a, Lanes b, Lanes yes, Lanes no) {
 using Mask = hn::Mask<FloatTag>;
 HWY_INLINE Lanes keep(Mask mask, Lanes a) { return hn::IfThenElseZero(mask, a.v); }
 HWY_INLINE Lanes select(Mask mask, Lanes yes, Lanes no) { return hn::IfThenElse(mask, yes.v, no.v); }
-/// In place of a mask where all lanes are meant: nothing is computed.
+/// Instead of a mask if all lanes are meant: nothing is computed.
 struct EveryLane {};
 HWY_INLINE Mask both(Mask a, Mask b) { return hn::And(a, b); }
 HWY_INLINE Mask both(EveryLane, Mask mask) { return mask; }
 HWY_INLINE Lanes keep(EveryLane, Lanes a) { return a; }
-/// Lanes whose index is below `limit`; an index that has wrapped below zero is not.
+/// Lanes whose index is less than `limit`; false for an index that has wrapped below zero.
 HWY_INLINE Mask below(Index index, std::uint32_t limit) {
   return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
 }
 
-/// Each lane has what the lane `before` places before it has in `a`, counted around. Of every `group` lanes,
-/// a power of two, lane `outside` has that of `other`.
+/// Rotates: each lane gets the value of the lane `before` places earlier in `a`. In each `group` of lanes, a
+/// power of two, lane `outside` gets the value of `other`.
 HWY_INLINE Lanes from_lane(Lanes a, std::size_t before, std::size_t group, std::size_t outside, Lanes other) {
   const FloatTag d;
   const auto set = [](std::size_t number)
@@ -120,24 +120,24 @@ HWY_INLINE Lanes from_lane(Lanes a, std::size_t before, std::size_t group, std::
   return hn::IfThenElse(hn::RebindMask(d, hn::Ne(hn::And(lane, set(group - 1)), set(outside))),
                         hn::TableLookupLanes(a.v, source), other.v);
 }
-/// Each lane has what the lane before it has in `a`; the first one of every `group` has that of `first`.
+/// Each lane gets the previous lane's value in `a`; the first one of each `group` gets that of `first`.
 HWY_INLINE Lanes from_lane_before(Lanes a, Lanes first, std::size_t group) {
   return from_lane(a, 1, group, 0, first);
 }
-/// Each lane has what the lane behind it has in `a`; the last one of every `group` has that of `last`.
+/// Each lane gets the next lane's value in `a`; the last one of each `group` gets that of `last`.
 HWY_INLINE Lanes from_lane_behind(Lanes a, Lanes last, std::size_t group) {
   return from_lane(a, lane_count() - 1, group, group - 1, last);
 }
 
-/// Three components of a vector in space, of one node a lane.
+/// Three components of a vector in space, one node per lane.
 struct Lanes3 {
   Lanes x, y, z;
 };
-/// Positions (m) and velocities (m/s), of one node a lane.
+/// Positions (m) and velocities (m/s), one node per lane.
 struct NodeLanes {
   Lanes3 x, v;
 };
-/// Components that begin `pitch` floats after each other, each where a vector does.
+/// Loads components `pitch` floats apart, each at an address aligned for vectors.
 HWY_INLINE Lanes3 load3(const float* from, auto pitch) {
   const FloatTag d;
   return {hn::Load(d, from), hn::Load(d, from + pitch), hn::Load(d, from + 2 * pitch)};
@@ -167,7 +167,7 @@ HWY_INLINE Lanes3 keep(EveryLane, const Lanes3& a) { return a; }
 HWY_INLINE Lanes3 select(Mask mask, const Lanes3& yes, const Lanes3& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
-/// Shifts each component: `none` in the lane that has no other.
+/// Shifts each component; the lane without a source gets `none`.
 HWY_INLINE Lanes3 from_lane_before(const Lanes3& a, Lanes none, std::size_t group) {
   return {from_lane_before(a.x, none, group), from_lane_before(a.y, none, group),
           from_lane_before(a.z, none, group)};
@@ -179,7 +179,7 @@ HWY_INLINE Lanes3 from_lane_behind(const Lanes3& a, Lanes none, std::size_t grou
 HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
   return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
 }
-/// a . b + c, for no more instructions where there are multiply-adds.
+/// a . b + c, at no extra instructions with multiply-adds.
 HWY_INLINE Lanes dot_add(const Lanes3& a, const Lanes3& b, Lanes c) {
   return mul_add(a.z, b.z, mul_add(a.y, b.y, mul_add(a.x, b.x, c)));
 }
@@ -187,7 +187,7 @@ HWY_INLINE Lanes dot_add(const Lanes3& a, const Lanes3& b, Lanes c) {
 #define MSSIM_LAW_INLINE HWY_INLINE
 #include "laws/laws-inl.h"
 
-/// What the floor does to the new state of the lanes `under` it (the other lanes keep theirs).
+/// Applies the floor to the new state of the lanes `under` it (the other lanes are unchanged).
 HWY_INLINE void touch_floor(Mask under, Lanes height, Lanes restitution, Lanes friction, Lanes3& x,
                             Lanes3& v) {
   if (HWY_LIKELY(hn::AllFalse(FloatTag(), under))) return;

@@ -16,24 +16,24 @@
 
 namespace mssim {
 
-/// Vector code for one instruction set, which steps a `Data` laid out for its lanes.
+/// Vector code for one instruction set that steps a `Data` laid out for its lanes.
 template <class Data>
 struct StepKernel {
-  std::size_t lanes;                    ///< floats in a vector, for which the data must be laid out
+  std::size_t lanes;                    ///< floats per vector; the data must be laid out for it
   const char* instruction_set;          ///< Highway's name for it
-  bool exact_roots;                     ///< as inverse_length (lanes-inl.h) says
-  bool fuses;                           ///< the same of multiplications and additions
+  bool exact_roots;                     ///< see inverse_length (lanes-inl.h)
+  bool fuses;                           ///< whether multiply-adds are rounded once
   void (*step)(Data& data, int count);  ///< takes `count` steps
 };
 
-/// The vector code that steps a `Data`, for the instruction sets of this processor, at least one, the best
-/// first. The step_*.cpp of the data defines it; where CMakeLists.txt compiles that several times, for each
-/// of the Stages. Throws Unavailable where this processor has none of the instruction sets.
+/// The vector code that steps a `Data`, for the instruction sets of this CPU, at least one, the best first.
+/// The data's step_*.cpp defines it; if CMakeLists.txt compiles that several times, once for each of the
+/// Stages. Throws Unavailable if this CPU supports none of the instruction sets.
 template <class Data, std::size_t stages = 1>
 std::vector<StepKernel<Data>> compiled_kernels();
 
-/// Integrators of so many stages, or of more if it is most_stages_apart: those whose vector code is compiled
-/// together. All together would take long to compile.
+/// Integrators with `count` stages, or at least that many for most_stages_apart: their vector code is
+/// compiled together, because all integrators together would compile too long.
 template <std::size_t count>
 struct Stages {
   static constexpr std::size_t most_stages_apart = 3;
@@ -42,7 +42,7 @@ struct Stages {
   }
 };
 
-/// Those of the compiled kernels that take this explicit integrator's steps.
+/// The compiled kernels for this explicit integrator.
 template <class Data>
 std::vector<StepKernel<Data>> step_kernels(const Integrator& integrator) {
   if (Stages<1>::have(integrator)) return compiled_kernels<Data, 1>();
@@ -50,25 +50,25 @@ std::vector<StepKernel<Data>> step_kernels(const Integrator& integrator) {
   return compiled_kernels<Data, 3>();
 }
 
-/// The best of these kernels that has `roots`. Throws Unavailable where none has.
+/// The best of these kernels with these `roots`. Throws Unavailable if there is none.
 template <class Data>
 StepKernel<Data> best_kernel(const std::vector<StepKernel<Data>>& kernels, Roots roots) {
   for (const StepKernel<Data>& kernel : kernels)
     if (roots == Roots::fast || kernel.exact_roots) return kernel;
-  throw Unavailable("no vector code for this processor has exact roots");
+  throw Unavailable("no vector code for this CPU has exact roots");
 }
 
-/// The kernel for an instruction set. Throws std::invalid_argument where it is not among these.
+/// The kernel for an instruction set. Throws std::invalid_argument if it is not among these.
 template <class Data>
 StepKernel<Data> kernel_named(const std::vector<StepKernel<Data>>& kernels,
                               std::string_view instruction_set) {
   for (const StepKernel<Data>& kernel : kernels)
     if (kernel.instruction_set == instruction_set) return kernel;
   throw std::invalid_argument("openmp has no vector code for " + std::string(instruction_set) +
-                              " that this processor can run");
+                              " that this CPU can run");
 }
 
-/// The instruction sets of kernels.
+/// The names of the kernels' instruction sets.
 template <class Data>
 std::vector<std::string_view> instruction_sets_of(const std::vector<StepKernel<Data>>& kernels) {
   std::vector<std::string_view> names;
@@ -76,12 +76,12 @@ std::vector<std::string_view> instruction_sets_of(const std::vector<StepKernel<D
   return names;
 }
 
-/// A backend whose steps are vector code. `Data` holds the nodes: it has set_state(), state() and `threads`,
-/// how many it takes, and may have what else a backend tells.
+/// A backend that steps with vector code. `Data` has the nodes: set_state(), state() and `threads` (the
+/// number used), and optionally further functions of a backend.
 template <class Data>
 class VectorBackend final : public Backend {
  public:
-  /// Makes the data of the system and the other arguments, at the system's start.
+  /// Makes the data from the system and the other arguments, at the system's start.
   template <class... Arguments>
   VectorBackend(const StepKernel<Data>& kernel, const System& system, const Arguments&... arguments)
       : kernel_(kernel), data_(system, arguments...) {
@@ -111,8 +111,8 @@ class VectorBackend final : public Backend {
   Data data_;
 };
 
-/// Steps a cloth or bodies with the vector code for an instruction set: with a `Cloth` or `Bodies`, which are
-/// made of the system, dt in s, lanes, the most threads and `more`.
+/// Steps a cloth or bodies with the vector code for an instruction set: a `Cloth` or `Bodies`, constructed
+/// from the system, dt in s, lanes, the maximum number of threads and `more`.
 template <class Cloth, class Bodies, class... More>
 std::unique_ptr<Backend> make_vector_backend(const System& system, double dt_s, int threads,
                                              std::string_view instruction_set, const More&... more) {
@@ -125,7 +125,7 @@ std::unique_ptr<Backend> make_vector_backend(const System& system, double dt_s, 
   return make(std::type_identity<Bodies>());
 }
 
-/// The same with the best instruction set that has options.roots.
+/// make_vector_backend with the best instruction set that has options.roots.
 template <class Cloth, class Bodies, class... More>
 std::unique_ptr<Backend> make_vector_backend(const System& system, double dt_s,
                                              const ExecutionOptions& options, const More&... more) {

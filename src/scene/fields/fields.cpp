@@ -13,7 +13,7 @@ void refuse(const std::filesystem::path& file, std::string_view pointer, const s
 }
 
 std::string shown_number(double number) {
-  // Whole numbers in full (general notation would make 1e+06 of a million), others in the fewest digits.
+  // Integers in full (general notation would turn a million into 1e+06), others in the fewest digits.
   const bool whole = std::abs(number) < 1e15 && number == std::trunc(number);
   char text[64];
   const std::to_chars_result end =

@@ -19,8 +19,8 @@ namespace mssim {
 
 class FieldVisitor;
 
-/// Names the fields of one JSON object, each once, to whoever visits: the reader fills them from a file, the
-/// schema describes them. Such a list is the only place that knows a scene file's keys.
+/// Names the fields of one JSON object, each once, to a visitor: the reader sets their targets from a file,
+/// the schema writer describes them. The lists are the only place with the keys of scene files.
 using FieldList = std::function<void(FieldVisitor&)>;
 
 /// A field's key, which ends in its unit, and its description in the schema, which states the unit.
@@ -29,7 +29,7 @@ struct Field {
   std::string_view description;
 };
 
-/// What a number in a scene file may be.
+/// Allowed range of a number in a scene file.
 struct Range {
   double minimum = 0;
   bool minimum_excluded = false;
@@ -40,7 +40,7 @@ constexpr Range above(double minimum, double maximum) { return {minimum, true, m
 
 enum class Presence { required, optional };
 
-/// A section that an object may have instead of others.
+/// One of several alternative sections of an object.
 struct Section {
   Field field;
   FieldList fields;
@@ -49,8 +49,8 @@ struct Section {
 /// Longest text of a scene file, in characters.
 inline constexpr std::size_t longest_text = 200;
 
-/// Is told the fields of one JSON object. What is not marked optional must be there; keys that no call names
-/// are not allowed.
+/// Visits the fields of one JSON object. Fields not marked optional are required; keys that are not visited
+/// are errors.
 class FieldVisitor {
  public:
   FieldVisitor() = default;
@@ -66,13 +66,13 @@ class FieldVisitor {
                        std::uint32_t maximum) = 0;
   /// One line of at most `longest_text` characters.
   virtual void text(const Field& field, Presence presence, std::string& target) = 0;
-  /// A list of `least` to `most` such texts.
+  /// A list of `least` to `most` texts like those of text().
   virtual void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
                      std::vector<std::string>& target) = 0;
-  /// An object of at most `most` such texts, whose keys may be any.
+  /// An object of at most `most` such texts, with arbitrary keys.
   virtual void named_texts(const Field& field, std::size_t most,
                            std::vector<std::pair<std::string, std::string>>& target) = 0;
-  /// One of several words, of which the target becomes the number.
+  /// One of several words; the target becomes its index.
   virtual void choice(const Field& field, Presence presence, std::span<const std::string_view> words,
                       std::uint32_t& target) = 0;
   /// Three numbers, [x, y, z].
@@ -80,17 +80,17 @@ class FieldVisitor {
   /// A list of `least` to `most` points of a plane, each two numbers, [x, y]; z becomes 0.
   virtual void points(const Field& field, std::size_t least, std::size_t most, const Range& each,
                       std::vector<Vec3d>& target) = 0;
-  /// One of several sections: the text of the field names it, and the object of that name holds it.
+  /// One of several sections: the field's text names it, and the object of that name contains it.
   virtual void one_of(const Field& field, std::span<const Section> sections) = 0;
-  /// A list of 1 to `most` objects. `description` is of one of them; `fields` is called for each of them, or
-  /// once where there is no file.
+  /// A list of 1 to `most` objects. `description` describes one object; `fields` is called for each, or once
+  /// if there is no file.
   virtual void list(const Field& field, Presence presence, std::size_t most, std::string_view description,
                     const FieldList& fields) = 0;
-  /// A nested object; `fields` is called only when it is there.
+  /// A nested object; `fields` is called only if it is present.
   virtual void object(const Field& field, Presence presence, const FieldList& fields) = 0;
 };
 
-/// One of several words, of which the target, an enumeration or a truth, becomes the number.
+/// One of several words; the target, an enumeration or a bool, becomes its index.
 template <class Value>
 void visit_choice(FieldVisitor& fields, const Field& field, Presence presence,
                   std::span<const std::string_view> words, Value& target) {
@@ -99,7 +99,7 @@ void visit_choice(FieldVisitor& fields, const Field& field, Presence presence,
   target = static_cast<Value>(number);
 }
 
-/// No length of a garment or its body is larger, m.
+/// Largest length of a garment or its body, m.
 inline constexpr double largest_length_m = 10;
 
 /// A length of a garment or its body.
@@ -116,9 +116,9 @@ inline void visit_material(FieldVisitor& fields, SpringMaterial& material, const
                   constant.number == &SpringMaterial::stiffness ? stiffness : from(0, constant.most));
 }
 
-/// Bad input: a scene that cannot be found, read, understood or built. what() is one sentence that names the
-/// file, the place in it (a JSON pointer such as /cloth/rows), the value and the remedy. Commands print it
-/// and exit with 2.
+/// Bad input: a scene that cannot be found, read, parsed or built. what() is one sentence with the file, the
+/// place in it (a JSON pointer such as /cloth/rows), the value and the remedy. Commands print it and exit
+/// with 2.
 struct SceneError : ErrorWith<exit_bad_input> {
   using ErrorWith::ErrorWith;
 };
@@ -127,21 +127,21 @@ struct SceneError : ErrorWith<exit_bad_input> {
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view pointer,
                          const std::string& problem);
 
-/// A number for an error message, as short as it reads back.
+/// A number for an error message, in the fewest digits that read back as the same number.
 std::string shown_number(double number);
 
-/// The height of the floor that a scene file states, m; none where it states none, or where `scene_json` is
-/// no scene file.
+/// The height of the floor that a scene file states, m; nothing if it states none, or if `scene_json` is not
+/// a scene file.
 std::optional<double> stated_floor(const std::string& scene_json);
 
-/// Gives every value of a JSON text's top object to its field, recursively. `file` is where the text came
-/// from. Throws SceneError, one sentence with file, JSON pointer, value and remedy, for what is not strict
-/// JSON (parse_json), a document that is no object, an unknown key (naming the nearest known one), a missing
-/// key, a wrong type, a fraction where an integer is asked for, and a number out of its range.
+/// Assigns the values of a JSON text to the fields, recursively. `file` is the source of the text. Throws
+/// SceneError, one sentence with file, JSON pointer, value and remedy, for text that is not strict JSON
+/// (parse_json), a document that is not an object, an unknown key (naming the nearest known one), a missing
+/// key, a wrong type, a fraction instead of an integer, and a number out of range.
 void read_fields(const std::filesystem::path& file, const std::string& text, const FieldList& fields);
 
-/// The JSON Schema (draft 7) of a file whose top object has these fields: it accepts what read_fields
-/// accepts. `title` and `description` are of the file. Indented, ends with a newline.
+/// The JSON Schema (draft 7) of files whose top object has these fields: it accepts what read_fields accepts.
+/// `title` and `description` describe the file. Indented, ends with a newline.
 std::string json_schema(std::string_view title, std::string_view description, const FieldList& fields);
 
 }  // namespace mssim

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A scene file with more levels is refused.
+/// Maximum nesting level of a scene file.
 constexpr std::size_t deepest_json_level = 32;
 
 /// A JSON pointer (RFC 6901) to `key` in the object at `pointer`.
@@ -37,15 +37,14 @@ std::string json_pointer(std::string_view pointer, std::string_view key) {
   throw SceneError("{}: {}", printable(file.string(), 1000), problem);
 }
 
-/// The JSON library's account of a syntax error, "[json.exception.parse_error.101] parse error at line 1,
-/// column 9: syntax error while parsing value - invalid literal; last read: '"a": N'", from "line" on. It
-/// names what was expected except where it has found no token at all.
+/// The JSON library's message about a syntax error, "[json.exception.parse_error.101] parse error at line 1,
+/// column 9: syntax error while parsing value - invalid literal; last read: '"a": N'", from "line" on. The
+/// library names the expected token unless it found no token at all, so that case is added.
 std::string syntax_problem(std::string_view message) {
   if (const std::size_t start = message.find("line "); start != std::string_view::npos)
     message.remove_prefix(start);
   std::string problem = printable(message, 300);
-  // After an element the library asks for the closing bracket alone, though a comma is what is usually
-  // missing.
+  // After an element the library expects only the closing bracket, but usually a comma is missing.
   if (const std::size_t bracket = problem.find("; expected '"); bracket != std::string::npos) {
     const std::size_t at = bracket + std::string_view("; expected ").size();
     if (problem.compare(at, 3, "'}'") == 0 || problem.compare(at, 3, "']'") == 0)
@@ -57,16 +56,15 @@ std::string syntax_problem(std::string_view message) {
   return problem;
 }
 
-/// The text between the first and the last apostrophe: the number, in the library's message about an
-/// overflow.
+/// The text between the first and the last apostrophe: the number in the library's message about an overflow.
 std::string quoted_part(std::string_view message) {
   const std::size_t first = message.find('\''), last = message.rfind('\'');
   return first < last ? printable(message.substr(first + 1, last - first - 1)) : std::string("a number");
 }
 
-/// Goes through a document ahead of the parser that keeps it: knows the place, and refuses what that lets
-/// pass. (A callback of the keeping parser could do so too, but the library then goes through all elements of
-/// a list after each: two million empty objects, 16 MB, take hours.)
+/// Parses a document before the parser that builds it, tracks the current location, and refuses what that
+/// parser accepts. (A callback of the building parser could do so too, but the library then visits all
+/// elements of a list after each one: two million empty objects, 16 MB, take hours.)
 class Watcher final : public json::json_sax_t {
  public:
   explicit Watcher(const std::filesystem::path& file) : file_(file) {}
@@ -102,7 +100,7 @@ class Watcher final : public json::json_sax_t {
   }
 
  private:
-  /// The value under way; at the top level the empty pointer.
+  /// Pointer to the current value; empty at the top level.
   std::string pointer() const {
     std::string result;
     for (const Level& level : levels_)
@@ -115,8 +113,8 @@ class Watcher final : public json::json_sax_t {
 
   struct Level {
     bool is_array;
-    std::size_t element;  ///< of an array, the one under way
-    std::string key;      ///< of an object, the last one seen
+    std::size_t element;  ///< in an array: index of the current element
+    std::string key;      ///< in an object: the last key
     std::set<std::string> keys;
   };
 
@@ -142,14 +140,14 @@ class Watcher final : public json::json_sax_t {
   std::vector<Level> levels_;
 };
 
-/// Parses a text, strictly: no comments, no duplicate keys (which the JSON library would let pass, the last
-/// one winning), no number that overflows, at most `deepest_json_level` levels. `file` is where it came from.
-/// Throws SceneError.
+/// Parses a text strictly: no comments, no duplicate keys (of which the JSON library would keep the last), no
+/// number that overflows, at most `deepest_json_level` levels. `file` is its source. Throws SceneError.
 json parse_json(const std::filesystem::path& file, const std::string& text) {
   if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
-  // The JSON library takes it for the end.
+  // The JSON library treats it as the end.
   if (const std::size_t zero = text.find('\0'); zero != std::string::npos)
-    fail(file, fmt::format("malformed JSON, byte {} (from 0) is zero, which no text has: remove it", zero));
+    fail(file, fmt::format("malformed JSON, byte {} (from 0) is zero, which text must not contain: remove it",
+                           zero));
   Watcher watcher(file);
   json::sax_parse(text, &watcher);
   return json::parse(text);
@@ -178,13 +176,14 @@ bool contains(const Range& range, double number) {
          number <= range.maximum;
 }
 
-/// Characters of valid UTF-8 (the parser has refused any other).
+/// Characters of valid UTF-8 (the parser refuses anything else).
 std::size_t count_characters(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-/// Reads one object. Misspelled keys explain missing ones, so both are reported at the end, the former first.
+/// Reads one object. Misspelled keys explain missing ones, so both are reported at the end, misspelled ones
+/// first.
 class JsonReader final : public FieldVisitor {
  public:
   JsonReader(const std::filesystem::path& file, std::string pointer, const json& value)
@@ -320,7 +319,7 @@ class JsonReader final : public FieldVisitor {
     nested.finish();
   }
 
-  /// To be called once, when all fields have been named.
+  /// Call once, after all fields have been visited.
   void finish() const {
     for (const auto& [key, value] : value_.items()) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
@@ -343,7 +342,7 @@ class JsonReader final : public FieldVisitor {
     fail(json_pointer(pointer_, key), fmt::format("is {}: give {}", described(value), wanted));
   }
 
-  /// The key's value, or nullptr when it is not there.
+  /// The key's value, or nullptr if it is missing.
   const json* find(std::string_view key, Presence presence, const std::string& wanted) {
     known_.push_back(key);
     const auto match = value_.find(std::string(key));
@@ -355,7 +354,7 @@ class JsonReader final : public FieldVisitor {
     return nullptr;
   }
 
-  /// The number of the word at `key`, none where the key is missing.
+  /// The index of the word at `key`; nothing if the key is missing.
   std::optional<std::size_t> chosen(std::string_view key, Presence presence,
                                     std::span<const std::string_view> words) {
     std::string wanted = "the text " + listed(words, "or");
@@ -407,7 +406,7 @@ class JsonReader final : public FieldVisitor {
   std::string pointer_;
   const json& value_;
   std::vector<std::string_view> known_;
-  std::string missing_;  ///< pointer to the first required key that is not there
+  std::string missing_;  ///< pointer to the first missing required key
   std::string missing_remedy_;
 };
 

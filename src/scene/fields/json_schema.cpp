@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A whole number without a decimal point.
+/// Writes whole numbers without a decimal point.
 ordered_json number(double value) {
   return value == std::trunc(value) ? ordered_json(static_cast<std::int64_t>(value)) : ordered_json(value);
 }

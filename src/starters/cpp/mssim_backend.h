@@ -9,8 +9,9 @@
 //       });
 //     }
 //
-// `mssim new-backend NAME --language c++` writes a whole one and says how to compile it; mssim runs it with
-// `mssim bench --scene cloth2500 --backend serial,openmp,./NAME`. All quantities are in SI units.
+// `mssim new-backend NAME --language c++` writes a complete one with instructions for compiling it; mssim
+// runs it with `mssim bench --scene cloth2500 --backend serial,openmp,./NAME`. All quantities are in SI
+// units.
 #pragma once
 
 #include <hdf5.h>
@@ -41,9 +42,10 @@
 namespace mssim_backend {
 
 using Vector = std::array<double, 3>;
-using Vectors = std::vector<Vector>;  ///< one a node
+using Vectors = std::vector<Vector>;  ///< [nodes]
 
-/// Thrown while a backend is made: the program cannot do this scene or integrator. what() is the reason.
+/// Thrown while a backend is made: the program does not support this scene or integrator. what() is the
+/// reason.
 struct Unsupported : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -65,31 +67,31 @@ struct Grid {
   double spacing = 0;  ///< m
 };
 
-/// What is simulated. The names are those of the datasets of system.h5; nodes are in the scene's order.
+/// The simulated system. Names are those of the datasets of system.h5; nodes are in the scene's order.
 struct System {
   std::string scene;                                  ///< its name
-  double dt = 0;                                      ///< s, of a step
-  int threads = 1;                                    ///< how many may be used
+  double dt = 0;                                      ///< s, time step
+  int threads = 1;                                    ///< maximum number to use
   Vectors position;                                   ///< [nodes] m, at the start
   Vectors velocity;                                   ///< [nodes] m/s, at the start
   std::vector<double> mass;                           ///< [nodes] kg
-  std::vector<std::uint32_t> pins;                    ///< nodes that stay at their start, at rest
+  std::vector<std::uint32_t> pins;                    ///< nodes that keep their start position, at rest
   std::vector<std::array<std::uint32_t, 2>> springs;  ///< the two nodes of each spring
   std::vector<double> rest_length;                    ///< [springs] m
   std::vector<double> stiffness;                      ///< [springs] N/m
   std::vector<double> damping;                        ///< [springs] N s/m, along the spring
-  std::vector<std::uint32_t> kind;  ///< [springs] of one kind have the same stiffness and damping
+  std::vector<std::uint32_t> kind;  ///< [springs] springs of one kind have the same stiffness and damping
   Vector gravity{};                 ///< m/s^2
   double viscous_damping = 0;       ///< 1/s
   Floor floor;
-  std::optional<Grid> grid;                              ///< of a cloth
-  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< of bodies
+  std::optional<Grid> grid;                              ///< cloths only
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< bodies only
 
   std::size_t nodes() const { return mass.size(); }
 
-  /// Puts a node that has fallen through the floor back onto it, and changes its velocity: the falling speed
-  /// comes back times the restitution; the sliding speed loses at most friction times the change of the
-  /// vertical speed.
+  /// Puts a node that has fallen below the floor back on its surface and changes its velocity: the falling
+  /// speed is multiplied by the restitution and reversed; the sliding speed loses at most friction times the
+  /// change of the vertical speed.
   void land(Vector& x, Vector& v) const {
     if (!(x[1] < floor.height)) return;
     const double rebound = v[1] < 0 ? -floor.restitution * v[1] : v[1];
@@ -101,8 +103,8 @@ struct System {
   }
 };
 
-/// What an integrator reads and writes: one vector a node each. x and v are the state before the step, a the
-/// acceleration, x_next and v_next the state after the last stage.
+/// The vectors of an integrator, each one vector per node. x and v are the state before the step, a is the
+/// acceleration, x_next and v_next are the state after the last stage.
 enum class Slot : std::size_t { x, v, x_next, v_next, x_a, v_a, x_b, v_b, a, temporary_1, temporary_2 };
 inline constexpr std::array slot_names{"x",   "v",   "x_next", "v_next",      "x_a",        "v_a",
                                        "x_b", "v_b", "a",      "temporary_1", "temporary_2"};
@@ -120,7 +122,7 @@ struct Assignment {
   std::vector<Term> terms;
 };
 
-/// The acceleration is evaluated at these two slots, then the assignments are made in order.
+/// Evaluates the acceleration at these two slots, then executes the assignments in order.
 struct Stage {
   Slot x, v;
   std::vector<Assignment> assignments;
@@ -132,15 +134,15 @@ struct Method {
   std::vector<Stage> stages;
 };
 
-/// What mssim is told of the program.
+/// Description of the program for mssim.
 struct About {
-  std::string device = "cpu";  ///< what it runs on; anything else is not held against this machine's peaks
+  std::string device = "cpu";        ///< device it runs on; any other value disables the roofline comparison
   std::string precision = "double";  ///< "single", "double", ...
-  std::string note;                  ///< what a reader of its times should know: version, settings
-  int threads = 0;                   ///< how many processors it takes; 0: as many as asked for
+  std::string note;                  ///< for readers of its times: version, settings
+  int threads = 0;                   ///< CPUs that it uses; 0: the number requested
 };
 
-/// One simulation under way. What any call throws is a failure: what() is told to mssim.
+/// A running simulation. An exception from any call is a failure; its what() is sent to mssim.
 class Backend {
  public:
   Backend() = default;
@@ -148,22 +150,21 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
-  /// Takes this state. Called with the start state before anything else.
+  /// Sets the state. Called with the start state before anything else.
   virtual void set(const Vectors& x, const Vectors& v) = 0;
-  /// Takes steps, which are finished when it returns.
+  /// Takes `count` steps; they must be finished on return.
   virtual void step(int count) = 0;
-  /// Gives its state; x and v have the size that they need.
+  /// Copies out the state; x and v have the right size.
   virtual void get(Vectors& x, Vectors& v) = 0;
 
   About about;
 };
 
-/// Makes the backend for a scene and an integrator, which both stay where they are as long as it lives.
-/// Called once.
+/// Makes the backend for a scene and an integrator; both references stay valid while it lives. Called once.
 using Prepare = std::function<std::unique_ptr<Backend>(const System&, const Method&)>;
 
-/// out = sum of factor * slot over the terms. The first term is the large one: it is added last, so that it
-/// is rounded once. `out` may be one of the slots.
+/// out = sum of factor * slot over the terms. The first term is the large one: it is added last, so it is
+/// rounded once. `out` may be one of the slots.
 template <std::size_t terms>
 void add_up(double* out, const double* const* slot, const double* factor, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -173,7 +174,7 @@ void add_up(double* out, const double* const* slot, const double* factor, std::s
   }
 }
 
-/// Takes the steps of any method with an acceleration: see stepped_by.
+/// Takes the steps of any method, given an acceleration: see stepped_by.
 template <class Acceleration>
 class MethodBackend final : public Backend {
  public:
@@ -199,8 +200,7 @@ class MethodBackend final : public Backend {
     for (; count > 0; --count) {
       for (const Stage& stage : method_.stages) {
         acceleration_(std::as_const(at(stage.x)), std::as_const(at(stage.v)), at(Slot::a));
-        for (const std::uint32_t pin : system_.pins)
-          at(Slot::a)[pin] = {};  // so that its slots stay at the start
+        for (const std::uint32_t pin : system_.pins) at(Slot::a)[pin] = {};  // its slots stay at the start
         for (const Assignment& assignment : stage.assignments) assign(assignment);
       }
       Vectors &position = at(Slot::x_next), &velocity = at(Slot::v_next);
@@ -236,22 +236,22 @@ class MethodBackend final : public Backend {
 };
 
 /// A backend for any method from acceleration(x, v, a), which writes the acceleration of each node, m/s^2,
-/// into a. It need not care for pinned nodes, nor for the floor.
+/// into a. It may ignore pinned nodes and the floor.
 template <class Acceleration>
 std::unique_ptr<Backend> stepped_by(const System& system, const Method& method, Acceleration acceleration) {
   return std::make_unique<MethodBackend<Acceleration>>(system, method, std::move(acceleration));
 }
 
-// What follows is the conversation with mssim.
+// Implementation: the protocol between the program and mssim.
 
 namespace detail {
 
 inline constexpr const char* protocol = "1";
 
-/// mssim has closed the socket.
+/// Thrown when mssim has closed the socket.
 struct MssimHasEnded {};
 
-/// The text without line ends, cut to what a line may hold.
+/// The text without line ends, cut to the maximum length of a line.
 inline std::string one_line(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\r') c = ' ';
@@ -259,7 +259,7 @@ inline std::string one_line(std::string text) {
   return text;
 }
 
-/// Lines on the socket.
+/// Line-based I/O on the socket.
 class Lines {
  public:
   explicit Lines(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_STREAM, 0)) {
@@ -305,7 +305,7 @@ class Lines {
   std::string heard_;
 };
 
-/// system.h5.
+/// Reader of system.h5.
 class SystemFile {
  public:
   explicit SystemFile(const std::string& path) : file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {
@@ -317,7 +317,7 @@ class SystemFile {
 
   bool has(const char* name) const { return H5Lexists(file_, name, H5P_DEFAULT) > 0; }
 
-  /// All elements of a dataset, which are groups of numbers where T is an array.
+  /// All elements of a dataset; T may be an array that groups numbers.
   template <class Number, class T = Number>
   std::vector<T> read(const char* name) const {
     const hid_t data = H5Dopen2(file_, name, H5P_DEFAULT);
@@ -381,7 +381,7 @@ inline Assignment assignment_of(std::istream& words) {
   return assignment;
 }
 
-/// What mssim sends before `prepare`: the scene, the integrator and where the files are.
+/// Data that mssim sends before `prepare`: the scene, the integrator and the paths of files.
 struct Introduction {
   System system;
   Method method;
@@ -411,7 +411,7 @@ struct Introduction {
   }
 };
 
-/// What a conversation is about, once mssim has introduced it.
+/// The simulation of a conversation, after the introduction.
 struct Simulation {
   Introduction introduction;
   std::unique_ptr<Backend> backend;
@@ -445,7 +445,7 @@ struct Simulation {
     if (!file.flush()) throw std::runtime_error("cannot write the state file");
   }
 
-  /// Does what a request asks for.
+  /// Handles a request and returns the answer.
   std::string answer(const std::string& request) {
     if (request.rfind("step ", 0) == 0) {
       backend->step(std::stoi(request.substr(5)));
@@ -454,13 +454,13 @@ struct Simulation {
     } else if (request == "get") {
       get();
     } else {
-      throw std::runtime_error("mssim asked for \"" + request + "\", which mssim_backend.h does not know");
+      throw std::runtime_error("mssim requested \"" + request + "\", which mssim_backend.h does not support");
     }
     return "done";
   }
 };
 
-/// What `call` returns, or what mssim is to be told of what it throws.
+/// The result of `call`, or the answer for its exception.
 template <class Call>
 std::string outcome_of(Call call) {
   try {
@@ -474,7 +474,7 @@ std::string outcome_of(Call call) {
   } catch (const std::exception& error) {
     return "failed " + one_line(error.what());
   } catch (...) {
-    return "failed something was thrown that is no std::exception";
+    return "failed an exception that is not a std::exception";
   }
 }
 
@@ -498,7 +498,7 @@ inline void hold_conversation(Lines& lines, const Prepare& prepare) {
 
 }  // namespace detail
 
-/// Answers mssim until it ends; what main is to return.
+/// Answers mssim until it ends; returns the exit code for main.
 inline int serve(const Prepare& prepare) {
   const char* path = std::getenv("MSSIM_SOCKET");
   if (path == nullptr) {
@@ -508,7 +508,7 @@ inline int serve(const Prepare& prepare) {
     return 2;
   }
   std::setvbuf(stdout, nullptr, _IOLBF,
-               BUFSIZ);  // so that nothing printed is lost when mssim ends the program
+               BUFSIZ);  // so that no output is lost when mssim ends the program
   try {
     detail::Lines lines(path);
     detail::hold_conversation(lines, prepare);

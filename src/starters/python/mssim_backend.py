@@ -11,7 +11,7 @@
 
     mssim_backend.serve(prepare)
 
-`mssim new-backend NAME --language python` writes a whole one; mssim runs it with
+`mssim new-backend NAME --language python` writes a complete one; mssim runs it with
 `mssim bench --scene cloth2500 --backend serial,openmp,./NAME.py`.
 
 Needs Python 3.9, NumPy and h5py. mssim puts this file's folder into PYTHONPATH. All quantities are in SI units.
@@ -32,7 +32,7 @@ _longest_text = 4000  # bytes; a line of the protocol has at most 4,096
 
 
 class Unsupported(Exception):
-    """Raised by `prepare`: the program cannot do this scene or integrator. Its text is the reason."""
+    """Raised by `prepare`: the program does not support this scene or integrator. Its text is the reason."""
 
 
 class Unavailable(Exception):
@@ -40,23 +40,23 @@ class Unavailable(Exception):
 
 
 class System:
-    """What is simulated. The names are those of the datasets of system.h5; nodes are in the scene's order.
+    """The simulated system. Names are those of the datasets of system.h5; nodes are in the scene's order.
 
     position, velocity   [nodes, 3]    start state, m and m/s
     mass                 [nodes]       kg
-    pins                 [pinned]      nodes that stay at their start, at rest
+    pins                 [pinned]      nodes that keep their start position, at rest
     springs              [springs, 2]  the two nodes of each spring
     rest_length          [springs]     m
     stiffness, damping   [springs]     N/m; N s/m, along the spring
     kind                 [springs]     springs of one kind have the same stiffness and damping
     gravity              [3]           m/s^2
     viscous_damping                    1/s
-    floor                              with height (m), restitution, friction
-    grid                               of a cloth, with rows, columns, spacing (m), else None:
+    floor                              height (m), restitution, friction
+    grid                               of a cloth: rows, columns, spacing (m); else None;
                                        node = row * columns + column
-    tetrahedra           [n, 4]        of bodies, the nodes of each; else None
+    tetrahedra           [n, 4]        of bodies: the nodes of each; else None
 
-    Further: scene (its name), dt (s, of a step), threads (how many it may use), nodes (how many there are).
+    Also: scene (its name), dt (s, time step), threads (maximum number to use), nodes (number of nodes).
     Numbers are double precision, indices 64-bit integers.
     """
 
@@ -66,7 +66,7 @@ class System:
         for name in ("position", "velocity", "mass", "rest_length", "stiffness", "damping", "gravity"):
             setattr(self, name, np.array(data[name], dtype=np.float64))
         for name in ("pins", "springs", "kind"):
-            # Columns lie side by side, which is faster to index with than pairs are.
+            # Column-major, which is faster to index with than pairs.
             setattr(self, name, np.array(data[name], dtype=np.int64, order="F"))
         self.viscous_damping = float(data["viscous_damping"][()])
         self.floor = _numbers(data["floor"])
@@ -77,10 +77,10 @@ class System:
         self._free[self.pins] = False
 
     def land(self, x, v):
-        """Puts nodes that have fallen through the floor back onto it, and changes their velocities; in place.
+        """Puts nodes below the floor back on its surface and changes their velocities, in place.
 
-        The falling speed comes back times the restitution; the sliding speed loses at most friction times the
-        change of the vertical speed. `method.step` does this itself.
+        The falling speed is multiplied by the restitution and reversed; the sliding speed loses at most friction
+        times the change of the vertical speed. `method.step` calls this itself.
         """
         below = np.flatnonzero((x[:, 1] < self.floor.height) & self._free)
         if below.size == 0:
@@ -98,8 +98,8 @@ class Method:
     """An integrator, as a table.
 
     name     for example "rk4"
-    stages   list of (x slot, v slot, assignments): the acceleration is evaluated at these two slots, and then the
-             assignments are made in order: list of (out, terms), terms: list of (coefficient, power, slot);
+    stages   list of (x slot, v slot, assignments): the acceleration is evaluated at these two slots, then the
+             assignments are executed in order: list of (out, terms), terms: list of (coefficient, power, slot);
              out = sum of coefficient * dt^power * slot
 
     Slots are names. "x" and "v" are the state before the step, "a" the acceleration, "x_next" and "v_next" the
@@ -110,15 +110,15 @@ class Method:
         self.name, self.stages, self._system = name, stages, system
 
     def step(self, x, v, dt, acceleration):
-        """Takes one step of dt seconds; returns the new x and v, which are new arrays.
+        """Takes one step of dt seconds; returns the new x and v in new arrays.
 
-        acceleration(x, v) returns the acceleration of all nodes, [nodes, 3] m/s^2. It need not care for pinned
-        nodes, whose acceleration is set to zero here, nor for the floor.
+        acceleration(x, v) returns the acceleration of all nodes, [nodes, 3] m/s^2. It may ignore
+        pinned nodes, whose acceleration is set to zero here, and the floor.
         """
         slots = {"x": x, "v": v}
         for x_slot, v_slot, assignments in self.stages:
             slots["a"] = acceleration(slots[x_slot], slots[v_slot])
-            slots["a"][self._system.pins] = 0  # and so every slot of a pinned node stays as it is at the start
+            slots["a"][self._system.pins] = 0  # every slot of a pinned node stays at its start
             for out, terms in assignments:
                 slots[out] = _sum_of(terms, dt, slots)
         self._system.land(slots["x_next"], slots["v_next"])
@@ -126,12 +126,12 @@ class Method:
 
 
 def say(*, device=None, threads=None, precision=None, note=None):
-    """Tells mssim more about the program. May be called by `prepare`; what was said last counts.
+    """Tells mssim more about the program. `prepare` may call it; the last value counts.
 
-    device      what it runs on (default: cpu; anything else is not held against this machine's peaks)
-    threads     how many processors it takes (default: as many as asked for)
+    device      device it runs on (default: cpu; any other value disables the roofline comparison)
+    threads     CPUs that it uses (default: the number requested)
     precision   "single", "double", ...
-    note        what a reader of its times should know: version, settings
+    note        for readers of its times: version, settings
     """
     given = {"device": device, "threads": threads, "precision": precision, "note": note}
     _said.update((field, value) for field, value in given.items() if value is not None)
@@ -141,19 +141,19 @@ def serve(prepare, *, device=None, threads=None, precision=None, note=None):
     """Answers mssim until it ends. The other arguments are those of `say`.
 
     prepare(system, method) is called once. It returns either a function step(x, v, count) that takes `count`
-    steps and returns the new x and v, or, for programs that keep their state elsewhere, an object with
-        set(x, v)      takes this state; called with the start state before anything else
-        step(count)    takes steps, which are finished when it returns
+    steps and returns the new x and v, or, for programs that keep their own state, an object with
+        set(x, v)      sets the state; called with the start state before anything else
+        step(count)    takes `count` steps; they must be finished on return
         get()          returns x and v
     It may raise Unsupported or Unavailable. Any other exception, in any of these calls, is a failure: its last
-    line is told to mssim, its traceback goes to stderr.
+    line is sent to mssim, its traceback goes to stderr.
     """
     path = os.environ.get("MSSIM_SOCKET")
     if path is None:
         program = os.path.basename(sys.argv[0])
         sys.exit(f"{program} is a backend of mssim: mssim bench --scene cloth2500 --backend serial,openmp,./{program}")
     if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(line_buffering=True)  # so that nothing printed is lost when mssim ends the program
+        sys.stdout.reconfigure(line_buffering=True)  # so that no output is lost when mssim ends the program
     _said.clear()
     say(device=device, threads=threads, precision=precision, note=note)
     try:
@@ -204,7 +204,7 @@ class _Conversation:
         return backend
 
     def _introduction(self):
-        """Reads what mssim sends before `prepare`: the scene, the integrator and where the files are."""
+        """Reads what mssim sends before `prepare`: the scene, the integrator and the paths of files."""
         said, stages = {}, []
         while True:
             word, *words = self._hear()
@@ -235,7 +235,7 @@ class _Conversation:
                 x.tofile(file)
                 v.tofile(file)
         else:
-            raise RuntimeError(f"mssim asked for {request[0]}, which this mssim_backend.py does not know")
+            raise RuntimeError(f"mssim requested {request[0]}, which this mssim_backend.py does not support")
         return "done"
 
     def _checked(self, array):
@@ -245,7 +245,7 @@ class _Conversation:
         return array
 
     def _guarded(self, call):
-        """What `call` returns; None after an exception, of which mssim is told."""
+        """The result of `call`; None after an exception, which is reported to mssim."""
         try:
             return call()
         except _MssimHasEnded:
@@ -289,7 +289,7 @@ class _StepFunction:
     def step(self, count):
         state = self._function(*self._state, count)
         if not isinstance(state, (tuple, list)) or len(state) != 2:
-            raise TypeError("step(x, v, count) returned something else than the new x and v")
+            raise TypeError("step(x, v, count) did not return the new x and v")
         self._state = state
 
     def get(self):
@@ -316,7 +316,7 @@ def _terms(words):
 
 
 def _sum_of(terms, dt, slots):
-    """A new array. The first term is the large one: it is added last, so that it is rounded once."""
+    """A new array. The first term is the large one: it is added last, so it is rounded once."""
     total = None
     for coefficient, power, slot in reversed(terms):
         factor = coefficient * dt**power
@@ -328,12 +328,12 @@ def _sum_of(terms, dt, slots):
 
 
 def _one_line(text):
-    """The text without line ends, cut to what a line may hold."""
+    """The text without line ends, cut to the maximum length of a line."""
     return " ".join(str(text).split()).encode(errors="replace")[:_longest_text].decode(errors="ignore")
 
 
 def _described(error):
-    """In which line of the program's own file it happened, and what."""
+    """The error, and its line in the program's own file."""
     text = "".join(traceback.format_exception_only(type(error), error))
     program = getattr(sys.modules.get("__main__"), "__file__", None)
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == program]

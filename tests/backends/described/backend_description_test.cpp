@@ -65,7 +65,7 @@ TEST_F(BackendDescriptionTest, TakesEveryField) {
 
 TEST_F(BackendDescriptionTest, FindsAPathFromItsOwnFolder) {
   const fs::path file = put("bin/step", "#!/bin/sh\n");
-  EXPECT_THAT(parse(R"({"command": ["./bin/step"]})").missing, HasSubstr("may not be executed; chmod +x it"));
+  EXPECT_THAT(parse(R"({"command": ["./bin/step"]})").missing, HasSubstr("is not executable; chmod +x it"));
   fs::permissions(file, fs::perms::owner_all);
   const BackendProgram program = parse(R"({"command": ["./bin/step"]})");
   EXPECT_EQ(program.missing, "");
@@ -76,7 +76,7 @@ TEST_F(BackendDescriptionTest, SaysWhatIsMissing) {
   EXPECT_EQ(parse(R"({"command": ["no-such-program"]})").missing,
             "there is no program no-such-program in PATH");
   EXPECT_THAT(parse(R"({"command": ["./no-such-file"]})").missing,
-              HasSubstr("there is no file ./no-such-file beside "));
+              HasSubstr("there is no file ./no-such-file next to "));
   EXPECT_EQ(parse(R"({"command": ["no-such-program"], "install": "install it"})").missing,
             "there is no program no-such-program in PATH; install it");
 }

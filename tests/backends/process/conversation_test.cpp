@@ -196,7 +196,8 @@ TEST_F(ConversationTest, RefusesWhatWasNotAskedFor) {
           ADD_FAILURE() << "the second answer was not noticed";
         } catch (const ConversationFailure& failure) {
           EXPECT_EQ(failure.cause, Cause::answer);
-          EXPECT_STREQ(failure.what(), "sent \"done\" after its answer to \"set\", where nothing was asked");
+          EXPECT_STREQ(failure.what(),
+                       "sent \"done\" after its answer to \"set\", although nothing was requested");
         }
         conversation_.say_last("end\n");
       });

@@ -144,7 +144,7 @@ TEST_F(TraceDamage, OfTheLengthThatAPartInflatesToIsSaid) {
   constexpr std::size_t right = 3 * 20 * 2 * sizeof(float);
   EXPECT_EQ(with(right), "");
   for (const std::size_t wrong : {std::size_t{0}, right - 1, right + 1, 3 * right, std::size_t{1} << 20})
-    EXPECT_THAT(with(wrong), HasSubstr("a part of another length")) << wrong;
+    EXPECT_THAT(with(wrong), HasSubstr("a chunk of the wrong length")) << wrong;
 }
 
 TEST_F(TraceDamage, IsSaidOfDatasetsThatAreMissing) {
@@ -187,7 +187,7 @@ TEST_F(TraceDamage, IsSaidOfOtherTypesAndExtents) {
   EXPECT_THAT(other(rest_length, H5T_IEEE_F64LE, {count - 1}),
               HasSubstr("instead of " + std::to_string(count)));
   EXPECT_THAT(other(rest_length, H5T_IEEE_F64LE, {count}), HasSubstr("a length that is not above 0"));
-  EXPECT_THAT(other("/parameters/scene", H5T_IEEE_F64LE, {4}), HasSubstr("/parameters/scene is no text"));
+  EXPECT_THAT(other("/parameters/scene", H5T_IEEE_F64LE, {4}), HasSubstr("/parameters/scene is not text"));
 }
 
 TEST_F(TraceDamage, IsSaidOfIndicesThatAreOutOfRange) {
@@ -202,7 +202,8 @@ TEST_F(TraceDamage, IsSaidOfIndicesThatAreOutOfRange) {
   EXPECT_THAT(with(garment, "/connectivity/joints", 22), HasSubstr("joints between nodes"));
   EXPECT_THAT(with(garment, "/parameters/joints/seam", 2), HasSubstr("of seams that there are"));
   EXPECT_THAT(with(garment, "/body/triangles", 4), HasSubstr("triangles between its points"));
-  EXPECT_THAT(with(garment, "/parameters/panels/first_node", 1), HasSubstr("one behind the other"));
+  EXPECT_THAT(with(garment, "/parameters/panels/first_node", 1),
+              HasSubstr("panels of rows and columns, in order"));
   for (const std::string path : {"/parameters/panels/rows", "/parameters/panels/columns"})
     for (const std::uint32_t number : {0U, 1U, 5U, 0x40000000U, 0xffffffffU})
       EXPECT_THAT(with(garment, path, number), HasSubstr("needs panels of")) << number;
@@ -242,7 +243,7 @@ TEST_F(TraceDamage, IsSaidOfWhatLiesElsewhere) {
                       H5Lcreate_external((folder() / "other.h5").c_str(), "/scene", h5, scene.c_str(),
                                          H5P_DEFAULT, H5P_DEFAULT);
                     }),
-              HasSubstr("is a link to elsewhere"));
+              HasSubstr("is a soft or external link"));
   EXPECT_THAT(after(system_,
                     [&](hid_t h5) {
                       const std::string path = "/parameters/springs/rest_length";
@@ -254,7 +255,7 @@ TEST_F(TraceDamage, IsSaidOfWhatLiesElsewhere) {
                           "external");
                       create_dataset(h5, path, H5T_IEEE_F64LE, std::array{count}, false, properties);
                     }),
-              HasSubstr("has its numbers elsewhere"));
+              HasSubstr("stores its numbers in another file"));
 }
 
 TEST_F(TraceDamage, IsSaidOfMoreThanAFileCanHold) {

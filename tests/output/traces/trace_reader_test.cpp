@@ -166,8 +166,9 @@ TEST_F(TraceReading, SaysWhatItIsThatIsNoTrace) {
   EXPECT_THAT(refusal(folder()), HasSubstr("is not a regular file"));
   ASSERT_EQ(::mkfifo((folder() / "pipe.h5").c_str(), 0600), 0);
   EXPECT_THAT(refusal(folder() / "pipe.h5"), HasSubstr("is not a regular file"));
-  EXPECT_THAT(refusal(put("text.h5", "time_s,kinetic_j\n")), HasSubstr("text.h5: it is no HDF5 file: give"));
-  EXPECT_THAT(refusal(put("empty.h5", "")), HasSubstr("no HDF5 file"));
+  EXPECT_THAT(refusal(put("text.h5", "time_s,kinetic_j\n")),
+              HasSubstr("text.h5: it is not an HDF5 file: give"));
+  EXPECT_THAT(refusal(put("empty.h5", "")), HasSubstr("not an HDF5 file"));
   write(1);
   EXPECT_THAT(refusal(folder() / "run.xdmf"), HasSubstr("run.h5"));
   if (::geteuid() == 0) return;  // who may read everything

@@ -1,6 +1,6 @@
-// x += h v of a small step, for floats, doubles and Lanes. Included inside a namespace that has mul_add for
-// them, after MSSIM_INLINE (what makes a function inline there) is defined; it may be included again
-// elsewhere, so it has no guard.
+// x += h v of a substep, for floats, doubles and Lanes. Include it inside a namespace that has mul_add for
+// them, after defining MSSIM_INLINE (the prefix of inline functions). No include guard: it may be included
+// several times.
 
 template <class Real>
 MSSIM_INLINE void carry_sum(Real& x, Real& rest, Real h, Real v) {
@@ -10,9 +10,9 @@ MSSIM_INLINE void carry_sum(Real& x, Real& rest, Real h, Real v) {
   x = sum;
 }
 
-/// Adds h v to the position x + rest, of which springs see x alone. A small step may move a node by less than
-/// single precision rounds its position by: plain sums of such steps would drift, or stand still. What a sum
-/// loses is exact, because x is larger (T. J. Dekker, 1971), and goes into the next one.
+/// Adds h v to the position x + rest, of which springs see only x. A substep may move a node by less than the
+/// rounding error of its position in single precision: plain sums of such steps would drift or stall.
+/// The rounding error of a sum is exact, because x is larger (T. J. Dekker, 1971), and is added to the next.
 template <class Vector, class Real>
 MSSIM_INLINE void carry_sum(Vector& x, Vector& rest, Real h, const Vector& v) {
   carry_sum(x.x, rest.x, h, v.x);

@@ -81,7 +81,7 @@ class SerialConstraints final : public Backend {
     LinearSpring<Real> law;
   };
 
-  /// Gravity and the damping of the air, of a small step: v becomes (v - h g) / (1 + h c).
+  /// Gravity and air damping in a substep: v becomes (v - h g) / (1 + h c).
   void fall() {
     const Real kept = 1 / (1 + h_ * nodes_.viscous_damping);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -108,27 +108,26 @@ class SerialConstraints final : public Backend {
   }
 
   PlainNodes<Real> nodes_;
-  std::vector<Vec3<Real>> rest_;          // [nodes] m, what their x lacks
-  std::vector<Real> mobility_;            // [nodes] 1/kg, 0 where pinned
+  std::vector<Vec3<Real>> rest_;          // [nodes] m, rounding errors of their x
+  std::vector<Real> mobility_;            // [nodes] 1/kg, 0 if pinned
   std::vector<CompliantSpring> springs_;  // in the order of the method
   const std::uint32_t substeps_;
-  const Real h_;  // s, the small step
+  const Real h_;  // s, the substep
 };
 
-/// A cloth of so many bytes or fewer, which the caches nearest to the processors hold, needs no more than one
-/// small step a pass; a larger one takes so many. Measured on Zen 4, on which a small step of 350,000 nodes
-/// took 2.2 times as long as one of semi-implicit Euler with one a pass, 1.9 times with two, and 1.7 times
-/// with five or ten; of 40,000 nodes 2.4 times with any number. More leave more to be done between the
-/// threads, which only some of them do.
+/// A cloth of at most cached_bytes, which the nearest caches hold, needs only one substep per pass; a larger
+/// one uses most_depth. On Zen 4, a substep of 350,000 nodes took 2.2 times as long as a semi-implicit Euler
+/// step with one substep per pass, 1.9 times with two, and 1.7 times with five or ten; of 40,000 nodes, 2.4
+/// times with any number. More substeps leave more work between the threads, which only some of them do.
 constexpr std::size_t cached_bytes = std::size_t{4} << 20, most_depth = 4;
 
-/// What a position lacks that is rounded to float.
+/// The rounding error of a position in float.
 Vec3d rest_of(const Vec3d& x) { return x - vec3_cast<double>(vec3_cast<float>(x)); }
 
-/// Fewest blocks that a thread needs for passes of so many small steps.
+/// Fewest blocks per thread for passes of `depth` substeps.
 constexpr std::size_t least_blocks(std::size_t depth) { return 4 * depth; }
 
-/// Where parts end: where no spring goes on, and the part has some nodes.
+/// Ends of parts: where no spring crosses and the part has enough nodes.
 std::vector<std::size_t> part_ends(const System& system, const std::vector<std::uint32_t>& place) {
   constexpr std::size_t fewest_nodes = 256;
   std::vector<std::size_t> ends;
@@ -141,8 +140,8 @@ std::vector<std::size_t> part_ends(const System& system, const std::vector<std::
   return ends;
 }
 
-/// What threads lose at a barrier, in vectors of springs, which take 40 ns each on Zen 4: a guess at an idle
-/// machine. On a busy one TeamGain lets a thread work alone.
+/// Cost of a barrier in vectors of springs, which take 40 ns each on Zen 4: an estimate for an idle machine.
+/// On a busy one, TeamGain lets one thread work alone.
 constexpr double barrier_cost = 6;
 
 struct PartCost {
@@ -151,8 +150,8 @@ struct PartCost {
   double barriers;
 };
 
-/// Gives the parts to threads, largest first, each to the one that has least. The smallest are shared, as
-/// many as makes the step shortest: one body beside many of its size, or one alone.
+/// Assigns the parts to threads, largest first, each to the least loaded thread. The smallest parts are
+/// shared, as many as minimises the step time: for example one body beyond an even number, or a single body.
 void distribute(SpringBatches& bodies, std::vector<PartCost> costs, std::size_t threads) {
   std::ranges::stable_sort(costs, std::ranges::greater(), &PartCost::vectors);
   double best = HUGE_VAL;
@@ -182,7 +181,7 @@ void distribute(SpringBatches& bodies, std::vector<PartCost> costs, std::size_t 
 SpringColouring spring_order(const System& system) {
   const auto* grid = std::get_if<GridPatch>(&system.topology);
   if (grid == nullptr) return colour_springs(system.springs, system.nodes());
-  std::array<std::size_t, cloth_colours> next{};  // place of each colour's next spring
+  std::array<std::size_t, cloth_colours> next{};  // index of each colour's next spring
   for (const Spring& spring : system.springs) ++next[colour_of(*grid, spring)];
   SpringColouring order{std::vector<Spring>(system.springs.size()), {0}};
   for (std::size_t& place : next) {
@@ -196,7 +195,8 @@ SpringColouring spring_order(const System& system) {
 QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
     : SmallSteps(system, dt_s),
       layout(std::get<GridPatch>(system.topology), lanes),
-      nodes(layout.rows * layout.row_floats() + lanes),  // a vector of the last nodes may begin one further
+      nodes(layout.rows * layout.row_floats() +
+            lanes),  // a vector of the last nodes may begin one node further
       rest(layout.rows * layout.rest_row_floats()) {
   const auto& grid = std::get<GridPatch>(system.topology);
   const double mass = require_uniform_mass(system);
@@ -263,7 +263,7 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
   const std::vector<std::size_t> ends = part_ends(system, place);
 
   slot.resize(system.nodes());
-  std::vector<std::uint32_t> part_of(system.nodes());  // by scene node
+  std::vector<std::uint32_t> part_of(system.nodes());  // [scene nodes]
   std::size_t slots = 0, begin = 0;
   for (const std::size_t end : ends) {
     const std::size_t first = slots;

@@ -1,4 +1,4 @@
-// Small steps of xpbd: what moves a vector of nodes, of a cloth pass by pass, of bodies colour by colour.
+// Substeps of xpbd for vectors of nodes: a cloth pass by pass, bodies colour by colour.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -19,13 +19,13 @@ namespace mssim::HWY_NAMESPACE {
 
 #include "backends/implicit/constraints/carried_sum-inl.h"
 
-/// Gravity and the damping of the air: v becomes (v - h g) / (1 + h c) where a node moves. `fall` = h g,
-/// `kept` = 1 / (1 + h c).
+/// Gravity and air damping: v becomes (v - h g) / (1 + h c) at nodes that move. `fall` = h g, `kept` = 1 / (1
+/// + h c).
 HWY_INLINE Lanes3 fallen(Mask moves, const Lanes3& v, Lanes fall, Lanes kept) {
   return select(moves, Lanes3{kept * v.x, kept * (v.y - fall), kept * v.z}, v);
 }
 
-/// The floor, at the end of a step. What lies on it has no rest, which could be negative.
+/// The floor, at the end of a step. A node on it has rest 0, which could otherwise be negative.
 HWY_INLINE void meet_floor(Mask moves, const Surroundings& surroundings, NodeLanes& node, Lanes3& rest) {
   touch_floor(moves, surroundings, node.x, node.v);
   rest.y = keep(hn::Gt(node.x.y.v, Lanes(surroundings.floor_height).v), rest.y);
@@ -36,7 +36,7 @@ HWY_INLINE SpringLanes select(Mask first, const SpringLanes& a, const SpringLane
       [first](Lanes yes, Lanes no) MSSIM_INLINE_LAMBDA { return select(first, yes, no); }, a, b);
 }
 
-/// Three components of a vector of nodes that need not begin where a vector does.
+/// Three components of a vector of nodes at an unaligned address.
 HWY_INLINE void store_part(EveryLane, const Lanes3& value, float* to, std::size_t pitch) {
   const FloatTag d;
   hn::StoreU(value.x.v, d, to);
@@ -50,8 +50,8 @@ HWY_INLINE void store_part(Mask lanes, const Lanes3& value, float* to, std::size
   hn::BlendedStore(value.z.v, lanes, d, to + 2 * pitch);
 }
 
-/// What compliant springs pull with between nodes a and b in a small step of h, in parts of `way`, which
-/// becomes that from a to b at its end.
+/// Pull of compliant springs between nodes a and b in a substep of h, per unit of `way`, which becomes the
+/// vector from a to b at the substep's end.
 HWY_INLINE Lanes pull_between(const NodeLanes& a, const NodeLanes& b, Lanes h, const SpringLanes& c,
                               Lanes3& way) {
   const Lanes3 u = b.v - a.v;
@@ -59,8 +59,8 @@ HWY_INLINE Lanes pull_between(const NodeLanes& a, const NodeLanes& b, Lanes h, c
   return spring_pull_at(inverse_length(dot(way, way)), dot(u, way), c);
 }
 
-/// The springs of a vector of `first` and one of `second`: where the x of the nodes begin. The ends that move
-/// are those of the lanes given.
+/// The springs between a vector of nodes at `first` and one at `second`, the addresses of their x. Only the
+/// ends in the given lanes move.
 template <class FirstLanes, class SecondLanes>
 HWY_INLINE void project(float* first, float* second, std::size_t pitch, Lanes h, const SpringLanes& c,
                         FirstLanes first_moves, SecondLanes second_moves) {
@@ -71,7 +71,7 @@ HWY_INLINE void project(float* first, float* second, std::size_t pitch, Lanes h,
   store_part(second_moves, mul_add(-pull, way, b.v), second + 3 * pitch, pitch);
 }
 
-/// Springs of a colour: from nodes of a stream, in `rows` rows, each `row_step` rows further, to nodes `down`
+/// Springs of a colour: from nodes of a stream, in `rows` rows at distances of `row_step`, to nodes `down`
 /// rows and `right` columns further.
 struct Springs {
   std::size_t first_row, rows, row_step;
@@ -117,7 +117,7 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
   }
 }
 
-/// Gravity and the damping of the air in `rows` rows.
+/// Gravity and air damping in `rows` rows.
 HWY_NOINLINE inline void let_fall(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
   const FloatTag d;
   const std::size_t pitch = cloth.layout.pitch, nodes = cloth.layout.springs(0, 0);
@@ -143,7 +143,7 @@ HWY_INLINE void project_along_rows(QuarteredRows& cloth, std::size_t first_row, 
 }
 
 /// The structural and shear colours between each of `pairs` rows, every other one from `first_row` on, and
-/// the row below it.
+/// the next row.
 HWY_INLINE void project_between_rows(QuarteredRows& cloth, std::size_t first_row, std::size_t pairs) {
   for (const std::size_t stream : {0U, 1U, 2U, 3U})
     project_springs(cloth, {first_row, pairs, 2, 1, stream, 0, structural});
@@ -153,13 +153,13 @@ HWY_INLINE void project_between_rows(QuarteredRows& cloth, std::size_t first_row
     project_springs(cloth, {first_row + 1, pairs, 2, -1, stream, 1, shear});
 }
 
-/// The bending springs between each of `rows` rows and the next but one.
+/// The bending springs between each of `rows` rows and the second next.
 HWY_INLINE void project_across_rows(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
   for (const std::size_t stream : {0U, 1U, 2U, 3U})
     project_springs(cloth, {first_row, rows, 1, 2, stream, 0, bending});
 }
 
-/// The end of a small step, x += h v, and at the end of a step the floor.
+/// The end of a substep, x += h v, and at the end of a step the floor.
 HWY_NOINLINE inline void advance(QuarteredRows& cloth, std::size_t first_row, std::size_t rows,
                                  bool meets_floor) {
   const FloatTag d;
@@ -173,7 +173,7 @@ HWY_NOINLINE inline void advance(QuarteredRows& cloth, std::size_t first_row, st
       for (std::size_t at = 0; at < nodes; at += lane_count()) {
         NodeLanes node = load_node(x + at, pitch);
         Lanes3 lacks = load_components(rest + at, pitch);
-        carry_sum(node.x, lacks, h, node.v);  // pins have no velocity
+        carry_sum(node.x, lacks, h, node.v);  // pins have zero velocity
         if (meets_floor) {
           meet_floor(hn::Ne(hn::Load(d, cloth.free_of_row[row] + stream * pitch + at), hn::Zero(d)),
                      cloth.surroundings, node, lacks);
@@ -185,20 +185,20 @@ HWY_NOINLINE inline void advance(QuarteredRows& cloth, std::size_t first_row, st
     }
 }
 
-/// A small step of a cloth by blocks of four rows, in levels that wait for each other:
+/// A substep of a cloth by blocks of four rows, in levels that depend on each other:
 ///
-///     own        falling, springs along its rows, and between rows 0 and 1 and rows 2 and 3,
+/// own        gravity and damping, springs along its rows, and between rows 0 and 1 and rows 2 and 3,
 ///     join       springs between the last row of the block before it and its row 0, and rows 1 and 2,
 ///     bend       bending springs from its rows 0 and 1,
 ///     bend_join  those from rows 2 and 3 of the block before it,
 ///     advance    x += h v.
 ///
-/// A level of a block needs the level before it, of that block and of one neighbour. So a pass goes down the
-/// cloth once, the levels of several small steps behind each other, each `lag` blocks behind the first.
+/// A level of a block needs the previous level of that block and of one neighbour. So a pass goes down the
+/// cloth once, with the levels of several substeps in sequence, each `lag` blocks after the first.
 enum class BlockLevel : std::size_t { own, join, bend, bend_join, advance };
 constexpr std::size_t block_levels = 5, block_rows = QuarteredRows::block_rows;
 
-/// How many blocks a level of a small step stays behind the first level of the pass.
+/// Number of blocks by which a level of a substep follows the first level of the pass.
 constexpr std::size_t lag(std::size_t small_step, BlockLevel level) {
   constexpr std::array<std::size_t, block_levels> behind{0, 0, 1, 1, 2};
   return 2 * small_step + behind[static_cast<std::size_t>(level)];
@@ -211,8 +211,8 @@ struct BlockShare {
   BlockShare(const Team& team, std::size_t blocks)
       : begin(team.begin(blocks)), end(team.end(blocks)), all(blocks) {}
 
-  /// Blocks of a level that it can do without what its neighbours do in this pass: those of its own, less
-  /// some at each end that is not the cloth's.
+  /// Blocks of a level that do not depend on the neighbours' work in this pass: its own, except for some at
+  /// each end that is not the cloth's.
   IndexRange alone(std::size_t small_step, BlockLevel level) const {
     constexpr std::array<std::size_t, block_levels> missing_before{0, 1, 1, 2, 2};
     const std::size_t before = 2 * small_step + missing_before[static_cast<std::size_t>(level)];
@@ -220,7 +220,7 @@ struct BlockShare {
   }
 };
 
-/// One level of a block of rows. `meets_floor`: the small step is the last of a step.
+/// One level of a block of rows. `meets_floor`: the substep is the last of a step.
 HWY_INLINE void do_level(QuarteredRows& cloth, BlockLevel level, std::size_t block, bool meets_floor) {
   const std::size_t rows = cloth.layout.rows, first = block * block_rows;
   const std::size_t end = std::min(first + block_rows, rows);
@@ -252,8 +252,8 @@ HWY_INLINE void do_level(QuarteredRows& cloth, BlockLevel level, std::size_t blo
   }
 }
 
-/// Goes down the cloth with all levels of the small steps `begin` to `end` - 1 of a call, each in
-/// range(number of the small step in the pass, level).
+/// Goes down the cloth with all levels of the call's substeps `begin` to `end` - 1, each in range(number of
+/// the substep in the pass, level).
 template <class Range>
 HWY_NOINLINE void walk_down(QuarteredRows& cloth, std::size_t begin, std::size_t end, Range range) {
   std::size_t first = cloth.blocks(), last = 0;
@@ -277,8 +277,8 @@ HWY_NOINLINE void walk_down(QuarteredRows& cloth, std::size_t begin, std::size_t
 
 /// Takes `count` steps.
 void step_cloth(QuarteredRows& cloth, int count) {
-  // Whatever the threads are, each spring sees what the colours before its own have left: the result is the
-  // same to the last bit for any number of threads and of small steps in a pass.
+  // For any division among threads, each spring sees the result of the colours before its own: bitwise
+  // identical for any number of threads and of substeps per pass.
   const std::size_t small_steps = static_cast<std::size_t>(count) * cloth.substeps;
   const std::size_t passes = (small_steps + cloth.depth - 1) / cloth.depth;
   const std::size_t blocks = cloth.blocks();
@@ -312,9 +312,9 @@ void step_cloth(QuarteredRows& cloth, int count) {
 
 constexpr std::size_t vector_springs = hn::MaxLanes(FloatTag());
 
-/// Writes the velocities of the nodes whose records lie at record(0), record(1) ..., one a lane, in stores of
-/// blocks of four floats. Scatter instructions, one for each component, made a step of 38,233 and of 3,858
-/// nodes take 1.8 to 2 times as long on Zen 4.
+/// Writes the velocities of the nodes whose records are at record(0), record(1) ..., one per lane, in stores
+/// of blocks of four floats. With scatter instructions, one per component, a step of 38,233 and of 3,858
+/// nodes takes 1.8 to 2 times as long on Zen 4.
 #if HWY_TARGET == HWY_SCALAR
 template <class Record>
 HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
@@ -380,14 +380,14 @@ HWY_NOINLINE inline void project_colour(SpringBatches& bodies, const IndexRange&
   }
 }
 
-/// What happens to the nodes between the springs of one small step and those of the next.
+/// The operations on nodes between the springs of one substep and those of the next.
 struct Between {
-  bool advances;     ///< x += h v: not before the first one
-  bool meets_floor;  ///< behind that: the small step was the last of a step
-  bool falls;        ///< v = (v - h g) / (1 + h c): not after the last one
+  bool advances;     ///< x += h v; not before the first one
+  bool meets_floor;  ///< after that: the substep was the last of a step
+  bool falls;        ///< v = (v - h g) / (1 + h c); not after the last one
 };
 
-/// That, at vectors [begin, end) of nodes.
+/// Executes them at vectors [begin, end) of nodes.
 HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& between, std::size_t begin,
                                     std::size_t end) {
   const FloatTag d;
@@ -400,7 +400,7 @@ HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& betwee
     if (between.advances) {
       float* const rest = bodies.rest.data() + vector * 3 * vector_springs;
       Lanes3 lacks = load3(rest);
-      carry_sum(node.x, lacks, h, node.v);  // pins have no velocity
+      carry_sum(node.x, lacks, h, node.v);  // pins have zero velocity
       if (between.meets_floor) meet_floor(moves, bodies.surroundings, node, lacks);
       store3(rest, lacks);
     }
@@ -409,7 +409,7 @@ HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& betwee
   }
 }
 
-/// A Team of one, who has all and meets nobody.
+/// A Team of one thread, without synchronisation.
 struct Alone {
   static HWY_INLINE std::size_t begin(std::size_t /*count*/) { return 0; }
   static HWY_INLINE std::size_t end(std::size_t count) { return count; }
@@ -420,7 +420,7 @@ struct Alone {
   }
 };
 
-/// A thread's share of a small step of a part, up to the last colour; what moves its nodes stands before it.
+/// A thread's share of a substep of a part, up to the last colour, beginning with its nodes.
 template <class Threads>
 HWY_INLINE void step_colours(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t small,
                              const Threads& team) {
@@ -434,7 +434,7 @@ HWY_INLINE void step_colours(SpringBatches& bodies, const SpringBatches::Part& p
   }
 }
 
-/// A thread's share of `count` small steps of a part.
+/// A thread's share of `count` substeps of a part.
 template <class Threads>
 HWY_INLINE void step_part(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t count,
                           const Threads& team) {
@@ -454,8 +454,8 @@ HWY_INLINE void step_part(SpringBatches& bodies, const SpringBatches::Part& part
 
 /// Takes `count` steps.
 void step_bodies(SpringBatches& bodies, int count) {
-  // The springs of a colour share no node, and parts share nothing: the result is the same to the last bit
-  // for any number of threads.
+  // The springs of a colour share no node, and parts share nothing: bitwise identical for any number of
+  // threads.
   const std::size_t small_steps = static_cast<std::size_t>(count) * bodies.substeps;
   const auto take_parts = [&](const Team& team) HWY_ATTR {
     for (const std::size_t part : bodies.shared_parts)

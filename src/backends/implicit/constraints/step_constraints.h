@@ -12,9 +12,9 @@
 
 namespace mssim {
 
-/// A spring as the compliant constraint C = l - L of XPBD (M. Macklin, M. Müller, N. Chentanez, 2016), with
-/// which a small step of h seconds from x, v goes on from the positions y = x + h v that the velocities lead
-/// to. One iteration, as M. Macklin et al. (2019) advise, begins at lambda = 0; their Eq. 26 is then
+/// A spring as the compliant constraint C = l - L of XPBD (M. Macklin, M. Müller, N. Chentanez, 2016), in a
+/// substep of h seconds from x, v, which starts at the predicted positions y = x + h v. One iteration, as M.
+/// Macklin et al. (2019) recommend, begins at lambda = 0; their Eq. 26 is then
 ///
 ///     dlambda = (-C - gamma n.(p2 - p1)) / ((1 + gamma) (w1 + w2) + alpha~),
 ///
@@ -25,13 +25,13 @@ namespace mssim {
 ///
 ///     w1 h (k C + c n.(v2 - v1)) n / (1 + (h^2 k + h c) (w1 + w2)):
 ///
-/// the force of kernels/spring_law.h at (y, v), for h seconds, divided by what it changes itself in that
-/// time. So the same law gives the impulse, from other constants; velocities carry the displacements, which
-/// single precision would lose in differences of positions; and a spring without stiffness is no exception.
+/// the force of kernels/spring_law.h at (y, v), for h seconds, divided by its own change in that time. So the
+/// same law gives the impulse, with other constants; velocities carry the displacements, which single
+/// precision would lose in differences of positions; and a spring without stiffness is no special case.
 ///
-/// This gives the spring with which the law's pull is that impulse divided by the vector to the other end,
-/// kg/s. Its constants, h k / (1 + ...) and h c / (1 + ...), are finite for all k and c that are not
-/// negative. rest_length in m; h_s: the small step; mobility: w1 + w2, 1/kg, 0 for an end that is held.
+/// Returns the spring for which the law's pull is that impulse divided by the vector to the other end, kg/s.
+/// Its constants, h k / (1 + ...) and h c / (1 + ...), are finite for all nonnegative k and c. rest_length in
+/// m; h_s: the substep; mobility: w1 + w2, 1/kg, 0 for a held end.
 template <class Real>
 LinearSpring<Real> compliant_spring(const SpringMaterial& material, double rest_length, double h_s,
                                     double mobility) {
@@ -41,10 +41,10 @@ LinearSpring<Real> compliant_spring(const SpringMaterial& material, double rest_
                            linear_spring(material, rest_length));
 }
 
-/// The colours of a cloth, in their order: springs along rows, then those between the rows of a pair, then
-/// bending springs across rows. In that order a walk down the rows can do all colours of a row that those of
-/// other rows do not wait for (BlockLevel in step_constraints.cpp), and no colour needs a pass over the cloth
-/// of its own.
+/// The colours of a cloth, in order: springs along rows, then those between the rows of a pair, then bending
+/// springs across rows. In that order a walk down the rows can execute all colours of a row that do not
+/// depend on later rows (BlockLevel in step_constraints.cpp), and no colour needs its own pass over the
+/// cloth.
 enum ClothColour : std::uint8_t {
   structural_from_even_columns,
   structural_from_odd_columns,
@@ -61,18 +61,17 @@ enum ClothColour : std::uint8_t {
   cloth_colours
 };
 
-/// The springs of a cloth or of bodies in the order in which xpbd takes them, whatever the backend: this
-/// order is part of the method. A cloth has the colours of ClothColour, empty ones too; bodies have those of
-/// colour_springs.
+/// The springs of a cloth or of bodies in the order of xpbd, for every backend: the order is part of the
+/// method. A cloth has the colours of ClothColour, including empty ones; bodies have those of colour_springs.
 SpringColouring spring_order(const System& system);
 
-/// The small steps of a system.
+/// The substeps of a system.
 struct SmallSteps {
-  double small_s;        ///< the small step, s
-  float h_s;             ///< the same
-  float fall;            ///< m/s, of gravity in a small step
-  float kept;            ///< part of the velocity that the air leaves in a small step
-  std::size_t substeps;  ///< in a step
+  double small_s;        ///< the substep, s
+  float h_s;             ///< the substep in single precision, s
+  float fall;            ///< m/s, gain by gravity per substep
+  float kept;            ///< fraction of the velocity left by air damping per substep
+  std::size_t substeps;  ///< per step
   Surroundings surroundings;
 
   SmallSteps(const System& system, double dt_s)
@@ -84,14 +83,12 @@ struct SmallSteps {
         surroundings(surroundings_of(system)) {}
 };
 
-/// Where the nodes of a cloth lie: the columns of a row in four streams, by the column's number modulo four,
-///
+/// Storage of the nodes of a cloth: the columns of a row in four streams, by the column's number modulo four,
 ///     [row][column % 4][x y z u v w][column / 4]      (u v w: velocity).
 ///
 /// The springs of a colour (ClothColour) that begin in one stream all end in one stream, of the same row or
-/// of another: a vector of the one and a vector of the other, beginning at the same place or one node
-/// further, are the ends of as many springs. So there is nothing to shuffle or to gather. Each component
-/// begins a vector.
+/// of another: a vector of each, beginning at the same position or one node further, has the ends of as many
+/// springs. So no shuffle or gather is needed. Each component begins a vector.
 struct QuarterLayout {
   static constexpr std::size_t streams = 4, components = 6;
 
@@ -113,7 +110,7 @@ struct QuarterLayout {
   std::size_t rest_offset(std::size_t row, std::size_t column) const {
     return row * rest_row_floats() + column % streams * 3 * pitch + column / streams;
   }
-  /// Nodes of a stream that have a node of their row `right` columns further: springs that begin in it.
+  /// Nodes of a stream with a node of their row `right` columns further: springs that begin in it.
   std::size_t springs(std::size_t stream, std::size_t right) const {
     const std::size_t end = stream + right;
     return end < columns ? (columns - end - 1) / streams + 1 : 0;
@@ -122,23 +119,22 @@ struct QuarterLayout {
 
 /// A cloth, for vectors of springs of a colour.
 struct QuarteredRows : SmallSteps {
-  static constexpr std::size_t block_rows = 4;  ///< rows that a pass takes at a time
+  static constexpr std::size_t block_rows = 4;  ///< rows per block of a pass
   QuarterLayout layout;
   AlignedArray nodes;  ///< [QuarterLayout::row_floats] for each row; padding is zero
-  AlignedArray rest;   ///< [rows][streams][x y z][pitch] m, what x y z lack (carried_sum-inl.h)
-  /// [1 + rows with pins][streams][pitch] 1 where a node may move, 0 for a pin and for padding.
+  AlignedArray rest;   ///< [rows][streams][x y z][pitch] m, rounding errors of x y z (carried_sum-inl.h)
+  /// [1 + rows with pins][streams][pitch] 1 if a node may move, 0 for pins and padding.
   AlignedArray free;
-  std::vector<const float*> free_of_row;  ///< [rows] into `free`; its start where the row has no pin
+  std::vector<const float*> free_of_row;  ///< [rows] into `free`; its start if the row has no pin
 
   /// By GridSpringKind, between free nodes and between a free one and a pin; divided by the mass of a node,
-  /// so that what acts on a free end is its change of velocity.
+  /// so the impulse on a free end is its change of velocity.
   std::vector<LinearSpring<float>> of_free, of_pinned;
   std::size_t threads = 1;
-  std::size_t depth = 1;  ///< small steps that one pass over the cloth takes
+  std::size_t depth = 1;  ///< substeps per pass over the cloth
   TeamGain team_gain;
 
-  /// Of a system that is a cloth. A state must be set before the first step. Throws Unsupported where the
-  /// nodes differ in mass.
+  /// Lays out a cloth. Set a state before the first step. Throws Unsupported if the nodes differ in mass.
   QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count);
   void set_state(const State& state);
   State state() const;
@@ -147,14 +143,14 @@ struct QuarteredRows : SmallSteps {
 };
 
 /// Bodies for vectors of `lanes` springs of a colour: the nodes as records (node_arrays.h), renumbered so
-/// that neighbours stand near each other (reverse Cuthill-McKee), and the springs side by side. What no
-/// spring connects is stepped apart, in parts, each of which stays in a thread's cache for all small steps
-/// of a call.
+/// that neighbours are near each other (reverse Cuthill-McKee), and the springs interleaved. Unconnected
+/// components are stepped separately, in parts, each of which stays in a thread's cache for all substeps of a
+/// call.
 struct SpringBatches : SmallSteps {
-  /// Springs of a colour whose constants are the same, in vectors [begin, end) of `springs`.
+  /// Springs of a colour with the same constants, in vectors [begin, end) of `springs`.
   struct Batch {
     std::size_t begin, end;
-    SpringConstants<float> constants;       ///< of compliant_spring
+    SpringConstants<float> constants;       ///< those of compliant_spring
     float first_mobility, second_mobility;  ///< 1/kg
   };
   /// Vectors [begin, end) of nodes and colours [first_colour, end_colour) of one or several bodies.
@@ -164,13 +160,13 @@ struct SpringBatches : SmallSteps {
   };
 
   std::size_t lanes = 0;
-  std::vector<std::uint32_t> slot;  ///< [nodes] the record of the scene's node
+  std::vector<std::uint32_t> slot;  ///< [nodes] record of the scene's node
   AlignedArray nodes;               ///< [slots][record_floats]
-  AlignedArray rest;                ///< [slots / lanes][x y z][lanes] m, what x y z lack (carried_sum-inl.h)
-  AlignedArray free;                ///< [slots] 1 where a node may move, 0 for a pin and where there is none
-  /// [vectors][3][lanes] where the records of both ends begin, in units of offset_floats and as
-  /// std::uint32_t, then the stiffness_rest of compliant_spring. The last vector of a batch
-  /// repeats its last spring, which writes the same once more.
+  AlignedArray rest;  ///< [slots / lanes][x y z][lanes] m, rounding errors of x y z (carried_sum-inl.h)
+  AlignedArray free;  ///< [slots] 1 if a node may move, 0 for pins and padding
+  /// [vectors][3][lanes] offsets of the records of both ends, in units of offset_floats and as std::uint32_t,
+  /// then the stiffness_rest of compliant_spring. The last vector of a batch repeats its last spring, which
+  /// writes the same result again.
   AlignedArray springs;
   static constexpr std::size_t offset_floats = record_floats;
   std::vector<Batch> batches;
@@ -178,12 +174,12 @@ struct SpringBatches : SmallSteps {
   std::vector<Part> parts;
 
   std::size_t threads = 1;
-  std::vector<std::vector<std::size_t>> own_parts;  ///< [threads] what a thread does alone
-  std::vector<std::size_t> shared_parts;            ///< what all do together, colour by colour
+  std::vector<std::vector<std::size_t>> own_parts;  ///< [threads] parts of one thread alone
+  std::vector<std::size_t> shared_parts;            ///< parts of all threads together, colour by colour
 
-  TeamGain team_gain;  ///< of the threads that share parts
+  TeamGain team_gain;  ///< for the threads that share parts
 
-  /// A state must be set before the first step.
+  /// Set a state before the first step.
   SpringBatches(const System& system, double dt_s, std::size_t lane_count, std::size_t thread_count);
   void set_state(const State& state);
   State state() const;

@@ -12,7 +12,7 @@
 namespace mssim {
 namespace {
 
-using Index = int;  // as Eigen's orderings want it
+using Index = int;  // required by Eigen's orderings
 using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
 [[noreturn]] void refuse_indefinite() {
@@ -21,7 +21,7 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
 std::ptrdiff_t signed_size(std::size_t size) { return static_cast<std::ptrdiff_t>(size); }
 
-/// Both triangles.
+/// Builds both triangles.
 Matrix whole_matrix(const StepMatrix& matrix) {
   std::vector<Eigen::Triplet<double, Index>> entries;
   entries.reserve(matrix.rows() + 2 * matrix.couplings.size());
@@ -39,8 +39,8 @@ Matrix whole_matrix(const StepMatrix& matrix) {
   return whole;
 }
 
-/// How many entries the Cholesky factor of a matrix has, of which the upper triangle is given: row by row
-/// along the elimination tree (Liu 1990), without storing any.
+/// The number of entries in the Cholesky factor of a matrix, given its upper triangle: row by row along the
+/// elimination tree (Liu 1990), without storing any.
 std::size_t count_entries(const Matrix& upper) {
   constexpr Index none = -1;
   const auto rows = static_cast<std::size_t>(upper.rows());
@@ -60,12 +60,12 @@ std::size_t count_entries(const Matrix& upper) {
 }
 
 /// Eliminates the last `pivots` of `rows` unknowns from a dense symmetric system F, [rows][rows] by columns,
-/// of which the lower triangle is given. With F = (F_rr, F_rp; F_pr, F_pp), r: the rows that remain, first,
+/// given its lower triangle. With F = (F_rr, F_rp; F_pr, F_pp), where r are the remaining rows, first,
 ///
 ///     F_rr (its lower triangle) becomes  F_rr - F_rp F_pp^-1 F_pr,
 ///     panel, [rows][pivots] by columns, (-F_rp F_pp^-1; F_pp^-1).
 ///
-/// The rest of F is changed. Throws Unsupported where F_pp is not positive definite.
+/// The rest of F is overwritten. Throws Unsupported if F_pp is not positive definite.
 void eliminate(std::span<double> front, std::size_t rows, std::size_t pivots, std::span<double> panel) {
   using Dense = Eigen::MatrixXd;
   const std::ptrdiff_t n = signed_size(rows), w = signed_size(pivots), r = n - w;
@@ -90,7 +90,7 @@ class Dissector {
         smallest_(smallest),
         side_(matrix.rows()) {}
 
-  /// Appends the parts of everything, one piece that hangs together after the other.
+  /// Appends the parts of all connected components, one after the other.
   void dissect_all(Dissection& into) {
     std::vector<bool> seen(side_.size());
     std::vector<std::uint32_t> piece;
@@ -108,15 +108,15 @@ class Dissector {
   }
 
  private:
-  /// Appends the parts of a region, those that it consists of before what separates them. Returns the last
-  /// part of each piece that hangs together with nothing else of the region.
+  /// Appends the parts of a region: its components before their separator. Returns the last part of each
+  /// component without couplings to the rest of the region.
   std::vector<std::uint32_t> dissect(Rows region, Dissection& into) {
     if (region.empty()) return {};
     if (region.size() <= smallest_) return {append(region, into)};
     const std::size_t middle = cut(region);
     Rows one = region.first(middle), other = region.subspan(middle);
     const std::size_t from_one = border(one, other), from_other = border(other, one);
-    // The smaller of both borders; ties go to the larger half.
+    // The smaller of the two borders; ties go to the larger half.
     const bool of_one = from_one < from_other || (from_one == from_other && one.size() > other.size());
     Rows& cut_from = of_one ? one : other;
     const std::size_t rest = cut_from.size() - std::min(from_one, from_other);
@@ -157,7 +157,7 @@ class Dissector {
                                     region.begin());
   }
 
-  /// Moves the rows of `from` that have couplings into `to` to its end and returns how many they are.
+  /// Moves the rows of `from` with couplings into `to` to its end and returns their number.
   std::size_t border(Rows from, Rows to) {
     ++present_;
     for (const std::uint32_t row : to) side_[row] = present_;
@@ -179,13 +179,13 @@ class Dissector {
   const Adjacency couplings_;
   const std::span<const Vec3d> places_;
   const std::size_t smallest_;
-  std::vector<std::uint32_t> side_;  ///< [rows] `present_` where a row is of the side that is looked at
+  std::vector<std::uint32_t> side_;  ///< [rows] `present_` for rows of the current side
   std::uint32_t present_ = 0;
 };
 
 struct Placement {
-  std::vector<std::uint32_t> place;    ///< [rows] in the order of elimination
-  std::vector<std::uint32_t> part_of;  ///< [places] the part that has it
+  std::vector<std::uint32_t> place;    ///< [rows] index in the order of elimination
+  std::vector<std::uint32_t> part_of;  ///< [places] the part of each
 };
 Placement placement_of(const std::vector<std::uint32_t>& order, const std::vector<Dissection::Part>& parts) {
   Placement all{std::vector<std::uint32_t>(order.size()), std::vector<std::uint32_t>(order.size())};
@@ -195,7 +195,7 @@ Placement placement_of(const std::vector<std::uint32_t>& order, const std::vecto
   return all;
 }
 
-/// Regions of so many rows are one dense block: smaller ones have fewer entries, but more borders to pass on.
+/// Regions of this many rows become one dense block: smaller ones have fewer entries, but more borders.
 constexpr std::size_t smallest_region = 32;
 
 }  // namespace
@@ -226,7 +226,7 @@ void require_factor_memory(std::size_t entries, std::size_t entry_bytes) {
 
 ColumnFactor factorise(const StepMatrix& matrix) {
   const Matrix whole = whole_matrix(matrix);
-  // From places to rows: its inverse takes rows to places.
+  // Maps places to rows: its inverse maps rows to places.
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> order;
   Eigen::AMDOrdering<Index>()(whole, order);
   Matrix upper(whole.rows(), whole.cols());
@@ -235,7 +235,7 @@ ColumnFactor factorise(const StepMatrix& matrix) {
   if (entries > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
     throw Unsupported("the factor of its global step would have {} entries, more than Eigen can number",
                       entries);
-  // Eigen's factor and this one, and what a backend makes of it.
+  // Eigen's factor, this one, and a backend's copy.
   require_factor_memory(entries, 2 * (sizeof(double) + sizeof(Index)) + sizeof(double));
   const Eigen::SimplicialLLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<Index>> cholesky(upper);
   if (cholesky.info() != Eigen::Success) refuse_indefinite();
@@ -324,13 +324,13 @@ std::size_t BlockFactor::cost(std::size_t part) const {
 
 void BlockFactor::eliminate_all(const StepMatrix& matrix) {
   const auto [place, part_of] = placement_of(order, fronts.parts);
-  std::vector<std::vector<StepMatrix::Coupling>> couplings(blocks.size());  // by places, the earlier first
+  std::vector<std::vector<StepMatrix::Coupling>> couplings(blocks.size());  // by place, the earlier first
   for (const auto& coupling : matrix.couplings) {
     const auto [low, high] = std::minmax(place[coupling.first], place[coupling.second]);
     couplings[part_of[low]].push_back({low, high, coupling.weight});
   }
 
-  std::vector<std::vector<double>> left(blocks.size());  // of the border: its lower triangle, by columns
+  std::vector<std::vector<double>> left(blocks.size());  // for the border: lower triangle, by columns
   std::vector<double> front, panel;
   for (std::size_t part = 0; part < blocks.size(); ++part) {
     const std::size_t rows = fronts.rows(part), pivots = fronts.pivots(part), border = rows - pivots;

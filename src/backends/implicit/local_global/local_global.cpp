@@ -9,7 +9,7 @@
 namespace mssim {
 namespace {
 
-/// Solves A s = e for the three coordinates at once, by the columns of the factor.
+/// Solves A s = e for all three coordinates, by the columns of the factor.
 template <class Real>
 class ColumnSolver {
  public:
@@ -19,7 +19,7 @@ class ColumnSolver {
     solution_.resize(order_.size());
   }
 
-  /// act(row, s of the row) for all rows. `right(row)` is its e.
+  /// Calls act(row, s of the row) for all rows. `right(row)` is its e.
   template <class Right, class Act>
   void solve(Right&& right, Act&& act) {
     const std::size_t rows = order_.size();
@@ -91,7 +91,7 @@ class LocalGlobalSerial final : public Backend {
     }
   }
 
-  /// What is missing for m (w - v) = dt F, N s.
+  /// The residual of m (w - v) = dt F, N s.
   Vec3<Real> residual(std::size_t node) const {
     const Vec3<Real> a = node_acceleration((1 / nodes_.mass[node]) * force_[node], w_[node],
                                            nodes_.viscous_damping, nodes_.gravity);
@@ -107,10 +107,10 @@ class LocalGlobalSerial final : public Backend {
   std::vector<Vec3<Real>> force_;  ///< [nodes] N
 };
 
-/// Subtrees for each thread, so that what they cost can be shared evenly.
+/// Subtrees per thread, enough to balance their costs.
 constexpr std::size_t subtrees_per_thread = 8;
 
-/// Where the rows of a matrix start, m.
+/// Start positions of a matrix's rows, m.
 std::vector<Vec3d> places_of(const System& system, const StepMatrix& matrix) {
   std::vector<Vec3d> places;
   places.reserve(matrix.rows());
@@ -123,7 +123,7 @@ std::vector<Vec3d> places_of(const System& system, const StepMatrix& matrix) {
 FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
   const auto& parts = factor.fronts.parts;
   const std::size_t count = parts.size();
-  // Of the subtree below each part, which is the parts from `first` to itself.
+  // [parts] the subtree below each part: parts from `first` to itself.
   std::vector<std::size_t> cost(count), first(count);
   std::size_t all = 0;
   for (std::size_t part = 0; part < count; ++part) {
@@ -133,7 +133,7 @@ FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
     all += factor.cost(part);
     if (parts[part].parent != Dissection::no_part) cost[parts[part].parent] += cost[part];
   }
-  // One thread meets nobody: it takes all at once.
+  // A single thread needs no synchronisation: it takes everything at once.
   const std::size_t most = threads == 1 ? all : all / (threads * subtrees_per_thread);
 
   std::vector<std::size_t> phase(count);  // 0: within a subtree that is one item
@@ -154,7 +154,7 @@ FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
     const auto item_cost = [&](const IndexRange& item) {
       return item.end - item.begin == 1 ? factor.cost(item.begin) : cost[item.end - 1];
     };
-    // The dearest first, each to who has least: then in order again.
+    // The most expensive first, each to the least loaded thread; then in order again.
     std::ranges::stable_sort(of_phase, std::ranges::greater{}, item_cost);
     std::vector<std::vector<IndexRange>> shares(threads);
     std::vector<std::size_t> load(threads);

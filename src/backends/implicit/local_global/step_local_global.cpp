@@ -1,5 +1,5 @@
-// Steps of fast-springs with vectors: forces of whole vectors of nodes, products of dense blocks with three
-// vectors at once.
+// Steps of fast-springs with vectors: forces of whole vectors of nodes, and products of dense blocks with
+// three vectors at once.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -16,10 +16,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Columns of a panel that are passed at once: as many as leave AVX2 registers for the rest.
+/// Columns of a panel processed at once: as many as AVX2's registers allow.
 constexpr std::size_t columns_at_once = 4;
 
-/// front += panel * right, by whole vectors: `columns` columns of `rows` floats; right: [columns][3].
+/// front += panel * right, in whole vectors: `columns` columns of `rows` floats; right: [columns][3].
 template <std::size_t columns>
 HWY_INLINE void add_columns(const float* HWY_RESTRICT panel, std::size_t rows,
                             const float* HWY_RESTRICT right, float* HWY_RESTRICT front) {
@@ -41,8 +41,8 @@ HWY_INLINE void add_columns(const float* HWY_RESTRICT panel, std::size_t rows,
   }
 }
 
-/// sums[j][c] = column j of the panel times coordinate c of the solution, whose first `length` floats, whole
-/// vectors, are taken.
+/// sums[j][c] = column j of the panel times coordinate c of the solution, over its first `length` floats,
+/// whole vectors.
 template <std::size_t columns>
 HWY_INLINE void multiply_columns(const float* HWY_RESTRICT panel, std::size_t rows,
                                  const float* HWY_RESTRICT solution, std::size_t length,
@@ -65,7 +65,7 @@ HWY_INLINE void multiply_columns(const float* HWY_RESTRICT panel, std::size_t ro
     for (std::size_t c = 0; c < 3; ++c) sums[3 * j + c] = hn::GetLane(hn::SumOfLanes(d, sum[j][c]));
 }
 
-/// Calls act(column, integral constant of how many from it on are taken) for all columns.
+/// Calls act(column, integral constant of the number of columns from it on) for all columns.
 template <class Act>
 HWY_INLINE void for_each_columns(std::size_t columns, Act&& act) {
   std::size_t j = 0;
@@ -74,8 +74,8 @@ HWY_INLINE void for_each_columns(std::size_t columns, Act&& act) {
   for (; j < columns; ++j) act(j, std::integral_constant<std::size_t, 1>{});
 }
 
-/// A part on the way upwards: gathers what the part's nodes and its children have for it, and leaves what it
-/// has for its parent. scratch: floats for three coordinates of all pivots.
+/// A part on the way up: gathers the right-hand side of the part's nodes and its children's contributions,
+/// and leaves its own contribution for the parent. scratch: floats for three coordinates of all pivots.
 template <class Nodes>
 HWY_NOINLINE void pass_upwards(LocalGlobalNodes<Nodes>& system, std::size_t part, float* scratch) {
   const Fronts& fronts = system.factor.fronts;
@@ -108,8 +108,8 @@ HWY_NOINLINE void pass_upwards(LocalGlobalNodes<Nodes>& system, std::size_t part
   });
 }
 
-/// A part on the way downwards: takes the solution at its border from its parent, finds its own, and moves
-/// its nodes. scratch: floats for three coordinates of all rows.
+/// A part on the way down: takes the solution at its border from its parent, computes its own, and moves its
+/// nodes. scratch: floats for three coordinates of all rows.
 template <class Nodes>
 HWY_NOINLINE void pass_downwards(LocalGlobalNodes<Nodes>& system, std::size_t part, float* scratch) {
   const Fronts& fronts = system.factor.fronts;
@@ -145,7 +145,7 @@ HWY_NOINLINE void pass_downwards(LocalGlobalNodes<Nodes>& system, std::size_t pa
   }
 }
 
-/// The state becomes what the iterations start from.
+/// Initialises the iteration from the state.
 template <class Nodes>
 HWY_NOINLINE void begin_step(LocalGlobalNodes<Nodes>& system, IndexRange chunk) {
   for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
@@ -155,7 +155,7 @@ HWY_NOINLINE void begin_step(LocalGlobalNodes<Nodes>& system, IndexRange chunk) 
   });
 }
 
-/// The local step, with the accelerations by springs, the air and gravity at positions y and velocities w.
+/// The local step: accelerations by springs, air and gravity at positions y and velocities w.
 template <class Nodes>
 HWY_NOINLINE void find_missing(LocalGlobalNodes<Nodes>& system, IndexRange chunk) {
   const Surroundings& around = system.nodes.surroundings;
@@ -175,7 +175,7 @@ HWY_NOINLINE void find_missing(LocalGlobalNodes<Nodes>& system, IndexRange chunk
   });
 }
 
-/// What the iterations have found becomes the state, on which the floor acts.
+/// The result of the iterations becomes the state, and the floor acts on it.
 template <class Nodes>
 HWY_NOINLINE void end_step(LocalGlobalNodes<Nodes>& system, IndexRange chunk) {
   for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
@@ -195,7 +195,7 @@ void take_steps(LocalGlobalNodes<Nodes>& system, int count) {
       for (std::size_t i = team.begin(chunks); i < team.end(chunks); ++i) act(system, system.nodes.chunks[i]);
       team.meet();
     };
-    // The fronts are shared out among system.threads: fewer take several shares each.
+    // The fronts are distributed among system.threads shares: fewer threads take several shares each.
     const auto& phases = system.schedule.phases;
     for (int step = 0; step < count; ++step) {
       for_chunks(begin_step<Nodes>);

@@ -9,9 +9,9 @@
 
 namespace mssim {
 
-/// Which thread passes which parts, and when. Phase 0 has whole subtrees of the tree of parts; each later
-/// phase has parts whose children are done. Upwards the phases follow each other, and each thread takes its
-/// items in order; downwards all is reversed. It decides nothing about the result: a part's sums are its own.
+/// Distribution of parts over threads and phases. Phase 0 has whole subtrees of the tree of parts; each later
+/// phase has parts whose children are done. Upwards the phases follow each other, and each thread processes
+/// its items in order; downwards everything is reversed. It does not affect the result.
 struct FrontSchedule {
   /// [phases][threads] items: parts, children before parents.
   std::vector<std::vector<std::vector<IndexRange>>> phases;
@@ -19,7 +19,7 @@ struct FrontSchedule {
   FrontSchedule(const BlockFactor& factor, std::size_t threads);
 };
 
-/// What the vector code of fast-springs needs to take steps. Nodes: NodeRows or NodeSlices.
+/// Data of fast-springs for the vector code. Nodes: NodeRows or NodeSlices.
 template <class Nodes>
 struct LocalGlobalNodes {
   /// A free node, by its place in the order of elimination.
@@ -36,11 +36,11 @@ struct LocalGlobalNodes {
   std::uint32_t iterations;
   std::vector<Place> places;
   AlignedArray x, v;    ///< fields: the state, m and m/s
-  AlignedArray y, w;    ///< fields: x + dt w, m, and the velocities sought, m/s
-  AlignedArray e;       ///< field: what is missing for w - v = dt a(y, w), m/s
+  AlignedArray y, w;    ///< fields: x + dt w, m, and the unknown velocities, m/s
+  AlignedArray e;       ///< field: the residual of w - v = dt a(y, w), m/s
   AlignedArray fronts;  ///< [parts][3][rows], each at its BlockFactor::Block::front
 
-  /// A state must be set before the first step.
+  /// Set a state before the first step.
   LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
       : LocalGlobalNodes(system, {system, dt_s}, dt_s, lanes, thread_count) {}
   void set_state(const State& state) { write_fields(nodes, state, x, v); }

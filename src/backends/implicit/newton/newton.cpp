@@ -28,7 +28,7 @@ class NewtonSerial final : public Backend {
     try {
       for (int step = 0; step < count; ++step) take_step(equation_, integrator_, goal_, work_);
     } catch (const GivenUp&) {
-      // Who gave it up knows.
+      // The caller stopped it.
     }
   }
 
@@ -39,7 +39,7 @@ class NewtonSerial final : public Backend {
   SolverWork work_;
 };
 
-/// Part of the norms at which the reference's solvers end, beside which a step's own error is large.
+/// Relative tolerance of the reference's solvers, negligible against a step's own error.
 constexpr double reference_tolerance = 1e-12;
 
 }  // namespace

@@ -16,29 +16,28 @@
 
 namespace mssim {
 
-/// Where the methods below end.
+/// Goals at which the methods below stop.
 struct SolverGoal {
-  double tolerance = 0;  ///< of newton_step and newtons_method: the part that may be left
-  double rounding = 0;   ///< the norm of r, kg^1/2 m/s, which rounded forces do not let it fall below
-  double rounding_of_motion = 0;  ///< what rounded velocities add to that, in parts of sqrt(w . M w)
+  double tolerance = 0;  ///< relative: of newton_step to the initial norm, of newtons_method to that of w - v
+  double rounding = 0;   ///< kg^1/2 m/s; the norm of r stays above it because of rounded forces
+  double rounding_of_motion = 0;  ///< contribution of rounded velocities, relative to sqrt(w . M w)
 };
 
-/// What a spring's force is off by at most, in u k L: (k - k L / l) d is rounded where d, 1 / l and the
-/// products with k L and with d are.
+/// Largest error of a spring's force, in u k L: (k - k L / l) d is rounded at d, 1 / l and the products with
+/// k L and with d.
 inline constexpr double roundings_of_force = 4;
 
-/// The goal of a solver that computes springs in precision Real. Each error below changes from spring to
-/// spring or from node to node, so that squares add up; u is half a unit in the last place of 1.
+/// The goal of a solver that computes springs in precision Real. Each error below varies from spring to
+/// spring or from node to node, so squares are summed; u is half a unit in the last place of 1.
 ///
 /// A spring's force is the difference of k l and k L, each rounded: an error of u k L. Newton's method on the
-/// shipped cloths comes to a third of this, and not further.
+/// shipped cloths reaches a third of this, and no less.
 ///
 /// Rounding w_j by u |w_j| changes r by column j of A. With a = dt c + dt^2 k of a spring, the largest
-/// eigenvalue of what it adds to A, its square in the norm of M^-1 is at most
+/// eigenvalue of its part of A, its square in the norm of M^-1  is at most
 ///     (m_j + dt viscous_damping m_j + sum of a)^2 / m_j + sum of a^2 / m_i
 /// over the springs from j to i, times u^2 |w_j|^2; the largest of it over m_j |w_j|^2 is taken for all
-/// nodes. That is an upper bound: it is no goal, but says whether a norm that does not fall is that of
-/// roundings.
+/// nodes. That is an upper bound: not a goal, but a test whether a norm no longer falls because of rounding.
 template <class Real>
 SolverGoal solver_goal(const System& system, double dt_s, double tolerance) {
   constexpr double unit_roundoff = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
@@ -62,16 +61,16 @@ SolverGoal solver_goal(const System& system, double dt_s, double tolerance) {
   return {tolerance, unit_roundoff * dt_s * std::sqrt(sum), unit_roundoff * std::sqrt(column)};
 }
 
-/// The equation of one step of backward Euler, as the methods below see it. Its unknown is w, the velocities
-/// at the step's end:
+/// The equation of one step of backward Euler, as required by the methods below. Its unknown is w, the
+/// velocities at the step's end:
 ///
 ///     r(w) = M (w - v) - dt F(x + dt w, w) = 0.
 ///
 /// A is the Jacobian of r, made symmetric and positive definite (kernels/spring_law.h); P, its
-/// preconditioner, is the inverse of its blocks of 3 x 3 on the diagonal. In what follows s is the change of
-/// w that A s = e gives, p a direction of conjugate gradients and q = A p. P is zero for pinned nodes, and so
-/// are their s and p; they take no part in products of vectors. Those are sums in double precision. Where
-/// several threads run a method together, each must get the same.
+/// preconditioner, is the inverse of its 3 x 3 blocks on the diagonal. In the following, s is the change of w
+/// that A s = e gives, p a direction of conjugate gradients and q = A p. P is zero for pinned nodes, and so
+/// are their s and p, and they are omitted from products of vectors. Those are sums in double precision. If
+/// several threads run a method together, each must get the same sums.
 template <class Equation>
 concept BackwardEulerEquation = requires(Equation& equation, double factor) {
   /// w = v.
@@ -88,7 +87,7 @@ concept BackwardEulerEquation = requires(Equation& equation, double factor) {
   { equation.advance(factor) } -> std::same_as<double>;
   /// w += factor s.
   equation.add(factor);
-  /// e . s: below zero where r has turned against s.
+  /// e . s: negative if r has turned against s.
   { equation.along_solution() } -> std::same_as<double>;
   /// w . M w.
   { equation.motion() } -> std::same_as<double>;
@@ -98,12 +97,12 @@ concept BackwardEulerEquation = requires(Equation& equation, double factor) {
   equation.end();
 };
 
-/// What the steps of a solver have taken so far.
+/// The work of a solver's steps so far.
 struct SolverWork {
   std::uint64_t steps = 0;
-  std::uint64_t newton_iterations = 0;  ///< linear systems
+  std::uint64_t newton_iterations = 0;  ///< number of linear systems
   std::uint64_t products = 0;           ///< A p: iterations of conjugate gradients
-  std::uint64_t unfinished_steps = 0;   ///< whose solver met the limit of iterations, or of its precision
+  std::uint64_t unfinished_steps = 0;   ///< whose solver reached the limit of iterations or of its precision
 
   SolverWork& operator+=(const SolverWork& more) {
     steps += more.steps;
@@ -115,19 +114,19 @@ struct SolverWork {
 };
 
 inline constexpr int most_gradient_iterations = 1000;
-/// Across springs that a step presses together A is not the Jacobian, and convergence is linear: in a cloth
-/// whose nodes pass up to five rest lengths a step it takes up to 94 iterations to 1e-5, and more to 1e-12.
+/// Across springs that a step compresses, A is not the Jacobian, and convergence is linear: a cloth whose
+/// nodes move up to five rest lengths per step needs up to 94 iterations to 1e-5, and more to 1e-12.
 inline constexpr int most_newton_iterations = 1000;
 
-/// What conjugate gradients end with.
+/// Result of conjugate gradients.
 struct Solution {
   bool solved = false;  ///< to the tolerance
   double along = 0;     ///< e . s, of e at their start
 };
 
-/// Solves A s = e by preconditioned conjugate gradients from s = 0, until sqrt(e . P e) is at most
-/// `tolerance` of what it was. Not solved if that takes more than most_gradient_iterations, or A is not
-/// positive definite in the precision that it is computed in.
+/// Solves A s = e by preconditioned conjugate gradients from s = 0, until sqrt(e . P e) has decreased to
+/// `tolerance` of its initial value. Not solved if that takes more than most_gradient_iterations, or if A is
+/// not positive definite in its precision.
 template <BackwardEulerEquation Equation>
 Solution conjugate_gradients(Equation& equation, double tolerance, SolverWork& work) {
   double left = equation.start_solving();
@@ -139,7 +138,7 @@ Solution conjugate_gradients(Equation& equation, double tolerance, SolverWork& w
     const double curvature = equation.turn(factor);
     if (!(curvature > 0)) return {false, along};
     const double part = left / curvature;
-    along += part * left;  // e at the start . p = e . z: later directions are conjugate to what was found
+    along += part * left;  // initial p . e = e . z: later directions are conjugate to the solution so far
     const double next = equation.advance(part);
     factor = next / left;
     left = next;
@@ -147,7 +146,7 @@ Solution conjugate_gradients(Equation& equation, double tolerance, SolverWork& w
   return {true, along};
 }
 
-/// A step by one Newton step from the state, whose linear system is solved to `tolerance`.
+/// A step by one Newton iteration from the state, with its linear system solved to `tolerance`.
 template <BackwardEulerEquation Equation>
 void newton_step(Equation& equation, double tolerance, SolverWork& work) {
   equation.begin();
@@ -159,18 +158,18 @@ void newton_step(Equation& equation, double tolerance, SolverWork& work) {
   ++work.steps;
 }
 
-/// A step by Newton's method from w = v, until the norm of r, sqrt(r . M^-1 r), has come to the goal, or to
-/// where rounding keeps it from falling. The goal is a part of sqrt((w - v) . M (w - v)): no eigenvalue of
-/// M^-1 A is below 1, so that w - v is then off by no larger part, whatever the step, where no spring is
-/// compressed. (A part of the first r would not say so: the longer the step, the more of it is that of stiff
-/// springs.) Linear systems are solved to a part of what r is then (an inexact Newton method: Dembo,
-/// Eisenstat and Steihaug 1982).
+/// A step by Newton's method from w = v, until the norm of r, sqrt(r . M^-1 r), reaches the goal, or until
+/// rounding stops its decrease. The goal is relative to sqrt((w - v) . M (w - v)): no eigenvalue of M^-1 A is
+/// below 1, so the relative error of w - v is not larger, whatever the step, if no spring is compressed. (A
+/// goal relative to the first r would not ensure that: the longer the step, the more of it is due to stiff
+/// springs.) Linear systems are solved to a tolerance relative to the current r (an inexact Newton method:
+/// Dembo, Eisenstat and Steihaug 1982).
 ///
-/// A part of s is taken if r becomes less, or if it does not lead far uphill. Without damping, r is the
-/// gradient by w of (w - v) . M (w - v) / 2 + E(x + dt w), E the elastic and gravitational energy; its
-/// minimum is sought, and s leads down from where it starts, because A is positive definite. That r becomes
-/// less cannot be asked: A is not its Jacobian across compressed springs, so that r may grow along every part
-/// of s, however short.
+/// A fraction of s is accepted if it reduces r, or if it does not lead far uphill. Without damping, r is the
+/// gradient with respect to w of (w - v) . M (w - v) / 2 + E(x + dt w), where E is the elastic and
+/// gravitational energy; its minimum is sought, and s initially leads downhill, because A is positive
+/// definite. A decrease of r cannot be required: A is not its Jacobian across compressed springs, so r may
+/// grow along every fraction of s, however short.
 template <BackwardEulerEquation Equation>
 void newtons_method(Equation& equation, const SolverGoal& goal, SolverWork& work) {
   constexpr double forcing = 0.01, shortest = 1. / 64, most_uphill = 0.5;
@@ -218,7 +217,7 @@ void take_step(Equation& equation, const Integrator& integrator, const SolverGoa
     newtons_method(equation, goal, work);
 }
 
-/// What a reader of its times must know of a solver that has met a limit; else nothing.
+/// A note for readers of times if the solver has reached a limit; else empty.
 inline std::string note_of(const SolverWork& work) {
   if (work.unfinished_steps == 0) return {};
   return fmt::format("the solver ended before its tolerance in {} of {}", work.unfinished_steps,

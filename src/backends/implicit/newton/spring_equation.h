@@ -12,15 +12,15 @@
 
 namespace mssim {
 
-/// What a step ends with that nobody waits for any longer.
+/// Thrown by a step that was stopped.
 struct GivenUp {};
 
-/// The BackwardEulerEquation (newton_method.h) as a straightforward program holds it: arrays of nodes, and
-/// for each spring of the list what it adds to A.
+/// The BackwardEulerEquation (newton_method.h) in a straightforward program: arrays of nodes, and each listed
+/// spring's part of A.
 template <class Real>
 class SpringEquation {
  public:
-  /// `system` must outlive it. Where `stop` says so, which is asked before each product, throws GivenUp.
+  /// `system` must outlive it. Throws GivenUp if `stop`, called before each product, returns true.
   SpringEquation(const System& system, double dt_s, std::function<bool()> stop = {})
       : springs_(system.springs),
         nodes_(system),
@@ -112,7 +112,7 @@ class SpringEquation {
       const auto law = linear_spring(nodes_.materials[spring.kind], static_cast<Real>(spring.rest_length));
       const Vec3<Real> u = w_[spring.second] - w_[spring.first];
       Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first];
-      // Not the difference of x + dt w: rounding these would cost most digits of a small stretch.
+      // Not the difference of x + dt w, whose rounding would lose most digits of a small stretch.
       if constexpr (!at_state) d += dt_ * u;
       const Real inverse_length = inverse_sqrt(dot(d, d));
       const Vec3<Real> n = inverse_length * d;
@@ -153,7 +153,7 @@ class SpringEquation {
   PlainNodes<Real> nodes_;
   Real dt_;
   std::vector<SpringSlope> slopes_;            ///< [springs]
-  std::vector<SymmetricBlock<Real>> inverse_;  ///< [nodes] P, 1/kg; zero where pinned, so that z, p and s are
+  std::vector<SymmetricBlock<Real>> inverse_;  ///< [nodes] P, 1/kg; zero if pinned, so z, p and s are too
   std::vector<Vec3<Real>> w_, z_, p_, s_;      ///< [nodes] m/s
   std::vector<Vec3<Real>> e_, q_;              ///< [nodes] N s
   std::function<bool()> stop_;

@@ -1,5 +1,5 @@
-// The threads that take a step together, each running the methods of newton_method.h, and what each function
-// of the equation does to a chunk of nodes.
+// The threads of a step, each running the methods of newton_method.h, and the equation's functions for a
+// chunk of nodes.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -34,7 +34,7 @@ class DoubleSum {
   hn::Vec<Tag> low_, high_;
 };
 
-/// The block of P of a vector of nodes, from where it stands in VectorEquation::inverse.
+/// The block of P of a vector of nodes, from its address in VectorEquation::inverse.
 HWY_INLINE SymmetricBlock<Lanes> load_block(const float* from) {
   const std::size_t n = lane_count();
   const auto load = [&](std::size_t i)
@@ -49,14 +49,14 @@ HWY_INLINE void store_block(float* to, Free free, const SymmetricBlock<Lanes>& b
   }
 }
 
-/// Calls act(float) with a vector of floats' offset in a field, for all of a chunk's.
+/// Calls act(float) with the offset of each vector of floats of a chunk in a field.
 template <class Nodes, class Act>
 HWY_INLINE void for_each_float(const Nodes& nodes, IndexRange chunk, Act&& act) {
   const IndexRange floats = nodes.floats_of(chunk);
   for (std::size_t i = floats.begin; i < floats.end; i += lane_count()) act(i);
 }
 
-/// e, A and P. Returns e . M^-1 e, undivided. at_state: at x and w = v, and e that of the first Newton step.
+/// Computes e, A and P. Returns e . M^-1 e over mass. at_state: at x and w = v, e of the first Newton step.
 template <bool at_state, class Nodes>
 HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Lanes dt(equation.dt), viscous_damping(equation.nodes.surroundings.viscous_damping),
@@ -75,7 +75,7 @@ HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, IndexRange 
       const SpringLanes& spring = springs.law;
       const Lanes3 u = springs.load(w) - node.v;
       Lanes3 d = springs.load(x) - node.x;
-      // Not the difference of x + dt w: rounding these would cost most digits of a small stretch.
+      // Not the difference of x + dt w, whose rounding would lose most digits of a small stretch.
       if constexpr (!at_state) d = mul_add(dt, u, d);
       const Lanes inverse_root = inverse_length(dot(d, d));
       SlopeLanes slope{inverse_root * d, spring_across_definite(inverse_root, spring)};
@@ -131,7 +131,7 @@ HWY_NOINLINE void turn_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, 
   });
 }
 
-/// q = A p. Returns p . q. What it writes for nodes that do not move, or do not exist, is of no use.
+/// q = A p. Returns p . q. Its results for fixed and missing nodes are unused.
 template <class Nodes>
 HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Lanes dt(equation.dt);
@@ -153,7 +153,7 @@ HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, IndexRange c
   return sum.total();
 }
 
-/// Multiplies where slopes are not kept: they are found again from the positions of the linearisation.
+/// The product without stored slopes: they are recomputed from the positions of the linearisation.
 template <class Nodes>
 HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Lanes dt(equation.dt);
@@ -211,7 +211,7 @@ HWY_NOINLINE void add_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, f
   });
 }
 
-/// a . M b, undivided, for fields a and b that are zero where nothing moves.
+/// a . M b over mass, for fields a and b that are zero at fixed nodes.
 template <class Nodes>
 HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, IndexRange chunk, const float* a,
                                   const float* b) {
@@ -222,7 +222,7 @@ HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, IndexRa
   return sum.total();
 }
 
-/// (w - v) . M (w - v), undivided.
+/// (w - v) . M (w - v) over mass.
 template <class Nodes>
 HWY_NOINLINE double change_chunk(const VectorEquation<Nodes>& equation, IndexRange chunk) {
   const float *const w = equation.w.data(), *const v = equation.v.data();
@@ -249,8 +249,8 @@ HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   });
 }
 
-/// A VectorEquation as one of its threads sees it: newton_method.h says what each function does. All threads
-/// call the same functions, and get the same numbers: sums are those of chunks, added in their order.
+/// A VectorEquation for one of its threads; newton_method.h describes the functions. All threads call the
+/// same functions and get the same numbers: sums over chunks, in their order.
 template <class Nodes>
 class TeamEquation {
  public:
@@ -312,11 +312,11 @@ class TeamEquation {
     return sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return product_chunk(shared_, chunk, a, b); });
   }
 
-  /// The sum of what act(chunk) returns for all chunks, of all threads, when all have called it.
+  /// The sum of act(chunk) over all chunks of all threads, when all have called it.
   template <class Act>
   double sum_over_chunks(Act&& act) {
-    // Who is still adding up those of this sum may meet who writes those of the next one, but not of the one
-    // after it.
+    // A thread still adding this sum may overlap with one that writes the next sum's parts, but not the one
+    // after.
     std::vector<double>& sums = shared_.sums[sums_++ % 2];
     for (std::size_t chunk = begin_; chunk < end_; ++chunk) sums[chunk] = act(shared_.nodes.chunks[chunk]);
     barrier_.wait();
@@ -335,7 +335,7 @@ template <class Nodes>
 void take_steps(VectorEquation<Nodes>& shared, int count) {
   with_team(shared.threads, [&](const Team& team) HWY_ATTR {
     TeamEquation<Nodes> equation(shared, team);
-    SolverWork work;  // the same for all
+    SolverWork work;  // identical in all threads
     for (int step = 0; step < count; ++step) take_step(equation, *shared.integrator, shared.goal, work);
     if (team.thread == 0) shared.work += work;
   });

@@ -12,15 +12,15 @@
 
 namespace mssim {
 
-/// Slopes of so many bytes are kept. More would come from further away than it takes to compute them again,
-/// from a tenth of the memory. Measured on two Zen 4 cores beside other programs, a product with slopes that
-/// are found again took 2 times as long for 2,500 nodes of a cloth, 0.6 of the time for 350,000 and half of
-/// it for 38,233 of bodies; for 40,000 of a cloth (4 MiB) now one, now the other was faster.
+/// Slopes of at most this size are stored. Larger ones would come from more distant memory than recomputing
+/// them takes time, from a tenth of the memory. On two Zen 4 cores, with other programs running, a product
+/// with recomputed slopes took 2 times as long for 2,500 nodes of a cloth, 0.6 of the time for 350,000 and
+/// half of it for 38,233 of bodies; for 40,000 of a cloth (4 MiB) neither was consistently faster.
 inline constexpr std::size_t most_slope_bytes = std::size_t{4} << 20;
 
-/// The equation of newton_method.h as the vector code holds it, for Nodes a NodeRows or NodeSlices.
-/// Everything is divided by the mass of its node, and products of vectors are weighted with it: that is the
-/// same in exact arithmetic, and neither springs nor nodes need to know their masses.
+/// The equation of newton_method.h for vector code; Nodes is NodeRows or NodeSlices. Everything is divided by
+/// the mass of its node, and products of vectors are weighted with it: that is equivalent in exact
+/// arithmetic, and springs and nodes need not know their masses.
 template <class Nodes>
 struct VectorEquation {
   Nodes nodes;
@@ -32,14 +32,14 @@ struct VectorEquation {
   AlignedArray x;                 ///< field, m
   AlignedArray v, w, s, z, p, q;  ///< fields, m/s
   AlignedArray e;                 ///< field, m/s
-  AlignedArray slopes;            ///< of slopes: A without its diagonal; empty where they are not kept
-  AlignedArray y;                 ///< field, m: where A is, if slopes are not kept; else empty
-  AlignedArray inverse;           ///< [vectors][6][lanes] P; zero where nothing moves
-  /// [chunks] what they add to a sum, for every second sum.
+  AlignedArray slopes;            ///< field of slopes: A without its diagonal; empty if not stored
+  AlignedArray y;        ///< field, m: position of A's linearisation if slopes are not stored; else empty
+  AlignedArray inverse;  ///< [vectors][6][lanes] P; zero at fixed nodes
+  /// [chunks] their parts of a sum, for two alternating sums.
   std::array<std::vector<double>, 2> sums;
 
-  /// With at most `thread_count` threads. A state must be set before the first step. Slopes of more than
-  /// `most_kept` bytes are not kept.
+  /// With at most `thread_count` threads. Set a state before the first step. Slopes of more than `most_kept`
+  /// bytes are not stored.
   VectorEquation(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count,
                  const Integrator& method, std::size_t most_kept = most_slope_bytes)
       : nodes(system, lanes),

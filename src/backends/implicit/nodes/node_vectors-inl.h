@@ -19,30 +19,30 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// What a field of slopes holds of each spring: from which kernels/spring_jacobian.h makes its Jacobian.
+/// A spring in a field of slopes, from which kernels/spring_jacobian.h computes its Jacobian.
 struct SlopeLanes {
-  Lanes3 n;      ///< unit vector along the spring, either way; zero where there is no spring
-  Lanes across;  ///< as spring_jacobian_times() takes it
+  Lanes3 n;      ///< unit vector along the spring, of either sign; zero if there is no spring
+  Lanes across;  ///< as for spring_jacobian_times()
 };
 template <class Exists>
 HWY_INLINE SlopeLanes keep(Exists exists, const SlopeLanes& slope) {
   return {keep(exists, slope.n), keep(exists, slope.across)};
 }
 
-/// The springs of a vector of nodes that lead to the neighbours of one place in the stencil, the i-th of
+/// The springs from a vector of nodes to their neighbours in one place of the stencil, the i-th of
 /// spring_of_node().
 template <std::size_t i, class Exists>
 struct RowSprings {
   const SpringLanes& law;  ///< divided by the mass of a node
-  Exists exists;           ///< a Mask or EveryLane: where there is such a spring
+  Exists exists;           ///< a Mask or EveryLane: lanes with such a spring
   std::ptrdiff_t pitch;
   std::ptrdiff_t there;  ///< offset of the neighbours in a field
-  std::ptrdiff_t slope;  ///< offset of what these springs have in a field of slopes
+  std::ptrdiff_t slope;  ///< offset of these springs in a field of slopes
 
   /// A field at the neighbours.
   HWY_INLINE Lanes3 load(const float* field) const { return load_components(field + there, pitch); }
 
-  /// A spring stands in a field of slopes once, at the node that owns it in grid_stencil.
+  /// A field of slopes has each spring once, at the node that owns it in grid_stencil.
   HWY_INLINE void store_slope(float* field, const SlopeLanes& spring) const {
     if constexpr (i % 2 == 0) {
       store3(field + slope, spring.n, pitch);
@@ -54,21 +54,21 @@ struct RowSprings {
   }
 };
 
-/// A vector of nodes in a row. Edge: some of its springs or nodes do not exist, or some nodes are pinned.
+/// A vector of nodes in a row. Edge: some of its springs or nodes are missing, or some nodes are pinned.
 template <bool edge>
 struct RowVector {
   const WalkedRows& constants;
   std::conditional_t<edge, EdgeVector, InnerVector> place;
   std::conditional_t<edge, Mask, EveryLane> free;  ///< nodes that move
   std::ptrdiff_t offset;                           ///< of the first node's x in a field
-  std::ptrdiff_t slopes;                           ///< of what belongs to it in a field of slopes
+  std::ptrdiff_t slopes;                           ///< its offset in a field of slopes
   std::size_t number;                              ///< from 0, in the order of the walk over the whole cloth
 
   HWY_INLINE Lanes3 load(const float* field) const { return load3(field + offset, constants.pitch); }
   HWY_INLINE void store(float* field, const Lanes3& value) const {
     store3(field + offset, value, constants.pitch);
   }
-  /// What sums over nodes are weighted with, in proportion to their masses: here they are the same.
+  /// The weight of nodes in sums, proportional to their masses: here they are equal.
   HWY_INLINE Lanes weighted(Lanes value) const { return value; }
 
   /// Calls act(springs) for each place in the stencil.
@@ -81,7 +81,7 @@ struct RowVector {
                                first_slope = i / 2 * NodeRows::spring_slopes;
       const auto exists = place.has(to.rows, to.columns);
       const std::ptrdiff_t pitch = constants.pitch;
-      // Each spring's slope stands at the end that owns it.
+      // Each spring's slope is stored at the end that owns it.
       const std::ptrdiff_t to_owner = i % 2 == 0 ? 0 : to.rows * slope_numbers * pitch + to.columns;
       act(RowSprings<i, std::remove_const_t<decltype(exists)>>{
           constants.spring[to.kind], exists, pitch, offset + to.rows * node_numbers * pitch + to.columns,
@@ -142,7 +142,7 @@ HWY_INLINE void for_each_vector(const NodeRows& nodes, IndexRange chunk, Act&& a
   }
 }
 
-/// Acts as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
+/// Like a walk in which all nodes and springs exist and no node is pinned: for data that are zero if not.
 template <class Act>
 HWY_INLINE void for_each_whole_vector(const NodeRows& nodes, IndexRange chunk, Act&& act) {
   const RowWalk walk(nodes);
@@ -170,7 +170,7 @@ HWY_INLINE void store_slice(float* to, const Lanes3& value) {
 
 #else
 
-/// The records of four floats at record(lane) of each lane.
+/// Loads the records of four floats at record(lane) of each lane.
 template <class Record>
 HWY_INLINE Lanes3 gather_records(Record record) {
   const FloatTag d;
@@ -193,7 +193,7 @@ HWY_INLINE Lanes3 gather_records(Record record) {
   return {component[0], component[1], component[2]};
 }
 
-/// The records of a slice, which begin at `from`.
+/// Loads the records of a slice, which begin at `from`.
 HWY_INLINE Lanes3 load_slice(const float* from) {
   const FloatTag d;
   using Vector = hn::Vec<FloatTag>;
@@ -217,9 +217,9 @@ HWY_INLINE void store_slice(float* to, const Lanes3& value) {
 /// One entry of a slice: springs to one neighbour of each of its nodes.
 struct SliceSprings {
   SpringLanes law;       ///< divided by the mass of a node
-  Mask exists;           ///< where there is such a spring
+  Mask exists;           ///< lanes with such a spring
   const float* entry;    ///< in NodeSlices::entries
-  std::ptrdiff_t slope;  ///< offset of what these springs have in a field of slopes
+  std::ptrdiff_t slope;  ///< offset of these springs in a field of slopes
 
   /// A field at the neighbours.
   HWY_INLINE Lanes3 load(const float* field) const {
@@ -243,7 +243,7 @@ struct SliceVector {
   const float* constants;              ///< of NodeSlices, of this slice
   Mask free;                           ///< nodes that move
   std::ptrdiff_t offset;               ///< of the first record in a field
-  std::ptrdiff_t slopes;               ///< of what belongs to it in a field of slopes
+  std::ptrdiff_t slopes;               ///< its offset in a field of slopes
   std::size_t number;                  ///< of the slice
 
   HWY_INLINE Lanes constant(NodeSlices::Constant which) const {
@@ -251,7 +251,7 @@ struct SliceVector {
   }
   HWY_INLINE Lanes3 load(const float* field) const { return load_slice(field + offset); }
   HWY_INLINE void store(float* field, const Lanes3& value) const { store_slice(field + offset, value); }
-  /// What sums over nodes are weighted with, in proportion to their masses.
+  /// The weight of nodes in sums, proportional to their masses.
   HWY_INLINE Lanes weighted(Lanes value) const { return constant(NodeSlices::mass) * value; }
 
   /// Calls act(springs) for each entry.
@@ -285,7 +285,7 @@ HWY_INLINE void for_each_vector(const NodeSlices& nodes, IndexRange chunk, Act&&
   }
 }
 
-/// Acts as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
+/// Like a walk in which all nodes and springs exist and no node is pinned: for data that are zero if not.
 template <class Act>
 HWY_INLINE void for_each_whole_vector(const NodeSlices& nodes, IndexRange chunk, Act&& act) {
   for_each_vector(nodes, chunk, act);

@@ -5,8 +5,8 @@
 namespace mssim {
 namespace {
 
-/// The record of a slot. Four vectors hold the records of a slice. Transposed in blocks of four, record b of
-/// vector k goes to lane 4 b + k: a node of that lane stands there, so that blocks need not change places.
+/// The record of a slot. Four vectors have the records of a slice. Transposed in blocks of four, record b of
+/// vector k goes to lane 4 b + k: the node of that lane is stored there, so blocks need not be exchanged.
 std::uint32_t record_of(std::size_t slot, std::size_t lanes) {
   const std::size_t lane = slot % lanes;
   return static_cast<std::uint32_t>(slot - lane + lane % 4 * (lanes / 4) + lane / 4);

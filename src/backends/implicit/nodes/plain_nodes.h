@@ -9,13 +9,13 @@
 
 namespace mssim {
 
-/// The nodes of a system as a straightforward implicit program holds them: arrays in the scene's node order.
+/// The nodes of a system as in a straightforward implicit program: arrays in the scene's node order.
 template <class Real>
 struct PlainNodes {
   std::vector<Vec3<Real>> x;                     ///< [nodes] m
   std::vector<Vec3<Real>> v;                     ///< [nodes] m/s
   std::vector<Real> mass;                        ///< [nodes] kg
-  std::vector<std::uint8_t> pinned;              ///< [nodes] 1 where nothing moves
+  std::vector<std::uint8_t> pinned;              ///< [nodes] 1 if pinned
   std::vector<SpringConstants<Real>> materials;  ///< System::materials
   Real viscous_damping{}, gravity{};
   Real floor_height{}, restitution{}, friction{};
@@ -53,7 +53,7 @@ struct PlainNodes {
     return state;
   }
 
-  /// What the floor does at a step's end, as to the nodes of explicit integrators.
+  /// Applies the floor at a step's end, as for explicit integrators.
   void touch_floor() {
     for (std::size_t i = 0; i < x.size(); ++i)
       if (!pinned[i]) mssim::touch_floor(x[i], v[i], floor_height, restitution, friction);

@@ -7,15 +7,15 @@
 
 namespace mssim {
 
-/// Backends of the implicit integrators (integrators/all_integrators.h), each made in the room of its solver:
-/// serial ones by plain loops over the spring list on one thread, references by the same in double precision,
-/// openmp ones with vectors on options.threads threads, the same bits at every number of them. `system` is no
-/// garment and outlives the backend.
+/// Backends of the implicit integrators (integrators/all_integrators.h), made in the solvers' folders: serial
+/// ones with plain loops over the spring list on one thread, references the same in double precision, openmp
+/// ones with vectors on options.threads threads, bitwise identical for every number of threads. `system` must
+/// not be a garment and must outlive the backend.
 
 /// implicit-euler and newton-euler.
 std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s);
-/// Newton's method, until nothing more is gained. Where `stop`, which is asked often in a step, says so, the
-/// step ends there; the state is then of no use.
+/// Newton's method, until it improves no more. If `stop`, which is called often in a step, returns true, the
+/// step ends early; the state is then useless.
 std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
                                                double dt_s, const std::function<bool()>& stop = {});
 std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
@@ -27,16 +27,16 @@ std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrat
 ///
 ///     (M + h^2 L) x = h^2 J d + M y + h^2 f_ext   (Eq. 14),   y = x_n + h v_n.
 ///
-/// With h^2 (J d - L x), the springs' forces at x, on the right, the same x is found from the one before it:
-/// (M + h^2 L) (change of x) = what is missing for x to be a step of backward Euler. Here the change of
-/// w = (x - x_n) / h is sought, so that single precision keeps its digits, and dampers are springs' equals:
+/// With the springs' forces at x, h^2 (J d - L x), on the right, the same x follows from its predecessor:
+/// (M + h^2 L) (change of x) = residual of backward Euler at x. Here the unknown is the change of
+/// w = (x - x_n) / h, so that single precision keeps its digits, and dampers are treated like springs:
 ///
 ///     A (change of w) = M (v_n - w) + dt F(x_n + dt w, w),   A: StepMatrix (factor.h),
 ///
-/// from w = v_n, System::solver.iterations times, in the reference, too: it is a method of its own until it
-/// has converged to backward Euler. Neither Chebyshev's nor Anderson's acceleration is applied.
+/// from w = v_n, System::solver.iterations times, also in the reference: until it has converged to backward
+/// Euler it is a method of its own. Neither Chebyshev nor Anderson acceleration is applied.
 ///
-/// All throw Unsupported where there is not the memory for the factor of A.
+/// All throw Unsupported if there is too little memory for the factor of A.
 std::unique_ptr<Backend> make_serial_local_global(const System& system, double dt_s);
 std::unique_ptr<Backend> make_local_global_reference(const System& system, double dt_s);
 std::unique_ptr<Backend> make_openmp_local_global(const System& system, double dt_s,
