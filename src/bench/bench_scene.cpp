@@ -24,10 +24,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Peaks of this machine, by threads and bytes of the working set.
+/// Peaks of this machine, by number of threads and bytes of the working set.
 using Peaks = std::map<std::pair<int, std::size_t>, MachinePeak>;
 
-/// What a step of the combination works on, in a scene of this size.
+/// Size of a step of the combination, on a scene of this size.
 StepSize size_for(const Combination& combination, const StepSize& scene) {
   return combination.stored_springs ? with_stored_springs(scene, *combination.stored_springs) : scene;
 }
@@ -38,9 +38,9 @@ std::pair<int, std::size_t> peak_key(const Combination& combination, const StepS
           static_cast<std::size_t>(working_set_bytes(*combination.integrator, size_for(combination, scene)))};
 }
 
-/// Measures the peaks that the combinations are held against, now. None for a garment: what a step of it has
-/// to do depends on what touches and what is sewn; none of a cloth that does not fit here; none for implicit
-/// integrators, whose solvers go on for as long as it takes; and none where only samples are wanted.
+/// Measures the peaks that the combinations are compared with. There are none for a garment, whose work per
+/// step depends on what touches and what is sewn; for a cloth in windows; for implicit integrators, whose
+/// solvers iterate until they converge; and for a job that only takes samples.
 Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
@@ -74,9 +74,9 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
 /// Compares a backend with the reference.
 using Verifier = std::function<Verification(Combination& combination)>;
 
-/// Runs the reference. `draped`: the garment, settled; none where the scene is no garment or cannot be
-/// dressed. `step_seconds`: is set to what a step of it took where the ends of samples are compared with it,
-/// too. The verifier is empty where no backend has the scene with this integrator.
+/// Runs the reference. `draped`: the settled garment; none if the scene is not a garment or cannot be
+/// dressed. Sets `step_seconds` to the reference's time per step if the ends of samples are compared with it
+/// too. The verifier is empty if no backend supports the scene with this integrator.
 Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const std::optional<State>& draped,
                        double& step_seconds) {
   if (job.garment && !dresses(integrator)) return {};
@@ -119,7 +119,7 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
   };
 }
 
-/// Steps that a sample takes at most, so that where it ends can be compared with the reference.
+/// Largest number of steps of a sample whose end can be compared with the reference.
 int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
   if (job.garment) return max_sample_steps;  // its ends are not compared
   if (job.windowed) return verification_steps;
@@ -128,21 +128,21 @@ int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
   return comparable_steps(*job.system, integrator, job.dt_s, checkable);
 }
 
-/// What an integrator's reference leaves.
+/// Results of an integrator's reference.
 struct AfterReference {
   int most_steps = max_sample_steps;  ///< of a sample
-  double step_seconds = 0;            ///< that a step of the reference took
+  double step_seconds = 0;            ///< time per step of the reference
   Verifier verifier = {};
-  std::optional<SecondStretch> second = {};  ///< where it is part of the verification
+  std::optional<SecondStretch> second = {};  ///< if it is part of the verification
   std::optional<Combination> serial = {};    ///< verified in the end, if it is among the job's backends
 };
 
-/// Programs in ranks read the scene's file, whatever System they are made for.
+/// Programs that run in ranks read the scene file, whatever System they are made for.
 bool builds_scenes_itself(const BackendInfo& info) {
   return info.program != nullptr && info.program->in_ranks;
 }
 
-/// Lets another backend of the kind step the second stretch.
+/// Steps the second stretch with another instance of the backend.
 void verify_second(Combination& combination, const SceneJob& job, const BackendInfo& info,
                    const SecondStretch& stretch) {
   combination.backend->rest();
@@ -162,7 +162,7 @@ void verify_second(Combination& combination, const SceneJob& job, const BackendI
   }
 }
 
-/// Makes the backend, to be judged in at most so many steps.
+/// Makes the backend, which is judged after at most `most_steps` steps.
 Combination make_unjudged(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
                           const State& start, int most_steps) {
   Combination combination = make_combination(job, info, integrator, start);
@@ -174,7 +174,7 @@ Combination make_unjudged(const SceneJob& job, const BackendInfo& info, const In
   return combination;
 }
 
-/// Judges it as job.verified or else the comparison with the reference does.
+/// Takes the verdict of job.verified or, without it, of the comparison with the reference.
 void judge(Combination& combination, const SceneJob& job, const BackendInfo& info,
            const AfterReference& reference) {
   if (combination.backend && job.verified)
@@ -187,9 +187,8 @@ void judge(Combination& combination, const SceneJob& job, const BackendInfo& inf
     });
 }
 
-/// Does what takes one thread for each of the job's integrators, by their number, and for each of so many
-/// `parts` that do not need each other: as many at the same time as the backends have threads, and first
-/// those that take longer.
+/// Calls `work`, which takes one thread, for each of the job's integrators, by number, and for each of
+/// `parts` independent parts. Runs as many at the same time as the backends have threads, longest first.
 void for_each_integrator(const SceneJob& job, std::size_t parts,
                          const std::function<void(std::size_t i, std::size_t part)>& work) {
   std::vector<std::size_t> order(job.integrators.size());
@@ -200,7 +199,7 @@ void for_each_integrator(const SceneJob& job, std::size_t parts,
                    [&](std::size_t task) { work(order[task / parts], task % parts); });
 }
 
-/// Takes as many steps as a reference is compared after that does not end before contact. Throws Interrupted
+/// Takes the steps after which a reference that does not end before contact is compared. Throws Interrupted
 /// like run_reference.
 void step_beside_reference(Combination& combination, const SceneJob& job) {
   const int steps = std::min(combination.most_steps, verification_steps);
@@ -213,9 +212,9 @@ void step_beside_reference(Combination& combination, const SceneJob& job) {
   }
 }
 
-/// Runs the references of all integrators and verifies `serial` with each, but for job.verified. The results
-/// have the integrators' order. `serial` takes its steps beside the references; of a garment behind them,
-/// because there it starts again and again where a reference was.
+/// Runs the references of all integrators and, without job.verified, verifies `serial` with each. The results
+/// are in the integrators' order. `serial` steps while the references run; for a garment it steps after them,
+/// because it restarts from states of the reference.
 std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
                                            const State& start) {
   std::vector<AfterReference> results(job.integrators.size());
@@ -249,7 +248,7 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   return results;
 }
 
-/// What the samples so far say.
+/// Rows of the samples so far.
 std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, const StepSize& size,
                                const Peaks& peaks) {
   std::vector<ResultRow> rows;
@@ -266,7 +265,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
   return rows;
 }
 
-/// Gives the combinations their earlier samples, as many as all of them have, and says how many those are.
+/// Gives the combinations their earlier samples, as many as all of them have, and returns how many.
 int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>& earlier) {
   std::size_t complete = SIZE_MAX;
   for (Combination& combination : combinations) {
@@ -288,13 +287,13 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
   return static_cast<int>(complete);
 }
 
-/// With which round this run began to measure, and when.
+/// The round with which this run began to measure, and the time of its start.
 struct FirstRound {
   int number = 0;
   Clock::time_point start = Clock::now();
 };
 
-/// Says which sample comes next. `rounds`: those before it, and the share of its own that is done.
+/// Reports the next sample. `rounds`: rounds before it, plus the finished share of its own.
 void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, const SceneJob& job,
                  const BenchWatch& watch) {
   std::string activity = fmt::format("round {}", static_cast<int>(rounds) + 1);
@@ -309,16 +308,16 @@ void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, c
                  job.preparation + (1 - job.preparation) * done);
 }
 
-/// Which samples start where, and which of them are checked. Programs cannot know it: what they are asked is
-/// the same for every sample, and the check waits until no sample follows.
+/// Chooses where samples start and which are checked. Programs cannot predict this: every sample makes the
+/// same requests, and the check comes after the last sample.
 class SampleSecrets {
  public:
-  /// `start`: of all samples, where their ends are not checked. Must outlive it.
+  /// `start`: of all samples, if their ends are not checked. Must outlive this.
   SampleSecrets(const SceneJob& job, const State& start)
       : job_(job), start_(start), checks_(!job.garment && !job.windowed && !job.verified) {}
 
-  /// Chooses the round that is checked, of those that there may be. `end`: when the last one is to have
-  /// ended, with a deadline.
+  /// Chooses the round to check among the possible ones. `end`: with a deadline, the latest end of the last
+  /// round.
   void choose(const FirstRound& first, Clock::time_point end) {
     if (job_.deadline)
       checked_from_ =
@@ -327,7 +326,7 @@ class SampleSecrets {
       checked_round_ = first.number + static_cast<int>(between_0_and_1() * (job_.rounds - first.number));
   }
 
-  /// The start of a round's samples.
+  /// Returns the start state of a round's samples.
   const State& begin_round(int round) {
     if (!checks_) return start_;
     present_ = static_cast<std::uint32_t>(random_());
@@ -336,19 +335,19 @@ class SampleSecrets {
     if (checks_this_) check();
     return of_round_;
   }
-  /// Checks the round that has begun, whatever was chosen.
+  /// Checks the current round, whatever was chosen.
   void check() {
     checks_this_ = has_checked_ = true;
     checked_ = present_;
   }
 
   bool is_due() const { return checks_ && !has_checked_; }
-  /// The node to look at first, in a round that is checked.
+  /// The first node to examine, if the round is checked.
   std::optional<std::size_t> first_node() const {
     return checks_this_ ? std::optional<std::size_t>(first_) : std::nullopt;
   }
 
-  /// Compares the ends of the samples that were checked. The backends have been ended.
+  /// Compares the ends of the checked samples. The backends have been ended before.
   void compare(std::vector<Combination>& combinations) const {
     if (!has_checked_) return;
     const State start = sample_start(*job_.system, checked_);
@@ -380,10 +379,10 @@ class SampleSecrets {
   int checked_round_ = 0;
   Clock::time_point checked_from_;
   bool checks_this_ = false, has_checked_ = false;
-  std::uint32_t present_ = 0, checked_ = 0;  ///< of which round's start
+  std::uint32_t present_ = 0, checked_ = 0;  ///< wave numbers of these rounds
 };
 
-/// What SampleSecrets::compare will take, about, after samples as long as the combinations' are now.
+/// Expected time of SampleSecrets::compare after samples as long as the combinations' are now.
 Clock::duration expected_check(const SceneJob& job, const std::vector<Combination>& combinations,
                                const std::vector<AfterReference>& references) {
   if (job.garment || job.windowed || job.verified) return {};
@@ -403,8 +402,8 @@ Clock::duration expected_check(const SceneJob& job, const std::vector<Combinatio
       std::chrono::duration<double>(std::max(longest, all / at_once)));
 }
 
-/// One sample of every combination, in this order, from `start`. False when it was stopped, and then without
-/// a trace.
+/// Takes one sample of every combination, in this order, from `start`. Returns false and discards the round
+/// if stopped.
 bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
                 const FirstRound& first, const SceneJob& job, const State& start,
                 std::optional<std::size_t> first_node, bool kept, const BenchWatch& watch) {
