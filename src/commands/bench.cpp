@@ -31,7 +31,7 @@ namespace {
 /// How a bench prints its rows; `github` is github_table().
 enum class SummaryFormat : std::uint8_t { table, csv, json, github };
 
-/// What was asked for, and how it is printed.
+/// The requested bench, and how to print it.
 struct BenchRequest : BenchOptions {
   SummaryFormat format = SummaryFormat::table;
 };
@@ -58,7 +58,7 @@ std::vector<std::string> devices_of(RowPointers rows) {
   return sentences;
 }
 
-/// What stands below `table`, a row_table.
+/// Remarks to be printed after `table`, a row_table.
 std::string remarks(RowPointers rows, std::string_view table, const Provenance& provenance,
                     std::optional<int> width) {
   std::vector<std::string> sentences = devices_of(rows);
@@ -71,9 +71,9 @@ std::string remarks(RowPointers rows, std::string_view table, const Provenance& 
   return text;
 }
 
-/// The rows for a reader: the columns that answer "how fast, how right". As a table (row_table) they are
-/// written for `terminal`, with what is to know of the numbers below. `provenance` tells what was asked for.
-/// Ends with a newline; empty for a table without rows.
+/// The rows for a reader, with the columns that answer "how fast, how right". A table (row_table) is laid out
+/// for `terminal` and followed by remarks. `provenance` has the requested threads. Ends with a newline; empty
+/// for a table without rows.
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
                     const Terminal& terminal) {
   if (format == SummaryFormat::github) return to_text(github_table(rows), ListingFormat::json);
@@ -100,12 +100,13 @@ std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const
                  format);
 }
 
-/// The rows of scenes of which only the structure is told; none in the format `github`, which is for times.
+/// The rows of scenes whose structure is shown but which are not timed; empty in the format `github`, which
+/// is for times.
 std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
   return text_of(structure_rows(rows), format);
 }
 
-/// Prints what would be measured, and about how long that takes.
+/// Prints the plan: what would be measured, and the expected time.
 void tell_plan(const BenchPlan& plan) {
   const ExpectedTime all = total(times_of(plan.timed));
   const double rounds = expected_rounds(plan);
@@ -124,7 +125,7 @@ void tell_plan(const BenchPlan& plan) {
   std::cout << "about " << seconds(all) << " s in all\n";
 }
 
-/// Before hours of measuring, not after.
+/// Printed before hours of measuring, not after.
 void warn_of_missing_speedups(const BenchPlan& plan) {
   std::vector<std::string_view> backends;
   if (!plan.timed.empty())
@@ -140,7 +141,7 @@ void tell_before(const BenchPlan& plan) {
   warn_of_missing_speedups(plan);
 }
 
-/// What the mesh of a scene of bodies is. Throws std::invalid_argument for a scene without tetrahedra.
+/// The structure of a scene of bodies. Throws std::invalid_argument for a scene without tetrahedra.
 StructureRow structure_of(const PreparedScene& scene) {
   const auto* mesh = std::get_if<TetrahedralMesh>(&scene.system.topology);
   if (mesh == nullptr) throw std::invalid_argument(scene.spec.name + " has no tetrahedra");
@@ -150,7 +151,7 @@ StructureRow structure_of(const PreparedScene& scene) {
   row.springs_unique = scene.counts.springs_unique;
   row.springs_published = scene.counts.springs_published.value();
   row.tetrahedra = mesh->tetrahedra.size();
-  // At the start a body is turned and moved, but not deformed.
+  // At the start, a body is rotated and moved, but not deformed.
   row.smallest_dihedral_angle_deg = smallest_dihedral_angle({scene.system.start.position, mesh->tetrahedra});
   return row;
 }
@@ -180,7 +181,7 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
   std::cerr << '\n';
 }
 
-/// The rows of those that were asked for, a path among them, by name.
+/// Row names of the requested backends, including those given as a path.
 std::vector<std::string> asked_backends(const BenchOptions& options, const BenchPlan& plan) {
   std::vector<std::string> names;
   if (!options.backends.empty())
@@ -188,7 +189,7 @@ std::vector<std::string> asked_backends(const BenchOptions& options, const Bench
   return names;
 }
 
-/// The suite whose scenes are measured by guides, which take no samples of a step.
+/// Runs the suite whose scenes are measured by guides, without samples of single steps.
 int run_guide_suite(const BenchRequest& options) {
   const auto refuse = [&](bool given, const std::string& name) {
     if (given) throw UsageError("{} cannot be used with --suite {}: leave it out", name, options.suite);
@@ -247,8 +248,7 @@ int run(const BenchRequest& options) {
   return code;
 }
 
-/// The integrators that are compared where none are named, suite by suite where they differ from the usual
-/// ones.
+/// The default integrators, followed by those of suites with other defaults.
 std::string default_integrators() {
   const auto named = [](std::span<const std::string_view> integrators) {
     return integrators.size() == all_integrators.size()

@@ -59,18 +59,18 @@ constexpr std::string_view exit_codes =
 std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }
 
 int fail(int code, const std::string& sentence) {
-  std::cerr << "mssim: " << escaped(sentence) << '\n';  // names in it may hold anything
+  std::cerr << "mssim: " << escaped(sentence) << '\n';  // names may contain control characters
   return code;
 }
 
-/// The standard library's own sentence names a call in it.
+/// The standard library's message contains the name of a function.
 std::string sentence_of(const std::filesystem::filesystem_error& error) {
   const std::string file = error.path1().string(), reason = " (" + error.code().message() + "): ";
   return file.empty() ? "the working folder cannot be found" + reason + "change into a folder that is there"
                       : file + " cannot be looked up" + reason + "check the path and its permissions";
 }
 
-/// Ends with the exit code of what was thrown, and says why.
+/// Runs a command and returns the exit code for what it throws, after printing the message.
 int run_guarded(const std::function<int()>& run) {
   try {
     return run();
@@ -78,7 +78,7 @@ int run_guarded(const std::function<int()>& run) {
     remove_temporary_folder_of_process();
     std::signal(interrupted.signal, SIG_DFL);
     std::raise(interrupted.signal);
-    return 128 + interrupted.signal;  // where the signal is blocked
+    return 128 + interrupted.signal;  // only if the signal is blocked
   } catch (const Error& error) {
     return fail(error.exit_code, error.what());
   } catch (const std::bad_alloc&) {
@@ -105,7 +105,7 @@ int run_program(int argc, char** argv) {
   remember_arguments(argc, argv);
   if (argc > 1 && argv[1] == driver_trial_word)
     run_driver_trial({argv + 2, static_cast<std::size_t>(argc - 2)});
-  if (argc > 1 && argv[1][0] != '-') {  // the parser would take it for a word too many
+  if (argc > 1 && argv[1][0] != '-') {  // the parser would report an unexpected argument
     const std::string_view word = argv[1];
     if (std::ranges::find(commands(), word, &Command::name) == commands().end())
       return fail(exit_bad_input, unknown_command(word));
@@ -137,8 +137,7 @@ int run_program(int argc, char** argv) {
   } else {
     code = run_guarded(run.at(request.command));
   }
-  // Results that could not be written are no results (a full disk; a closed pipe ends the program by
-  // SIGPIPE).
+  // Results that could not be written are lost (a full disk; a closed pipe ends the program by SIGPIPE).
   if (!std::cout.flush()) return fail(exit_file_error, "standard output could not be written");
   return code;
 }

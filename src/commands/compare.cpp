@@ -21,15 +21,15 @@ namespace mssim {
 namespace {
 
 struct CompareOptions {
-  AbOptions ab;  ///< of which two folders have base, next and threshold
+  AbOptions ab;  ///< for two folders: only base, next and threshold
   bool programs = false;
   double threshold_percent = 5;
   ComparisonFormat format = ComparisonFormat::table;
   bool force = false;
 };
 
-/// Times from unlike machines or builds are no regression and no progress: says how they differ, and refuses
-/// them unless that is what is wanted.
+/// Times from different machines or builds show no regression or progress: reports the differences, and
+/// refuses unless forced.
 void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool force) {
   std::vector<std::string> all = differences(base.provenance, next.provenance);
   const std::vector<std::string> of_rows = differences(base.rows, next.rows);
@@ -42,7 +42,7 @@ void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool f
   std::cerr << "mssim: compared anyway: " << sentence << '\n';
 }
 
-/// One line for combinations that are not in the table, however many.
+/// Prints one line about combinations that are not in the table, however many.
 void tell(const std::string& what, const std::vector<std::string>& combinations) {
   if (combinations.empty()) return;
   std::cerr << "mssim: " << what << ": " << combinations.front();
@@ -50,7 +50,7 @@ void tell(const std::string& what, const std::vector<std::string>& combinations)
   std::cerr << '\n';
 }
 
-/// Why the comparison ends with 1: each combination that is slower or lost.
+/// Reasons for exit code 1: each combination that is slower or lost.
 std::vector<std::string> regressions(const RunComparison& comparison) {
   std::vector<std::string> sentences;
   for (const ComparedRow& row : comparison.rows) {

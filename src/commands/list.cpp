@@ -33,8 +33,8 @@ struct ListOptions {
   OwnBackendOptions own_backends;
 };
 
-/// With what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why: once,
-/// since one cause (TetGen is missing) is behind all of them.
+/// Lists scenes with the numbers that they really have. Bodies whose mesh cannot be made have none. stderr
+/// gives the first reason only, because one cause (TetGen is missing) explains all.
 Table list_scenes(const ListOptions& /*options*/) {
   Table table;
   std::vector<std::string> uncounted;
@@ -157,7 +157,7 @@ constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"devices", list_devices},
                                                  {"claims", list_claims}});
 
-/// And of what is printed as it is: schemas of JSON files.
+/// Things that are printed as they are: schemas of JSON files.
 struct Printed {
   std::string_view name;
   std::string (*text)();

@@ -30,8 +30,8 @@ std::vector<std::size_t> all_of(std::size_t frames) {
   return list;
 }
 
-/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is:
-/// a path that exists.
+/// Length of the first name or file in the text. Files of scenes and of backends are recognised in the same
+/// way: a path that exists.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
@@ -115,7 +115,7 @@ PictureOptions picture_options(const PictureChoice& choice, const std::string& u
   if (!size)
     throw UsageError("--size: \"{}\" is no size; give WIDTHxHEIGHT, up to {} pixels each",
                      printable(choice.size), most_picture_pixels);
-  if (choice.colour != ColourBy::object) require_font();  // of their legends
+  if (choice.colour != ColourBy::object) require_font();  // for the legend
   return {*view, size->first, size->second, choice.colour, threads};
 }
 
