@@ -274,14 +274,13 @@ std::function<int()> declare_bench(Arguments& arguments) {
   add_scenes(arguments, "--scene", options->scenes,
              "Scenes to measure: names (see mssim list scenes) or files");
   arguments.add("--suite NAME", options->suite,
-                "Scenes and what is compared on them: " + listed(suites, "or") +
+                "Scenes, and what to compare on them: " + listed(suites, "or") +
                     " (see mssim list suites); tables stands for table1, table2 and table3",
                 one_of("suite", names, {{"all", "tables"}}));
-  arguments.add_list(
-      "--backend NAME|FILE,...", options->backends,
-      "Backends, or methods with --suite races (default: all of mssim's); a path with a slash, or a "
-      "described name, is a program of your own",
-      names_and_files_in);
+  arguments.add_list("--backend NAME|FILE,...", options->backends,
+                     "Backends, or methods with --suite races (default: all of mssim's); your own program "
+                     "is a path with a slash, or the name of a description",
+                     names_and_files_in);
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);
   arguments.add_list("--integrator NAME,...", options->integrators,
@@ -290,24 +289,25 @@ std::function<int()> declare_bench(Arguments& arguments) {
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",
                        whole_number(1, most_rounds));
-  arguments.add_number("--time-budget SECONDS", options->time_budget_s,
-                       "Time for the measurement, in as many rounds as fit; traces take extra time",
-                       positive_number());
+  arguments.add_number(
+      "--time-budget SECONDS", options->time_budget_s,
+      "Time limit for the measurement, which takes as many rounds as fit; traces take extra time",
+      positive_number());
   arguments.add_number(
       "--windows N", options->windows,
-      "Verify cloths in N windows, without building the whole (default: only where the whole does "
-      "not fit into the memory, in --ranks + 8); with backends in ranks alone",
+      "Verify cloths in N windows instead of as a whole; only for backends in ranks (default: --ranks + 8 "
+      "windows if the whole cloth does not fit into memory)",
       whole_number(2, 100'000));
   arguments.add_flag("--new-references", options->new_references,
-                     "Take no double-precision references of earlier runs, and keep none for later ones");
+                     "Neither use double-precision references of earlier runs nor keep new ones");
   arguments.add_flag("--dry-run", options->dry_run,
                      "Print what would be measured and about how long it would take, then exit");
   arguments.add("--out FOLDER", options->output.folder,
                 "Folder for the results: tables, samples, provenance");
-  const Argument resume = arguments.add_flag(
-      "--resume", options->output.resume,
-      "Continue an interrupted run of the same command: keep the finished rounds of the folder");
-  arguments.add_flag("--overwrite", options->output.overwrite, "Replace the results that the folder has")
+  const Argument resume =
+      arguments.add_flag("--resume", options->output.resume,
+                         "Continue an interrupted run of the same command, keeping its finished rounds");
+  arguments.add_flag("--overwrite", options->output.overwrite, "Replace existing results in the folder")
       .excludes(resume);
   arguments.add_flag("--trace", options->output.trace,
                      "Also trace each combination into FOLDER/traces, after it has been timed");
@@ -319,9 +319,10 @@ std::function<int()> declare_bench(Arguments& arguments) {
        {"github", SummaryFormat::github}},
       "What to print: table, csv, json, or github (the input of github-action-benchmark, "
       "also written into FOLDER) (default: table)");
-  arguments.add("--verified FOLDER", options->verified,
-                "Result folder in which this program has already verified these combinations: rely on it, "
-                "and only take samples");
+  arguments.add(
+      "--verified FOLDER", options->verified,
+      "Result folder of an earlier run of this program that verified these combinations; only samples "
+      "are taken");
   return [options] {
     if (!options->threads.empty()) options->execution.threads = std::ranges::max(options->threads);
     return run(*options);

@@ -26,7 +26,7 @@ namespace {
 constexpr auto table = std::to_array<Command>({
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
-    {"run", "Simulate one scene; write a trace or an energy curve if asked to",
+    {"run", "Simulate one scene; optionally write a trace or an energy curve",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
     {"render", "Draw pictures or a movie of a trace or a scene",
      "mssim render --scene jeans4k --out jeans.png", declare_render},
@@ -50,10 +50,9 @@ constexpr auto table = std::to_array<Command>({
 });
 
 constexpr std::string_view exit_codes =
-    "Exit codes: 0 all well; 1 a row is not verified, a simulation blew up, a garment\n"
+    "Exit codes: 0 success; 1 a row is not verified, a simulation blew up, a garment\n"
     "does not fit, or a comparison found a regression; 2 bad usage or input; 3 a\n"
-    "device or program that was asked for is missing; 4 a file could not be read or\n"
-    "written.";
+    "requested device or program is missing; 4 a file could not be read or written.";
 
 /// A user may name a scene without --scene before it.
 std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }

@@ -104,8 +104,7 @@ std::function<int()> declare_compare(Arguments& arguments) {
       .add("BASE", options->ab.base,
            "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
       .required();
-  arguments.add("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
-      .required();
+  arguments.add("NEW", options->ab.next, "Folder or program to compare with BASE").required();
   arguments.add_number("--threshold PERCENT", options->threshold_percent,
                        "Smallest change that counts, in percent (default: 5)", positive_number());
   arguments.add_choice<ComparisonFormat>("--format", options->format,
@@ -133,12 +132,12 @@ std::function<int()> declare_compare(Arguments& arguments) {
                 "With --ab: integrators (default: semi-euler)")
       .needs(ab);
   arguments
-      .add_number("--threads N", options->ab.threads, "With --ab: threads (default: all processors)",
+      .add_number("--threads N", options->ab.threads, "With --ab: threads (default: one per available CPU)",
                   whole_number(1, most_threads))
       .needs(ab);
   arguments
-      .add_number("--time-budget SECONDS", options->ab.time_budget_s,
-                  "With --ab: seconds it may take (default: 300)", number_between(1, 86400))
+      .add_number("--time-budget SECONDS", options->ab.time_budget_s, "With --ab: time limit (default: 300)",
+                  number_between(1, 86400))
       .needs(ab);
   return [options] { return run(*options); };
 }

@@ -108,13 +108,13 @@ std::function<int()> declare_export(Arguments& arguments) {
   arguments
       .add_choice("--format", options->format,
                   {{"obj", ExportFormat::obj}, {"ply", ExportFormat::ply}, {"vtkhdf", ExportFormat::vtkhdf}},
-                  "What to write: obj or ply, triangles, a file a frame; vtkhdf, all frames in one file, "
-                  "bodies as tetrahedra")
+                  "Format: obj or ply (triangles, one file per frame) or vtkhdf (all frames in one file, "
+                  "bodies as tetrahedra)")
       .required();
   arguments.add(
       "--out FILE", options->out,
-      "File to write (default: the trace's name, and .obj, .ply or .vtkhdf); several have their frame's "
-      "number behind the name");
+      "File to write (default: the trace's name with .obj, .ply or .vtkhdf); if there are several, the "
+      "frame's number is appended to the name");
   declare_frames(arguments, options->frames);
   return [options] { return run(*options); };
 }

@@ -61,7 +61,7 @@ Table list_scenes(const ListOptions& /*options*/) {
                {"description", spec.description}});
   }
   if (!uncounted.empty())
-    std::cerr << "mssim: nodes and springs of " << listed(uncounted) << " are left out: " << first_reason
+    std::cerr << "mssim: nodes and springs of " << listed(uncounted) << " are not shown: " << first_reason
               << '\n';
   return table;
 }
@@ -185,12 +185,12 @@ std::function<int()> declare_list(Arguments& arguments) {
   arguments
       .add("WHAT", options->subject,
            "What to list: " + listed(known, "or") +
-               "; the schemas are JSON, of scene files and of claims.json",
+               "; the schemas are JSON Schemas of scene files and of claims.json",
            one_of("word", {known.begin(), known.end()}))
       .required();
   declare_listing_format(arguments, options->format);
   arguments.add("--device N|NAME", options->execution.device,
-                "OpenCL device that backends are checked with: its number or a part of its name or platform");
+                "OpenCL device to check backends with: its number or a part of its name or platform");
   declare_backend_folders(arguments, options->own_backends);
   return [options] { return run_list(*options); };
 }

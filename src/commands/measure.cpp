@@ -95,7 +95,7 @@ class BodyListing {
 
   void add_landmark(const std::string& name, const Landmark& landmark) {
     add(name + "_height", to_tenths(landmark.height), "m",
-        landmark.by_proportion ? "by proportion: nothing shows it" : "");
+        landmark.by_proportion ? "estimated by proportion" : "");
     add(name + "_girth", landmark.girth ? Cell(to_tenths(*landmark.girth)) : Cell(), "m",
         landmark.girth ? "" : "the legs are not apart there");
   }
@@ -299,7 +299,7 @@ int measure_scene(const MeasureOptions& options) {
   const BodyProfile body = measured_body(spec).profile;
   tell_of_ignored_parts(body);
   BodyListing listing;
-  listing.add_stance(file ? file->stance : BodyStance{}, "by the scene");
+  listing.add_stance(file ? file->stance : BodyStance{}, "from the scene");
   listing.add_measures(body, find_landmarks(body));
   tell(options, listing);
   return exit_ok;
@@ -341,13 +341,13 @@ std::function<int()> declare_measure(Arguments& arguments) {
       .required();
   arguments.add(
       "--unit UNIT", options->unit,
-      fmt::format("Unit of the file: {}or its metres (default: found from the height)", unit_names()));
+      fmt::format("Unit of the file: {}or its metres (default: detected from the height)", unit_names()));
   arguments.add_choice("--up", options->up, choices_of<UpAxis>(up_axis_names),
-                       "Axis of the file along which the body stands: y or z (default: found)");
+                       "Upright axis of the body in the file: y or z (default: detected)");
   arguments.add_choice("--facing", options->facing, choices_of<Facing>(facing_names),
-                       "Where the body looks: +x, -x, +y, -y, +z or -z (default: found)");
+                       "Direction that the body faces: +x, -x, +y, -y, +z or -z (default: detected)");
   arguments.add_flag("--close-holes", options->close_holes,
-                     "Fill openings of the surface that are up to 0.2 m across");
+                     "Close openings of the surface that are up to 0.2 m across");
   const Argument scene =
       arguments.add("--scene FILE", options->scene, "Scene file to write: jeans for the body, for mssim run");
   arguments.add_flag("--overwrite", options->overwrite, "Replace the scene file if it exists").needs(scene);

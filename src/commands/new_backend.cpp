@@ -95,7 +95,7 @@ Starter starter_of(const std::string& name, StarterLanguage language, const fs::
   if (language == StarterLanguage::python) {
     if (is_module_of_python(name))
       throw UsageError(name + " is the name of a module of python3, which would be imported from " + name +
-                       ".py by all that needs it: give another name, my_" + name + " say");
+                       ".py by programs that need it: choose my_" + name + " for example");
     const std::string file = name + ".py";
     return {{{file, example_for(name, ".py"), true}}, {bench_command(folder / file)}};
   }
@@ -120,7 +120,7 @@ bool is_wanted(const StarterFile& file, const fs::path& path) {
     throw UsageError(printable(path.string(), 1000) + " already exists: give another name or --out");
   if (read_file(path) != file.text)
     throw UsageError(printable(path.string(), 1000) +
-                     " is another version's than this mssim's: give another --out, or remove it");
+                     " is from another version of mssim: give another --out, or remove it");
   return false;
 }
 
@@ -156,10 +156,10 @@ std::function<int()> declare_new_backend(Arguments& arguments) {
       .add_choice(
           "--language", options->language,
           {{"python", StarterLanguage::python}, {"c++", StarterLanguage::cpp}},
-          "What to write: python, one file that needs NumPy and h5py; c++, one file and a header that "
-          "needs HDF5's C library")
+          "Language: python (one file; needs NumPy and h5py) or c++ (one file and a header; needs HDF5's "
+          "C library)")
       .required();
-  arguments.add("--out DIR", options->out, "Folder to write into (default: this one)");
+  arguments.add("--out DIR", options->out, "Folder to write into (default: the working folder)");
   return [options] { return run_new_backend(*options); };
 }
 

@@ -35,10 +35,12 @@ std::vector<std::size_t> chosen_frames(const FrameOptions& options, const std::v
 /// `all`. Throws UsageError, also for a frame that a trace of `frames` frames does not have.
 std::vector<std::size_t> listed_frames(const std::vector<std::string>& words, std::size_t frames);
 
-/// The frame nearest to a time, s. Throws UsageError for a time more than half a frame outside of the trace.
+/// The frame nearest to a time, s. Throws UsageError for a time that is after the last frame by more
+/// than the interval before it.
 std::size_t frame_at(double time_s, const std::vector<double>& times_s);
 
-/// `count` of `frames`, evenly spread from the first to the last; all if there are no more.
+/// `count` of `frames`, evenly spread from the first to the last (of one, the last); all if there are no
+/// more.
 std::vector<std::size_t> spread_over(const std::vector<std::size_t>& frames, std::size_t count);
 
 /// Default size of single pictures.

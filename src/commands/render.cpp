@@ -46,7 +46,7 @@ using Size = std::pair<std::uint32_t, std::uint32_t>;
 std::optional<Size> sheet_size(const RenderOptions& options) {
   const auto sheet = two_numbers(options.sheet_size, most_on_a_sheet);
   if (!sheet && !options.sheet_size.empty())
-    throw UsageError("--sheet: \"{}\" is no number of pictures; give COLUMNSxROWS, up to {} each",
+    throw UsageError("--sheet: \"{}\" is not a number of pictures; give COLUMNSxROWS, up to {} each",
                      printable(options.sheet_size), most_on_a_sheet);
   return sheet;
 }
@@ -179,13 +179,13 @@ std::function<int()> declare_render(Arguments& arguments) {
           .add("--scene NAME|FILE", options->run.scene, "Simulate this scene and draw it: a name or a file")
           .excludes(trace);
   arguments.add("--out FILE", options->out,
-                "File to write (default: the trace's or the scene's name, and .png or .webp)");
+                "File to write (default: the trace's or the scene's name with .png or .webp)");
   declare_pictures(arguments, options->look,
                    fmt::format("{}, and {} on a sheet and in a movie", usual_picture_size, size_of_many));
   const Argument time = declare_frames(arguments, options->frames);
   const Argument sheet = arguments
                              .add("--sheet COLUMNSxROWS", options->sheet_size,
-                                  "Put so many moments, evenly spread, on one sheet")
+                                  "Put this many moments, evenly spread, on one sheet")
                              .excludes(time);
   arguments
       .add_flag_with_text("--movie [FILE]", options->movie,
@@ -194,7 +194,7 @@ std::function<int()> declare_render(Arguments& arguments) {
       .excludes(time);
   declare_stepping(
       arguments, options->run,
-      "Frames per simulated second of a scene (default: as many as are drawn, 30 of a movie), and per "
+      "Frames per simulated second of a scene (default: as many as are drawn, 30 for a movie), and per "
       "second of a movie (default: as simulated)",
       scene);
   return [options] { return render(*options); };
