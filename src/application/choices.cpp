@@ -24,7 +24,7 @@
 namespace mssim {
 namespace {
 
-/// Those that the process may use, or as many as a container's quota of processor time amounts to.
+/// Number of processors that the process may use, limited by a container's quota of processor time.
 int usable_processors() {
   const int processors = omp_get_num_procs();
   const std::optional<double> quota = container_limits().processors;
@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view description_extension = ".json";
 
-/// The folder of the user's own descriptions; none where the user has no home.
+/// The folder of the user's own descriptions; none if the user has no home.
 std::optional<fs::path> user_folder() {
   if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
     return fs::path(folder) / "mssim" / "backends";
@@ -44,7 +44,7 @@ std::optional<fs::path> user_folder() {
   return std::nullopt;
 }
 
-/// The folder of those that come with mssim.
+/// The folder of the descriptions that come with mssim.
 fs::path shipped_folder() { return data_folder() / "backends"; }
 
 bool is_file(const fs::path& path) {
@@ -56,7 +56,7 @@ bool is_path(const std::string& name) { return name.find('/') != std::string::np
 
 std::string shown(const fs::path& path) { return escaped(path.string()); }
 
-/// The program at a path that the command line names.
+/// The program at a path from the command line.
 BackendProgram program_at(const std::string& path) {
   if (!is_file(path))
     throw MissingProgram("there is no program " + escaped(path) +
@@ -72,9 +72,10 @@ BackendProgram program_at(const std::string& path) {
   return program;
 }
 
-/// Whether the number of threads changes how the backend steps; a device's own processors do not follow it.
+/// Whether the number of threads changes how the backend steps; it does not affect a device with its own
+/// processors.
 bool has_threads(const BackendInfo& info, const ExecutionOptions& execution) {
-  if (info.threads > 0) return false;  // it says them itself
+  if (info.threads > 0) return false;  // its name determines them
   if (info.makes_threads || info.program) return true;
   try {
     return info.uses_device && find_opencl_device(execution.device).type == OpenclDeviceType::cpu;
@@ -147,7 +148,7 @@ BackendChoice::Row::Row(const BackendInfo& of, int threads)
     : name(fmt::format("{}:{}", of.name, threads)), info(of) {
   info.name = name;
   info.threads = threads;
-  info.paper_configuration = {};  // that of the row which tables of the paper take
+  info.paper_configuration = {};  // belongs to the row that tables of the paper use
 }
 
 BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBackendOptions& options,
@@ -232,7 +233,7 @@ std::vector<const BackendInfo*> BackendChoice::with_fewer_threads(const std::vec
     if (!counts.empty() && has_threads(*info, execution))
       for (const int count : counts)
         if (const BackendInfo* row = &on_threads(*info, count);
-            std::ranges::find(rows, row) == rows.end())  // named by itself, too
+            std::ranges::find(rows, row) == rows.end())  // may also be requested directly
           all.push_back(row);
     all.push_back(info);
   }
@@ -283,7 +284,7 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
   std::ranges::for_each(folders_, look);
   if (in_table && !found.empty())
     throw UsageError("{} is called like the backend {} of mssim; rename it", shown(found.front()), name);
-  // A scene may be called as anything.
+  // A scene file may have any name.
   if (!in_table) std::ranges::for_each(scene_folders_, look);
   look(shipped_folder());
   if (found.size() > 1)
@@ -317,7 +318,7 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
                   const ExecutionOptions& execution) {
   for (const BackendInfo* info : rows) {
     const BackendProgram* program = info->program;
-    if (!program || info->threads > 0) continue;  // said of the row that has as many as asked for
+    if (!program || info->threads > 0) continue;  // the row with the requested number has the program
     BackendProgramRecord record{.name = program->name, .command = program->command};
     if (program->in_ranks) {
       const RankCount count = ranks_of(*program, execution);
