@@ -112,7 +112,7 @@ void require_few_threads(int threads, std::string_view asked) {
   const int processors = omp_get_num_procs();
   if (threads > most_a_processor * processors)
     throw UsageError(
-        "{} is too many for the {} that this process may use; ask for at most {} threads, {} for each",
+        "{} is too many for the {} that this process may use; give at most {} threads, {} for each",
         asked.empty() ? fmt::format("--threads {}", threads) : printable(asked),
         pluralize(processors, "processor"), most_a_processor * processors, most_a_processor);
 }
@@ -123,7 +123,7 @@ ExecutionOptions complete(ExecutionOptions options) {
   if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
   if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
   if (options.threads > limit)
-    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; ask for fewer, or unset it",
+    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; give fewer, or unset it",
                      options.threads, limit);
   omp_set_dynamic(0);
   return options;
@@ -157,7 +157,7 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
   for (const std::string& folder : options.folders) {
     std::error_code error;
     if (!fs::is_directory(folder, error))
-      throw UsageError("--backend-folder {} is no folder", escaped(folder));
+      throw UsageError("--backend-folder {} is not a folder", escaped(folder));
     folders_.emplace_back(folder);
   }
   if (const auto folder = user_folder()) folders_.push_back(*folder);
@@ -196,13 +196,13 @@ const BackendInfo* BackendChoice::counted(const std::string& name) {
   if (!known && !file) return nullptr;
   BackendProgram program = file ? read_description(*file) : BackendProgram{};
   if (known ? !(*row)->makes_threads && !(*row)->uses_device : !program.in_ranks)
-    throw UsageError("{} says a number of ranks or threads, which {} does not take: leave \":{}\" out",
+    throw UsageError("{} has a number of ranks or threads, which {} does not take: leave \":{}\" out",
                      printable(name), its_name, printable(count));
   const int most = known ? most_threads : most_ranks;
   const std::optional<int> number = number_in<int>(count);
   if (!number || *number < 1 || *number > most)
-    throw UsageError("{} says a number of {} that cannot be: give one from 1 to {}, as in {}:4",
-                     printable(name), known ? "threads" : "ranks", most, its_name);
+    throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4", printable(name),
+                     known ? "threads" : "ranks", most, its_name);
   if (known) {
     require_few_threads(*number, name);
     return &on_threads(**row, *number);
@@ -283,7 +283,7 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
   };
   std::ranges::for_each(folders_, look);
   if (in_table && !found.empty())
-    throw UsageError("{} is called like the backend {} of mssim; rename it", shown(found.front()), name);
+    throw UsageError("{} has the same name as mssim's backend {}; rename it", shown(found.front()), name);
   // A scene file may have any name.
   if (!in_table) std::ranges::for_each(scene_folders_, look);
   look(shipped_folder());
@@ -300,7 +300,7 @@ const BackendInfo& BackendChoice::add(BackendProgram program) {
     throw UsageError("a backend cannot be called {}: its name has characters that cannot be shown; rename it",
                      escaped(program.name));
   if (std::ranges::find(known_, program.name, &BackendInfo::name) != known_.end())
-    throw UsageError("{} is called like the backend {} of mssim; rename it", shown(program.program),
+    throw UsageError("{} has the same name as mssim's backend {}; rename it", shown(program.program),
                      program.name);
   for (const std::unique_ptr<Row>& row : rows_) {
     if (row->program.name != program.name) continue;

@@ -39,7 +39,7 @@ std::int64_t count_steps(const SimulationPlan& plan) {
 FrameGrid frame_grid(double frames_per_second, double dt_s) {
   const double steps_per_frame = 1 / (frames_per_second * dt_s);
   if (!(steps_per_frame >= 1))
-    throw UsageError("--fps {:.6g} is more than one frame a step of {:.6g} s; take --fps {:.6g} or less",
+    throw UsageError("--fps {:.6g} is more than one frame per step of {:.6g} s; take --fps {:.6g} or less",
                      frames_per_second, dt_s, dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s));
   return {steps_per_frame};
 }
@@ -185,7 +185,7 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   if (info.role != BackendRole::baseline)
     throw UsageError(
         "--precision double needs --backend {}, not \"{}\": the other backends of mssim compute in single "
-        "precision only, and a program in its own",
+        "precision only, and programs choose their own",
         baseline_backend().name, options.backend);
   return in_double(scene.system, integrator, scene.dt_s);
 }

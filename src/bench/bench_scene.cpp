@@ -65,10 +65,11 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
   if (const auto peak = peaks.find(peak_key(combination, size)); combination.on_host && peak != peaks.end())
     row.roofline_fraction = roofline_fraction(cost, seconds, peak->second);
   if (row.roofline_fraction && *row.roofline_fraction > 1)
-    append_sentence(row.note,
-                    three_digits(100 * *row.roofline_fraction) +
-                        " % of the roofline: faster than this machine was seen to do the work of a step; "
-                        "does it take all steps, or was the machine busy when its peak was measured?");
+    append_sentence(
+        row.note,
+        three_digits(100 * *row.roofline_fraction) +
+            " % of the roofline: faster than the measured peak of this machine allows; does the backend "
+            "take all steps, or was the machine busy when its peak was measured?");
 }
 
 /// Compares a backend with the reference.
@@ -148,7 +149,7 @@ void verify_second(Combination& combination, const SceneJob& job, const BackendI
   combination.backend->rest();
   ExecutionOptions execution = job.execution;
   execution.scene += "-small";  // a program may know scenes by their names
-  const std::string cannot = "failed: it does not step a small scene of the kind: ";
+  const std::string cannot = "failed: it does not step a small scene of the same kind: ";
   try {
     const auto backend = make_backend(info, stretch.system, *combination.integrator, job.dt_s, execution);
     if (const auto wrong = verify_second(*backend, stretch)) fail(combination, "failed: " + *wrong);
@@ -157,7 +158,7 @@ void verify_second(Combination& combination, const SceneJob& job, const BackendI
   } catch (const Unavailable& reason) {
     fail(combination, cannot + reason.what());
   } catch (const BackendFailure& failure) {
-    throw BackendFailure(std::string(failure.what()) + ", on a small scene of the kind", failure.output,
+    throw BackendFailure(std::string(failure.what()) + ", on a small scene of the same kind", failure.output,
                          failure.late);
   }
 }

@@ -183,7 +183,7 @@ std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
     if (!find(next, pairs))
       std::cerr << "mssim: only " << options.base << " has " << combination_name(time) << '\n';
     else if (!time.least_ms)
-      std::cerr << "mssim: " << options.base << " has no time of " << combination_name(time) << ": "
+      std::cerr << "mssim: " << options.base << " has no time for " << combination_name(time) << ": "
                 << time.status << '\n';
     else
       series.push_back({pairs});
@@ -209,7 +209,7 @@ bool add_round(Series& series, const std::vector<CombinationTime>& base,
   const CombinationTime *a = find(base, pairs), *b = find(next, pairs);
   if (!a || !a->least_ms) {
     std::cerr << fmt::format(
-        "mssim: {} had a time of {} and has none in a later round ({}); run it alone to see why\n",
+        "mssim: {} had a time for {} but has none in a later round ({}); run it alone to see why\n",
         options.base, combination_name(pairs), a ? a->status : "the row is missing");
     return false;
   }
@@ -313,7 +313,7 @@ RunComparison compare_programs(const AbOptions& options) {
       std::erase_if(
           series, [&](Series& one) { return !one.settled && !add_round(one, times[0], times[1], options); });
       if (series.empty())
-        throw UsageError("nothing is left to compare: {} has lost every combination, as is said above",
+        throw UsageError("nothing is left to compare: {} has lost every combination; see the messages above",
                          options.base);
       ++rounds;
       longest_s = std::max(longest_s, round_watch.seconds());

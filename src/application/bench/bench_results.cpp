@@ -40,7 +40,7 @@ bool is_finished(const BenchSettings& settings, const std::string& scene,
   if (asked != measured)
     throw UsageError("the folder has other backends or integrators of " + scene +
                      " than this command: --resume needs the same ones; choose another --out, "
-                     "or --overwrite to measure anew");
+                     "or --overwrite to measure again");
   return std::ranges::all_of(
       earlier, [&](const ResultRow& row) { return row.status != "ok" || row.rounds >= settings.rounds; });
 }
@@ -70,11 +70,12 @@ void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.status != "ok") return;
   const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
   if (row.samples_ms.empty())
-    throw UsageError(where + "no samples, though timings.csv says ok; measure the folder anew");
+    throw UsageError(where +
+                     "no samples, although its status in timings.csv is ok; measure the folder again");
   for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
     if (!(row.samples_ms[round] > 0 && row.samples_ms[round] <= longest_ms))
       throw UsageError(
-          "{}no time above zero in round {}, or one of more than 1e12 ms; measure the folder anew", where,
+          "{}no time above zero in round {}, or one of more than 1e12 ms; measure the folder again", where,
           round + 1);
 }
 
@@ -82,7 +83,7 @@ void require_samples(const ResultRow& row, const fs::path& folder) {
 void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
   if (!differences.empty())
     throw UsageError("--resume cannot continue in " + folder + ": " + join(differences, "; ") +
-                     "; choose another --out, or --overwrite to measure anew");
+                     "; choose another --out, or --overwrite to measure again");
 }
 
 std::string revision(const BuildInfo& build) {
@@ -157,8 +158,9 @@ void require_row(const std::vector<ResultRow>& rows, const std::string& scene, c
     return row.scene == scene && row.backend == backend.name && row.integrator == integrator.name;
   });
   if (!found)
-    throw UsageError("--verified {} has no row of {}, {}, {}: ask for what it has, or leave --verified out",
-                     folder, scene, backend.name, integrator.name);
+    throw UsageError(
+        "--verified {} has no row of {}, {}, {}: choose combinations that it has, or leave --verified out",
+        folder, scene, backend.name, integrator.name);
 }
 
 std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
@@ -191,7 +193,7 @@ std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance
                                      const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
   MeasuredRun earlier = read_run(folder);
   if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
-    throw UsageError("--verified cannot rely on {}: {}; leave it out to verify anew", folder,
+    throw UsageError("--verified cannot rely on {}: {}; leave it out to verify again", folder,
                      join(all, "; "));
   for (const SceneSpec& scene : scenes)
     for (const Integrator* integrator : settings.integrators)

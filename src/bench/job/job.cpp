@@ -69,7 +69,7 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
     combination.step_seconds = time_steps(steps) / steps;
     if (combination.step_seconds < least_step_s)
       return fail(combination,
-                  fmt::format("failed: its steps are not done when it says so: {} take less than 10 ns each",
+                  fmt::format("failed: it reports steps before they are done: {} take less than 10 ns each",
                               pluralize(steps, "step")));
     const int fit =
         sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
@@ -231,7 +231,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   if (found->device != row.device || found->threads != row.threads || found->nodes != row.nodes ||
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
     return fail(combination,
-                fmt::format("failed: verified was {}, and this is {}", subject_of(*found), subject_of(row)));
+                fmt::format("failed: {} was verified, but this is {}", subject_of(*found), subject_of(row)));
   static_cast<Agreement&>(row) = *found;
   row.dressing = found->dressing;
   row.verified = true;
@@ -288,12 +288,12 @@ void require_prompt_steps(Combination& combination) {
     return;
   const double sample = median(combination.sample_seconds), reading = median(combination.reading_seconds);
   if (reading - combination.step_reading_seconds.value_or(0) <= sample) return;
-  fail(combination,
-       fmt::format(
-           "failed: its steps are not done when it says so: it takes {:.6g} ms for {}, and then {:.6g} "
-           "ms to give the state, where that takes {:.6g} ms after one step",
-           1e3 * sample, pluralize(combination.steps, "step"), 1e3 * reading,
-           1e3 * combination.step_reading_seconds.value_or(0)));
+  fail(
+      combination,
+      fmt::format("failed: it reports steps before they are done: it takes {:.6g} ms for {}, and then {:.6g} "
+                  "ms to return the state, which takes {:.6g} ms after one step",
+                  1e3 * sample, pluralize(combination.steps, "step"), 1e3 * reading,
+                  1e3 * combination.step_reading_seconds.value_or(0)));
 }
 
 void summarise(ResultRow& row, const ResultRow* serial) {

@@ -321,17 +321,16 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
     noise.push_back("the frequency governor is \"" + *machine.governor +
                     "\": choose \"performance\" (cpupower frequency-set -g performance)");
   if (machine.turbo.value_or(false))
-    noise.emplace_back(
-        "turbo is on, so that the frequency depends on temperature and neighbours: turn it off");
+    noise.emplace_back("turbo is on, so the frequency depends on temperature and other cores: turn it off");
   const std::size_t cpus = provenance.allowed_cpus.size();
   if (provenance.threads > 1 && cpus > 0 && static_cast<std::size_t>(provenance.threads) > cpus)
-    noise.push_back(fmt::format("{} threads share {}: ask for fewer with --threads", provenance.threads,
+    noise.push_back(fmt::format("{} threads share {}: give fewer with --threads", provenance.threads,
                                 pluralize(cpus, "logical CPU")));
   if (machine.cpu_quota && provenance.threads > *machine.cpu_quota)
     noise.push_back(fmt::format(
-        "a quota of this container lets {} run for the time of {:.1f} processors and then stops them: {}",
+        "this container's quota limits {} to the time of {:.1f} processors: {}",
         pluralize(provenance.threads, "thread"), *machine.cpu_quota,
-        provenance.threads > 1 ? "ask for fewer with --threads, or raise the quota" : "raise the quota"));
+        provenance.threads > 1 ? "give fewer with --threads, or raise the quota" : "raise the quota"));
   if (provenance.threads > 1 && !binds_threads(provenance))
     noise.emplace_back("threads may move from CPU to CPU: set OMP_PROC_BIND=true");
   return noise;

@@ -215,7 +215,8 @@ Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth,
     if (error <= tolerance || error / tolerance <= worst) continue;
     worst = error / tolerance;
     result.failure = fmt::format(
-        "position error {:.6g} of a rest length exceeds {:.6g}{} in the window from row {} and column {} on",
+        "position error {:.6g} of a rest length exceeds {:.6g}{} in the window that starts at row {} and "
+        "column {}",
         error, tolerance, after, one.window.row, one.window.column);
   }
   result.energy_drift = energy_off / in_motion;
