@@ -6,7 +6,7 @@
 namespace mssim {
 namespace {
 
-/// The samples that an undecided row would need, why a row is lost; nothing for others.
+/// The samples that an undecided row needs, or why a row is lost; empty for others.
 Cell remark(const ComparedRow& row) {
   if (row.verdict == Verdict::lost) return row.reason;
   if (row.verdict != Verdict::undecided) return {};
