@@ -111,13 +111,14 @@ class ClusterRows {
 };
 
 constexpr std::string_view how_to_read_clusters =
-    "Times are medians. *Computing*, *packing* and *waiting*: how the processes share the time of a step, on "
-    "average; packing is all that the processor does for messages but wait for them. *Bytes* and *messages*: "
-    "what the process with most sends in a step. *Efficiency*: nodes a second over those of one process, and "
-    "over the number of processes. *Against copies*: nodes a second over those of as many processes that "
-    "each step the whole scene for themselves (`mpi-copies`), which share the memory as well and send "
-    "nothing. *Model*: what computing as fast as these copies, and the latency and bandwidth of messages as "
-    "measured before the first step, add up to; in brackets over the measured time.";
+    "Times are medians. *Computing*, *packing* and *waiting*: shares of the time per step, averaged over the "
+    "processes; packing is all work on messages except waiting. *Bytes* and *messages*: sent per step by the "
+    "process that sends most. *Efficiency*: nodes per second, divided by those of one process and by the "
+    "number of processes. *Against copies*: nodes per second, divided by those of as many processes that "
+    "each "
+    "step the whole scene (`mpi-copies`); these share the memory too, but send nothing. *Model*: the time of "
+    "computing as fast as these copies plus that of messages, from the latency and bandwidth measured before "
+    "the first step; in brackets, divided by the measured time.";
 
 std::optional<double> computing_share(const ResultRow& row) {
   if (!row.waiting_share || !row.packing_share) return std::nullopt;
@@ -222,7 +223,7 @@ std::string verdict_on_model(const ClusterRows& rows) {
     ++count;
   }
   if (count == 0) return "";
-  return fmt::format("The model is within {} % of the measured time in {} that it is made for",
+  return fmt::format("The model is within {} % of the measured time in {} that it covers",
                      two_digits(100 * worst), count == 1 ? "the row" : fmt::format("all {} rows", count));
 }
 
@@ -240,8 +241,8 @@ std::string links_of(const ClusterRows& rows) {
     const std::string first = three_digits(low), last = three_digits(high);
     return first == last ? first : fmt::format("{} to {}", first, last);
   };
-  return "A message of 8 bytes to a neighbour took " + range(latencies) + " µs, one of 64 KiB went with " +
-         range(bandwidths) + " GB/s while another one came";
+  return "A message of 8 bytes to a neighbour took " + range(latencies) + " µs; one of 64 KiB reached " +
+         range(bandwidths) + " GB/s while another one arrived";
 }
 
 bool is_weak(const ClusterRow& row) { return row.scene.times > 1; }
@@ -278,7 +279,7 @@ Document page_of(const ClusterRows& rows, RowPointers pointers, const Provenance
                 [](const ClusterRow& row) { return !is_weak(row); });
     const bool has_weak = std::ranges::any_of(
         rows.all(), [&](const ClusterRow& row) { return row.scene.base == family.first && is_weak(row); });
-    if (has_weak) add_section(family, name + nodes + " a process (weak scaling)", is_beside_weak);
+    if (has_weak) add_section(family, name + nodes + " per process (weak scaling)", is_beside_weak);
   }
   add_rows_without_a_time(page, pointers);
   return page;

@@ -10,7 +10,7 @@ namespace {
 Cell remark(const ComparedRow& row) {
   if (row.verdict == Verdict::lost) return row.reason;
   if (row.verdict != Verdict::undecided) return {};
-  return row.samples_needed ? fmt::format("{} samples a side would decide", *row.samples_needed)
+  return row.samples_needed ? fmt::format("{} samples per side would decide", *row.samples_needed)
                             : "many samples would be needed";
 }
 

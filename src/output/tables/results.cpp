@@ -146,7 +146,7 @@ std::string legend_of_excess(RowPointers rows, const Provenance& provenance) {
     if (const int asked = asked_processors(provenance, row->backend).count; exceeds(*row, asked))
       backends.insert(fmt::format("{} ({} instead of {})", row->backend, row->threads, asked));
   if (backends.empty()) return {};
-  return fmt::format("(!) on more processors than asked for: {}", fmt::join(backends, ", "));
+  return fmt::format("(!) on more processors than requested: {}", fmt::join(backends, ", "));
 }
 
 std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than) {

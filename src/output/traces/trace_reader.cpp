@@ -33,7 +33,7 @@ void read_series(hid_t file, TraceContent& content) {
   const auto [fewest, most] = std::minmax({step.rows(), time.rows(), positions.rows(), velocities.rows()});
   if (most - fewest > 1)
     throw Hdf5ContentError(fmt::format(
-        "steps, times, positions and velocities are of unlike numbers of frames, {} to {}", fewest, most));
+        "steps, times, positions and velocities have different numbers of frames, {} to {}", fewest, most));
   if (fewest == 0) throw Hdf5ContentError("it has no frames");
   if (positions.extent(1) > std::numeric_limits<std::uint32_t>::max())
     throw Hdf5ContentError(position + "/value has more nodes than mssim can number");
@@ -103,7 +103,7 @@ Surface read_static_body(hid_t file) {
 
 namespace fs = std::filesystem;
 
-constexpr const char* remedy = "give a whole trace that mssim run --trace wrote";
+constexpr const char* remedy = "give a complete trace that mssim run --trace wrote";
 
 std::string sentence(const fs::path& file, const std::string& problem, const std::string& what_to_do) {
   return fmt::format("{}: {}: {}", printable(file.string(), 1000), printable(problem, 500), what_to_do);
@@ -130,7 +130,7 @@ auto explained(const fs::path& file, const Read& read) {
 void require_file(const fs::path& file) {
   if (file.extension() == ".xdmf") {
     const fs::path trace = fs::path(file).replace_extension(".h5");
-    throw TraceError(sentence(file, "this describes a trace to viewers",
+    throw TraceError(sentence(file, "this is the XDMF of a trace, for viewers",
                               "give the trace, " + printable(trace.string(), 1000)),
                      false);
   }
