@@ -85,7 +85,7 @@ ensure_packages() {
     local spare
     spare=$(awk -v missing=" ${missing[*]} " '!/^#/ && $3 == "spare" && index(missing, " " $1 " ") { printf " %s", $1 }' \
       "$root/scripts/packages.txt")
-    say "these Debian packages are missing, and this user may not install packages; ask who may for: apt-get $install" \
+    say "these Debian packages are missing, and this user may not install packages; ask an administrator for: apt-get $install" \
       "${spare:+(mssim builds and runs without$spare: cmake --preset release -S ${root@Q} -B ELSEWHERE -D BUILD_TESTING=OFF)}"
     exit "$exit_missing"
   }
