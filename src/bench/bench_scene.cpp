@@ -110,7 +110,7 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
   return [&job, refer, reference = std::move(reference)](Combination& combination) mutable {
     Verification found =
         verify(*combination.backend, *job.system, reference, job.dt_s, combination.steps_taken);
-    if (found.failure && reference.recalled) {  // no row fails by what a file says
+    if (found.failure && reference.recalled) {  // a cached file must not make a row fail
       reference = refer(true);
       found = verify(*combination.backend, *job.system, reference, job.dt_s);
     }

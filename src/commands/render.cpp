@@ -131,7 +131,7 @@ int render(const RenderOptions& options) {
   // Checked before anything is simulated.
   if (sheet_size(options)) require_font();
   if (options.movie && options.run.fps && (*options.run.fps < 0.1 || *options.run.fps > 1000))
-    throw UsageError("--fps: a movie has 0.1 to 1000 frames a second, not " + decimal(*options.run.fps));
+    throw UsageError("--fps: a movie has 0.1 to 1000 frames per second, not " + decimal(*options.run.fps));
   if (options.movie && !options.movie->empty() && !options.out.empty())
     throw UsageError("--movie and --out both name the file: \"{}\" and \"{}\"; leave one of them out",
                      printable(*options.movie), printable(options.out));

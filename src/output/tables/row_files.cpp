@@ -197,7 +197,7 @@ void read_samples(const CsvTable& table, std::span<ResultRow> rows) {
     if (found == row_of.end()) continue;
     ResultRow& row = *found->second;
     if (table.count(record, 3) != row.samples_ms.size() + 1)
-      throw table.complaint(record, 3, "is not the next round of its row; measure anew without --resume");
+      throw table.complaint(record, 3, "is not the next round of its row; measure again without --resume");
     Place{table, record, 4}.read(row.sample_steps.emplace_back());
     row.samples_ms.push_back(table.number(record, 5));
   }

@@ -24,7 +24,7 @@ constexpr std::string_view how_to_read_races =
     "Springs that threads process at the same time add to the forces of nodes that they share: the data race "
     "of Figure 1 of Hong et al. (2016). Each line is a method to avoid it. All but `gather-vectors` and "
     "`openmp`, which have vectors and layouts of their own, step the list of springs that `serial` steps, "
-    "with the same layout, force and update, and differ in the accumulation alone. Times are medians with "
+    "with the same layout, force and update, and only differ in the accumulation. Times are medians with "
     "their 95 % interval; *ratio* is how many times as fast as `serial` a method is, the median of paired "
     "samples. *Same bits* says whether a run repeated gives the very same numbers.";
 
@@ -133,9 +133,8 @@ Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base,
 Document page_of(RowPointers rows, const std::string& base, const Provenance& provenance) {
   Document page{
       Heading{1, "Scaling: cost of a node in ever larger cloths"}, measured_on(rows, provenance),
-      Paragraph{"Nanoseconds a node and step, medians; in brackets how many times as much as the same "
-                "backend takes on `" +
-                base + "`. Where a line stays at 1, the cost grows with the number of nodes and no faster."}};
+      Paragraph{"Nanoseconds per node and step, medians; in brackets relative to the same backend on `" +
+                base + "`. If a line stays at 1, the cost is proportional to the number of nodes."}};
   const std::vector<std::string> scenes = each_of(rows, &ResultRow::scene);
   std::vector<Column> columns{{"backend"}};
   for (const std::string& scene : scenes) {
