@@ -494,7 +494,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     watch.after_round(rows_of(all, size, peaks));
     measured_any = true;
   }
-  // Fewer rounds than the deadline let expect: one more, whose times do not count.
+  // The deadline allowed fewer rounds than expected: take one more, whose times do not count.
   if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
   for (Combination& combination : all) {
     if (combination.backend) require_prompt_steps(combination);

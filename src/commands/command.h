@@ -18,6 +18,7 @@ struct Command {
   std::function<int()> (*declare)(Arguments& arguments);
 };
 
+/// The TABLE.
 std::span<const Command> commands();
 
 /// Command::declare of each command, defined in the file of the command's name.

@@ -133,6 +133,7 @@ struct AskedProcessors {
   std::string_view backend;  ///< without the threads in the row's name: "openmp" for "openmp:2"
   int count = 0;
 };
+/// The backend and the requested processors of a row, from its name and the provenance.
 inline AskedProcessors asked_processors(const Provenance& provenance, std::string_view row_name) {
   for (const BackendProgramRecord& program : provenance.backend_programs)
     if (program.name == row_name)

@@ -56,6 +56,7 @@ struct MeanRatio {
   double ratio = 1;
 };
 
+/// A comparison of two runs, BASE and NEW.
 struct RunComparison {
   double threshold = 0.05;  ///< smallest change that matters, as a fraction
   std::vector<ComparedRow> rows;

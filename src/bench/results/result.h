@@ -44,6 +44,7 @@ struct MeasuredCosts {
       link_gigabytes_per_second;
 };
 
+/// A row's samples.
 struct Samples {
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample

@@ -81,7 +81,7 @@ double working_set_bytes(const Integrator& integrator, const StepSize& size);
 
 /// Peak rates of this machine with a number of threads: the roofs of the roofline.
 struct MachinePeak {
-  double bytes_per_second = 0;  ///< triad a = b + s c, 12 bytes an element (two loads, one store)
+  double bytes_per_second = 0;  ///< triad a = b + s c, 12 bytes per element (two loads, one store)
   double flops_per_second = 0;  ///< fused multiply-adds in single precision, two operations each
 };
 

@@ -27,6 +27,7 @@ using ValueRule = std::function<std::string(std::string& text)>;
 ValueRule positive_number();
 /// Accepts numbers from `low` to `high`.
 ValueRule number_between(double low, double high);
+/// Accepts whole numbers from `low` to `high`.
 ValueRule whole_number(std::int64_t low, std::int64_t high);
 /// Accepts one whole number, or several different ones separated by commas.
 ValueRule whole_numbers(std::int64_t low, std::int64_t high);

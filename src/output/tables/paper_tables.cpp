@@ -190,7 +190,7 @@ class PaperTable {
     });
   }
 
-  /// In the order of the tables.
+  /// The rows that are shown, in the order of the tables.
   std::vector<const ResultRow*> shown_rows() const {
     std::vector<const ResultRow*> shown;
     for (const auto& integrator : legend_.integrators)

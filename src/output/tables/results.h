@@ -20,8 +20,10 @@ namespace mssim {
 
 // Files of measured rows.
 
+/// Rows of a table, by address.
 using RowPointers = std::span<const ResultRow* const>;
 
+/// The addresses of the rows, which must outlive them.
 std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows);
 
 /// A column of a table of rows: its heading and the function that makes its cells.
@@ -37,7 +39,9 @@ struct RowColumn {
       : head(std::move(column)), value(std::move(cell)) {}
 };
 
+/// The headings of these columns.
 std::vector<Column> heads_of(const std::vector<RowColumn>& columns);
+/// The cells of the row in these columns.
 std::vector<Cell> cells_of(const ResultRow& row, const std::vector<RowColumn>& columns);
 
 /// A line for each row; without rows, no columns.
@@ -98,6 +102,7 @@ std::string row_table(RowPointers rows, const Provenance& provenance, const Term
 /// The rows of a comparison and the geometric means of their ratios.
 Document comparison_page(const RunComparison& comparison);
 
+/// Format of a printed comparison.
 enum class ComparisonFormat { table, markdown, json };
 
 /// A comparison as columns for a terminal, as its page in Markdown, or as one JSON object {threshold,

@@ -20,6 +20,7 @@ struct PaperConfiguration {
   std::string_view name;
   std::string_view caption;
 };
+/// The configurations of the paper.
 inline constexpr auto paper_configurations = std::to_array<PaperConfiguration>({
     {"cpu-only", "CPU only"},
     {"multi-thread-cpu", "Multi-thread CPU"},
@@ -33,6 +34,7 @@ struct PublishedTableInfo {
   std::string_view title;            ///< its subject, and its number in the paper
   std::string_view springs_counted;  ///< how often the published counts include each spring
 };
+/// The TABLE of published tables of times.
 inline constexpr auto published_table_kinds = std::to_array<PublishedTableInfo>({
     {"table1", "Cloth: Table 1 of Hong et al. (2016)", "twice"},
     {"table3", "Bodies: Table 3 of Hong et al. (2016)", "three times"},
@@ -198,6 +200,7 @@ struct WideScene {
   std::string_view base;
   int times = 1;
 };
+/// Splits such a name; any other name is its own base, `times` 1.
 WideScene wide_scene(std::string_view scene);
 
 /// Number of stages by name of integrator.

@@ -50,6 +50,7 @@ struct Cell {
 /// `by_content`: right-aligned if all cells of the column are numbers or nothing.
 enum class Align : std::uint8_t { by_content, left, right };
 
+/// A column's heading and how its cells are shown.
 struct Column {
   std::string name;
   Align align = Align::by_content;
@@ -100,6 +101,7 @@ std::string csv_line(const std::vector<std::string>& fields);
 /// The shortest decimal that reads back as the same number. Throws std::invalid_argument unless it is finite.
 std::string csv_number(double value);
 
+/// The table as a JSON array with an object per row, whose keys are the columns.
 nlohmann::ordered_json table_json(const Table& table);
 
 /// JSON as mssim writes it: indented by two, with a final line feed. Bytes that are not UTF-8 are replaced (a
@@ -114,12 +116,15 @@ struct Heading {
   int level = 1;
   std::string text;
 };
+/// Running text.
 struct Paragraph {
   std::string text;
 };
+/// A list with one bullet per item.
 struct BulletList {
   std::vector<std::string> items;
 };
+/// A page: its blocks from top to bottom.
 using Document = std::vector<std::variant<Heading, Paragraph, BulletList, Table>>;
 
 /// Adds a paragraph with the sentence and a full stop; nothing for an empty one.

@@ -66,6 +66,7 @@ struct XdmfMesh {
   /// Bytes of a number in positions and velocities.
   std::size_t bytes_per_number() const { return in_double ? sizeof(double) : sizeof(float); }
 };
+/// The XDMF mesh of a trace with this shape, number of nodes and body.
 XdmfMesh xdmf_mesh_of(const NodeShape& shape, std::size_t nodes, const Surface& body, bool in_double = false);
 
 /// Path in the trace of the tetrahedra of bodies, [tetrahedra][4] uint32.
