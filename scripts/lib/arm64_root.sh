@@ -1,13 +1,13 @@
 # shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
-# The libraries for arm64 that scripts/test --arm64 links with and loads. Sourced, after prepare.sh.
+# The libraries for arm64 with which scripts/test --arm64 links. Sourced after prepare.sh.
 #
-# They go into a folder of their own and not into this machine as packages of a second architecture: dpkg may refuse
-# those, or remove others for them, and a foreign architecture stays. Nothing here needs to be root.
+# They have a folder of their own, and are not installed as packages of a second architecture: dpkg may refuse those, or remove others for
+# them, and a foreign architecture remains. Root is not needed.
 
-# ensure_arm64_root: fills build/arm64-root, unless it holds what scripts/packages.txt asks for already.
+# ensure_arm64_root: fills build/arm64-root, unless it has the packages of scripts/packages.txt already.
 ensure_arm64_root() {
   local folder=$root/build/arm64-root new=$root/build/arm64-root.new log=$root/build/arm64-root.log lock
-  # The last two belong to the compiler, which comes with them for this machine alone.
+  # The last two belong to the compiler, whose package brings them only for this machine's architecture.
   local -a wanted
   mapfile -t wanted < <(packages_for library && printf '%s\n' libstdc++6 libgomp1)
   make_folder "$root/build"
@@ -18,7 +18,7 @@ ensure_arm64_root() {
     rm -rf "$new"
     mkdir -p "$new/apt/lists/partial" "$new/apt/archives/partial"
     : >"$new/apt/status"
-    # A package manager's state of its own, as of a machine on which nothing is installed yet.
+    # A separate state of the package manager, in which nothing is installed.
     local -a apt=(apt-get -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Dir::State="$new/apt"
       -o Dir::State::status="$new/apt/status" -o Dir::Cache="$new/apt" -o APT::Sandbox::User="$(id -un)")
     {
@@ -30,9 +30,9 @@ ensure_arm64_root() {
       say "the libraries for arm64 could not be fetched; this needs network access and Debian's package archive"
       exit "$exit_missing"
     }
-    # What the package's installation script would do.
+    # The work of the package's installation script.
     ln -s hdf5-serial.pc "$new/usr/lib/aarch64-linux-gnu/pkgconfig/hdf5.pc"
-    # The linker that PoCL is to find (see run_arm64): of this machine, but with the libraries in the folder.
+    # The linker for PoCL (see run_arm64): a program of this machine that uses the libraries in the folder.
     mkdir "$new/host"
     cat >"$new/host/aarch64-unknown-linux-gnu-ld" <<'END'
 #!/bin/sh

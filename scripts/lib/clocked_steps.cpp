@@ -1,8 +1,7 @@
 // Cycles that openmp takes for sixteen nodes and for sixteen springs, for scripts/port-bound:
 //   clocked_steps SCENE...
-// with one thread and semi-euler. Steps and a chain of operations of known length are timed by turns, because
-// the clock of a processor changes from one millisecond to the next, and falls where its widest vectors are
-// busy.
+// with one thread and semi-euler. Steps alternate with a chain of operations of known length, because the
+// clock frequency changes from one millisecond to the next, and drops while the widest vector units are busy.
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
@@ -28,15 +27,15 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A chain of operations, each of which waits for the one before.
+/// A chain of operations, each of which depends on the previous one.
 struct Chain {
-  std::size_t cycles;  ///< of all of it
+  std::size_t cycles;  ///< of the whole chain
   void (*run)();
 };
-constexpr std::size_t turns_of_chain = 12'000, operations = 16;  // some 60 microseconds
+constexpr std::size_t turns_of_chain = 12'000, operations = 16;  // about 60 microseconds
 
-/// Additions take a cycle each. Of two registers: Intel's newer processors add constants on the way to the
-/// units, several in a cycle.
+/// An addition takes one cycle. It uses two registers, because Intel's newer processors add constants before
+/// the units, several per cycle.
 void add() {
   unsigned long sum = 1;
   const unsigned long summand = 3;
@@ -53,8 +52,8 @@ void add() {
 #if defined(__x86_64__)
 constexpr std::size_t multiply_add_cycles = 4;
 /// Multiply-adds of 512 bits take four cycles on every processor that has them (Intel since Skylake, AMD
-/// since Zen 4). Of zeros: what lies in the registers may be denormal, for which some processors take many
-/// more.
+/// since Zen 4). The registers are set to zero, because they may have denormal numbers, with which some
+/// processors take many more cycles.
 void multiply_add() {
   asm volatile(
       "vpxord %zmm16, %zmm16, %zmm16\n vpxord %zmm17, %zmm17, %zmm17\n vpxord %zmm18, %zmm18, %zmm18");
@@ -92,7 +91,7 @@ void measure(const char* file, const Chain& chain) {
   const double nodes = static_cast<double>(scene.system.nodes()) / 16;
   const double springs = static_cast<double>(scene.system.springs.size()) / 16;
   std::printf(
-      "%s: %.4g ms a step with one thread at %.2f GHz, %.1f cycles for sixteen nodes "
+      "%s: %.4g ms per step with one thread at %.2f GHz, %.1f cycles for sixteen nodes "
       "(half of the turns: %.1f to %.1f), %.1f for sixteen springs\n",
       scene.spec.name.c_str(), median(step_s) * 1e3, 1e-9 / median(cycle_s), median(cycles) / nodes,
       quantile(cycles, 0.25) / nodes, quantile(cycles, 0.75) / nodes, median(cycles) / springs);

@@ -1,21 +1,21 @@
 # shellcheck shell=bash
-# What Open MPI needs to be told here. Sourced; sets variables of the environment, which the user's own go before.
+# Settings for Open MPI. Sourced; sets environment variables, unless the user has set them.
 
-# As root, in a container say, mpirun runs nothing unless it is told twice that it may.
+# As root, for example in a container, mpirun refuses to run unless two variables allow it.
 allow_root_ranks() {
   if [ "$(id -u)" -eq 0 ]; then
     export OMPI_ALLOW_RUN_AS_ROOT=${OMPI_ALLOW_RUN_AS_ROOT-1} OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=${OMPI_ALLOW_RUN_AS_ROOT_CONFIRM-1}
   fi
 }
 
-# The same, and mpirun starts more ranks than there are processors: mssim verifies such rows, and gives them no time.
+# Also lets mpirun start more ranks than there are processors: mssim verifies such rows without timing them.
 allow_ranks() {
   allow_root_ranks
   export OMPI_MCA_rmaps_base_oversubscribe=${OMPI_MCA_rmaps_base_oversubscribe-1}
 }
 
-# The same, as tests have it: ranks let each other run while they wait. Messages are copied through shared memory, because
-# containers forbid reading the memory of another process.
+# Also for tests: waiting ranks yield to others. Messages are copied through shared memory, because containers forbid reading the memory of
+# another process.
 let_ranks_share() {
   allow_ranks
   export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle-1}

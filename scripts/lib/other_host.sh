@@ -1,11 +1,10 @@
 # shellcheck shell=bash
-# Another machine, for programs that MPI starts: a network namespace of this one with a name and an address of its own, which a pair
-# of virtual network devices joins. Sourced, after lib/mpi.sh. Needs root.
+# Another machine for programs that MPI starts: a network namespace of this machine with its own name and address, connected by a pair of
+# virtual network devices. Sourced after lib/mpi.sh. Needs root.
 
-# make_other_host FOLDER [DELAY_US]: makes it, and sets `hosts`, the launcher of MPI for a rank here and one there. A file in
-# FOLDER stands for ssh. Each rank gets a processor of its own where there are two. Messages are late by DELAY_US microseconds
-# each way, where the kernel can do that. Where something is not allowed, says what and returns 1; remove_other_host may be called
-# then too.
+# make_other_host FOLDER [DELAY_US]: makes it, and sets `hosts`, the launcher of MPI for a rank here and one there. A file in FOLDER
+# replaces ssh. Each rank gets its own processor if there are two. Messages are delayed by DELAY_US microseconds each way, if the kernel
+# supports that. If something is not permitted, prints a message and returns 1; remove_other_host may be called then too.
 make_other_host() {
   local command network=10.$((64 + $$ % 64)).$(($$ / 64 % 256)) last=$(($(nproc) - 1))
   other_space=mssim$$ other_near=msa$$

@@ -1,14 +1,14 @@
 # shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
-# The peers that mssim is held against. Sourced after prepare.sh.
+# The peers that mssim is compared with. Sourced after prepare.sh.
 # shellcheck source=scripts/lib/python_packages.sh
 . "$root/scripts/lib/python_packages.sh"
 
 compiled_peers=(cpp-list cpp-gather cpp-gather-clang halide-window)
 
-# compile_peer NAME PROGRAM: compiles one of them. The gathers are compiled with -ffast-math, which mssim itself never is: they stand
-# for the fastest that this can be written, as Numba's peers do with fastmath. It reorders sums and estimates reciprocal roots. That
-# costs no digit that shows: after 100 steps cloth2500 was 2.036e-5 of a rest length from the reference and cloth350k 6.676e-4, where the
-# list of springs was 2.034e-5 and 6.669e-4. tests/commands/peers_test.sh holds it to mssim's tolerance, and each row's note names the flag.
+# compile_peer NAME PROGRAM: compiles a peer. The gathers are compiled with -ffast-math, which mssim itself never uses: like Numba's peers
+# with fastmath, they represent the fastest form. It reorders sums and estimates reciprocal roots. The effect on the error is small: after
+# 100 steps cloth2500 was 2.036e-5 of a rest length from the reference and cloth350k 6.676e-4, and the list of springs 2.034e-5 and
+# 6.669e-4. tests/commands/peers_test.sh checks mssim's tolerance, and each row's note names the flag.
 compile_peer() {
   local compiler=c++ way='spring list' version source=$root/scripts/lib/peers/${1%-clang}.cpp flags=(-std=c++17 -O3 -march=native) libraries lines
   [[ $1 != *-clang ]] || compiler=clang++
@@ -26,7 +26,7 @@ compile_peer() {
     -DPEER_NOTE="\"${compiler/#c++/g++} $version, ${flags[*]:1}; $way; $lines lines\"" "$source" "${libraries[@]}" -o "$2"
 }
 
-# ensure_peers: build/peers with the packages of scripts/peers.txt and the compiled peers, or says why not and exits.
+# ensure_peers: makes build/peers with the packages of scripts/peers.txt and the compiled peers, or exits with a message.
 ensure_peers() {
   ensure_python peers 'the peers, in Python'
   local log=$root/build/peers-cpp.log name

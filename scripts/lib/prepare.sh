@@ -1,15 +1,15 @@
 # shellcheck shell=bash
-# What the scripts share: help, packages and builds. Sourced, with `set -euo pipefail`.
-# Messages go to stderr, and nothing is printed when there is nothing to do.
+# Shared functions of the scripts: help, packages and builds. Sourced, with `set -euo pipefail`. Messages go to stderr; without work to do,
+# nothing is printed.
 
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." >/dev/null && pwd -P)
 
-# Exit code of mssim for a device or program that was asked for and is missing.
+# Exit code of mssim for a missing device or program.
 readonly exit_missing=3
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
-# timed PROGRAM ARGUMENT...: runs it, says how long it took, and returns its exit code.
+# timed PROGRAM ARGUMENT...: runs it, prints its time, and returns its exit code.
 timed() {
   local start=$SECONDS code=0
   "$@" || code=$?
@@ -17,8 +17,8 @@ timed() {
   return "$code"
 }
 
-# measured_on CLONE: for a page of results: the processor, the commit of the clone, ", changed" where its files were, beside
-# results, and the time.
+# measured_on CLONE: for a page of results: the processor, the commit of the clone, ", changed" if files other than results were modified,
+# and the time.
 measured_on() {
   awk -F ': *' -v processors="$(nproc)" '
     { sub(/[ \t]+$/, "", $1) }
@@ -39,7 +39,7 @@ answer_help() {
   done
 }
 
-# packages_for KIND...: the names of the packages of these kinds, but those of another Debian release.
+# packages_for KIND...: the names of the packages of these kinds, except those of another Debian release.
 packages_for() {
   local release
   release=$(. /etc/os-release && echo "${VERSION_ID-}")
@@ -51,13 +51,13 @@ packages_for() {
 missing_packages() {
   local -a wanted
   mapfile -t wanted < <(packages_for "$@")
-  # dpkg-query fails when it does not know one of them; what it does know is told all the same.
+  # dpkg-query fails if it does not know one of them, but still lists the others.
   comm -23 <(printf '%s\n' "${wanted[@]}" | sort) \
     <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
       awk '$1 == "installed" { print $2 }' | sort)
 }
 
-# can_write FOLDER: whether this user can build in it, or make it.
+# can_write FOLDER: whether this user can build in it, or create it.
 can_write() {
   local folder=$1
   [[ ! -e $folder/.lock || -w $folder/.lock ]] || return 1
@@ -65,16 +65,16 @@ can_write() {
   [[ -w $folder ]]
 }
 
-# make_folder FOLDER: makes a folder to build in, or says that this user cannot, where to build instead, and exits.
+# make_folder FOLDER: creates a folder for a build, or reports that this user cannot, proposes another place, and exits.
 make_folder() {
   can_write "$1" && mkdir -p "$1" && return
   say "$1 cannot be written by this user; to build elsewhere: cmake --preset release -S ${root@Q} -B ELSEWHERE && ninja -C ELSEWHERE mssim && ELSEWHERE/bin/mssim"
   exit "$exit_missing"
 }
 
-# ensure_packages KIND...: installs those that are missing, or says which and exits.
+# ensure_packages KIND...: installs missing packages, or names them and exits.
 ensure_packages() {
-  # Elsewhere than on Debian the libraries come from elsewhere too, and CMake names the one it does not find.
+  # On other systems than Debian, libraries have other sources, and CMake names a missing one.
   command -v dpkg-query >/dev/null || return 0
   local -a missing as_root=()
   mapfile -t missing < <(missing_packages "$@")
@@ -85,14 +85,14 @@ ensure_packages() {
     local spare
     spare=$(awk -v missing=" ${missing[*]} " '!/^#/ && $3 == "spare" && index(missing, " " $1 " ") { printf " %s", $1 }' \
       "$root/scripts/packages.txt")
-    say "these Debian packages are missing, and this user may not install packages; ask who may for: apt-get $install" \
+    say "these Debian packages are missing, and this user may not install packages; ask an administrator for: apt-get $install" \
       "${spare:+(mssim builds and runs without$spare: cmake --preset release -S ${root@Q} -B ELSEWHERE -D BUILD_TESTING=OFF)}"
     exit "$exit_missing"
   }
   make_folder "$root/build"
   say "installing ${missing[*]} (log: $log)"
-  # Lists of packages that are there often suffice, and fetching them takes seconds. An update that fails, or fails in part, is no
-  # reason to stop: what decides is whether the packages can be installed.
+  # Existing lists of packages often suffice, and fetching them takes seconds. A failed update is no reason to stop, only a failed
+  # installation.
   # shellcheck disable=SC2086 # the words of $install are arguments of their own
   for update in true "${as_root[*]} apt-get update"; do
     $update || true
@@ -103,11 +103,11 @@ ensure_packages() {
   exit "$exit_missing"
 }
 
-# The lines of ninja that something is compiled or linked.
+# Lines of ninja that show compiling or linking.
 readonly compiles='^\[[^ ]*\] .*(Building|Linking)'
 
-# follow_build NAME LOG: reads ninja's output, keeps it in LOG, and says once when there is something to compile; on a
-# terminal it shows how far the build has come.
+# follow_build NAME LOG: reads ninja's output, keeps it in LOG, and prints a message once there is something to compile; on a terminal it
+# shows the progress of the build.
 follow_build() {
   local name=$1 log=$2 line said='' width=${COLUMNS:-80}
   while IFS= read -r line; do
@@ -120,26 +120,26 @@ follow_build() {
   [[ -z $said || ! -t 2 ]] || printf '\r\033[K' >&2
 }
 
-# fail_build LOG: shows why, and exits.
+# fail_build LOG: prints the cause, and exits.
 fail_build() {
-  # From the first failure on; all of it when it is CMake that failed.
+  # From the first failure on; everything if CMake failed.
   awk '/^FAILED: / { found = 1 } { line[NR] = $0; if (found && !first) first = NR }
        END { for (i = first ? first : 1; i <= NR; ++i) print line[i] }' "$1" >&2
   say "the build failed; its whole log is $1"
   exit "$exit_missing"
 }
 
-# is_configured FOLDER: whether it builds this source; one that was copied along with its repository would go on building the original.
+# is_configured FOLDER: whether it builds this source; a folder copied with its repository would still build the original.
 is_configured() { grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$1/CMakeCache.txt"; }
 
-# is_built PRESET: whether there is an mssim in build/PRESET, built here.
+# is_built PRESET: whether build/PRESET has an mssim that was built here.
 is_built() {
   [[ -x $root/build/$1/bin/mssim ]] && is_configured "$root/build/$1"
 }
 
-# build PRESET [TARGET...]: brings build/PRESET up to date. Of several at the same time one builds and the others wait.
+# build PRESET [TARGET...]: updates build/PRESET. Of several at the same time, one builds and the others wait.
 build() {
-  # Not a name that a script may have for a folder that it removes at its end: its trap sees this one if the build fails.
+  # A name that no script uses for a folder that it removes at its end: if the build fails, its trap sees this variable.
   local preset=$1 build_folder=$root/build/$1 lock
   shift
   make_folder "$build_folder"

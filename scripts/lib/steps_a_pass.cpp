@@ -47,7 +47,7 @@ class Thieves {
   }
 
  private:
-  /// On the last processors: on one that steps, it would take time and not bandwidth.
+  /// Uses the last processors; on a processor that steps, it would take time instead of bandwidth.
   [[noreturn]] static void steal(int before) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     cpu_set_t own;

@@ -25,7 +25,7 @@
 namespace mssim {
 namespace {
 
-/// Those that the process may use, or as many as a container's quota of processor time amounts to.
+/// Number of processors that the process may use, limited by a container's quota of processor time.
 int usable_processors() {
   const int processors = omp_get_num_procs();
   const std::optional<double> quota = container_limits().processors;
@@ -48,7 +48,7 @@ std::optional<fs::path> user_folder() {
   return std::nullopt;
 }
 
-/// The folder of those that come with mssim.
+/// The folder of the descriptions that come with mssim.
 fs::path shipped_folder() { return data_folder() / "backends"; }
 
 bool is_file(const fs::path& path) {
@@ -60,7 +60,7 @@ bool is_path(const std::string& name) { return name.find('/') != std::string::np
 
 std::string shown(const fs::path& path) { return escaped(path.string()); }
 
-/// The program at a path that the command line names.
+/// The program at a path from the command line.
 BackendProgram program_at(const std::string& path) {
   if (!is_file(path))
     throw MissingProgram("there is no program " + escaped(path) +
@@ -76,9 +76,10 @@ BackendProgram program_at(const std::string& path) {
   return program;
 }
 
-/// Whether the number of threads changes how the backend steps; a device's own processors do not follow it.
+/// Whether the number of threads changes how the backend steps; it does not affect a device with its own
+/// processors.
 bool has_threads(const BackendInfo& info, const ExecutionOptions& execution) {
-  if (info.threads > 0) return false;  // it says them itself
+  if (info.threads > 0) return false;  // its name determines them
   if (info.makes_threads || info.program) return true;
   try {
     return info.uses_device && find_opencl_device(execution.device).type == OpenclDeviceType::cpu;
@@ -122,7 +123,7 @@ ExecutionOptions complete(ExecutionOptions options) {
   if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
   if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
   if (options.threads > limit)
-    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; ask for fewer, or unset it",
+    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; give fewer, or unset it",
                      options.threads, limit);
   omp_set_dynamic(0);
   return options;
@@ -167,7 +168,7 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
   for (const std::string& folder : options.folders) {
     std::error_code error;
     if (!fs::is_directory(folder, error))
-      throw UsageError("--backend-folder {} is no folder", escaped(folder));
+      throw UsageError("--backend-folder {} is not a folder", escaped(folder));
     folders_.emplace_back(folder);
   }
   if (const auto folder = user_folder()) folders_.push_back(*folder);
@@ -314,8 +315,8 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
   };
   std::ranges::for_each(folders_, look);
   if (in_table && !found.empty())
-    throw UsageError("{} is called like the backend {} of mssim; rename it", shown(found.front()), name);
-  // A scene may be called as anything.
+    throw UsageError("{} has the same name as mssim's backend {}; rename it", shown(found.front()), name);
+  // A scene file may have any name.
   if (!in_table) std::ranges::for_each(scene_folders_, look);
   look(shipped_folder());
   if (found.size() > 1)
@@ -331,7 +332,7 @@ const BackendInfo& BackendChoice::add(BackendProgram program) {
     throw UsageError("a backend cannot be called {}: its name has characters that cannot be shown; rename it",
                      escaped(program.name));
   if (std::ranges::find(known_, program.name, &BackendInfo::name) != known_.end())
-    throw UsageError("{} is called like the backend {} of mssim; rename it", shown(program.program),
+    throw UsageError("{} has the same name as mssim's backend {}; rename it", shown(program.program),
                      program.name);
   for (const std::unique_ptr<Row>& row : rows_) {
     if (row->program.name != program.name) continue;
@@ -349,7 +350,7 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
                   const ExecutionOptions& execution) {
   for (const BackendInfo* info : rows) {
     const BackendProgram* program = info->program;
-    if (!program || info->threads > 0) continue;  // said of the row that has as many as asked for
+    if (!program || info->threads > 0) continue;  // the row with the requested number has the program
     BackendProgramRecord record{.name = program->name, .command = program->command};
     if (program->in_ranks) {
       const RankCount count = ranks_of(*program, execution);

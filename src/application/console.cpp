@@ -21,7 +21,7 @@ double seconds_between(ProgressLine::Clock::time_point from, ProgressLine::Clock
   return std::chrono::duration<double>(to - from).count();
 }
 
-/// "about 1:05 left", or nothing.
+/// "about 1:05 left", or empty.
 std::string time_left(const Progress& progress) {
   if (!progress.seconds_left) return {};
   const long seconds = std::lround(*progress.seconds_left);
@@ -43,7 +43,7 @@ std::string progress_text(const Progress& progress, int width, bool utf8) {
   std::string text = progress.scene;
   if (progress.scenes > 1) text += fmt::format(" ({} of {})", progress.number, progress.scenes);
   text += "  ";
-  // A terminal may break the line behind a character in its last column.
+  // A terminal may wrap after a character in its last column.
   const auto columns = static_cast<std::size_t>(std::max(1, width - 1));
   if (const std::size_t taken = width_of(text) + around; taken + shortest_bar <= columns) {
     const std::size_t length = std::min(longest_bar, columns - taken);
@@ -84,7 +84,7 @@ void ProgressLine::update_often(const std::string& activity, double done) {
 }
 
 std::optional<double> ProgressLine::seconds_left(double fraction) const {
-  constexpr double enough = 0.1;  // before, what is slower or faster than expected counts for too much
+  constexpr double enough = 0.1;  // earlier, a deviation from the expectation has too much weight
   std::optional<double> seconds;
   if (fraction > enough) seconds = seconds_between(start_, shown_) * (1 - fraction) / fraction;
   if (end_) {
@@ -101,7 +101,7 @@ void ProgressLine::update(const std::string& activity, double done) {
   const double before = std::accumulate(weights_.begin(), present, 0.0) + done * *present;
   const double fraction = before / std::accumulate(weights_.begin(), weights_.end(), 0.0);
   Progress progress{escaped(scene_), begun_, weights_.size(), activity, std::clamp(fraction, 0.0, 1.0), {}};
-  // What is done at the end, such as traces, counts as no part of the whole.
+  // Work at the end, such as traces, is not included in the fraction.
   if (fraction < 1) progress.seconds_left = seconds_left(fraction);
   const Terminal terminal = terminal_of(STDERR_FILENO);
   std::cerr << "\r\033[K" << progress_text(progress, terminal.width.value_or(80), terminal.utf8)

@@ -11,43 +11,42 @@
 
 namespace mssim {
 
-/// How far a command is.
+/// Progress of a command.
 struct Progress {
   std::string scene;
-  std::size_t number = 1, scenes = 1;  ///< which of how many scenes
+  std::size_t number = 1, scenes = 1;  ///< the present scene, counted from 1, and the number of scenes
   std::string activity;
   double fraction = 0;                 ///< of the whole, 0 to 1
-  std::optional<double> seconds_left;  ///< none while nobody knows
+  std::optional<double> seconds_left;  ///< none while unknown
 };
 
-/// One line that fits a terminal of `width` columns: "SCENE (1 of 2)  [####  ]  about 0:12 left  ACTIVITY".
-/// In a narrow one a percentage stands for the bar, and the end of a long activity is left out. The places do
-/// not depend on the activity, so that a reader's eye can rest on them.
+/// One line that fits a terminal of `width` columns: "SCENE (1 of 2)  [####  ]  about 0:12 left  ACTIVITY". A
+/// narrow terminal gets a percentage instead of the bar, and a truncated activity. Positions do not depend on
+/// the activity, so the line is easy to read.
 std::string progress_text(const Progress& progress, int width, bool utf8);
 
-/// Tells on stderr how far a bench is: on a terminal one line that is written over, with the time left; else
-/// a line where a scene begins, so that a log stays short.
+/// Reports the progress of a bench on stderr: on a terminal as one line that is overwritten, with the
+/// remaining time; otherwise as one line per scene, so that a log stays short.
 class ProgressLine {
  public:
   using Clock = std::chrono::steady_clock;
-  /// What a log, which is no terminal, is told.
+  /// Output if stderr is not a terminal.
   enum class Log : std::uint8_t { scenes, nothing };
 
-  /// `weights`: of each scene, in proportion to the time that it takes. `end`: when all will have ended at
-  /// the latest.
+  /// `weights`: of each scene, proportional to its time. `end`: latest end of everything.
   explicit ProgressLine(std::vector<double> weights, Log log = Log::scenes,
                         std::optional<Clock::time_point> end = {});
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine();
 
-  /// Wipes the line, too: what is to be known of a scene may be told now.
+  /// Begins a scene. Also erases the line, so that messages about the scene can be printed.
   void begin_scene(const std::string& name);
-  /// The scene that has begun takes no time.
+  /// Marks the current scene as taking no time.
   void skip_scene();
-  /// `done`: share of the scene, 0 to 1.
+  /// `done`: finished share of the scene, 0 to 1.
   void update(const std::string& activity, double done);
-  /// Updates ten times a second at most, for who calls all the time.
+  /// Like update, but at most ten times per second, for frequent calls.
   void update_often(const std::string& activity, double done);
 
  private:
@@ -62,25 +61,25 @@ class ProgressLine {
   std::optional<Clock::time_point> end_;
 };
 
-/// Says the first few of these on stderr, in a line each, and how many more there are.
+/// Prints the first few sentences to stderr, one per line, and the number of the others.
 void tell_first(const std::vector<std::string>& sentences);
 
-/// Says on stderr, once in a process, what the drivers of OpenCL devices lack. For a command that uses such a
-/// device: it asks the drivers (backends/devices/drivers.h).
+/// Prints to stderr, once per process, what the drivers of OpenCL devices lack. Queries the drivers
+/// (backends/devices/drivers.h), so only commands that use such a device should call it.
 void tell_of_opencl();
 
-/// While it lives, a first ending signal (platform/process.h) is remembered, and told on stderr, so
-/// that what is under way can be finished and written; a second one ends the program at once. Signals that
-/// are ignored (nohup) stay so. One at a time.
+/// During its lifetime, a first ending signal (platform/process.h) is noted and reported on stderr, so that
+/// current work can be finished and written; a second one ends the program at once. Ignored signals (nohup)
+/// stay ignored. Only one may exist at a time.
 class StopRequest {
  public:
   StopRequest();
-  /// A signal that nobody asked for ends the program now.
+  /// Ends the program if a signal was noted that has not been thrown.
   ~StopRequest();
 
   /// Whether a signal has come.
   bool requested() const { return noted_ending_signal() != 0; }
-  /// Throws Interrupted when one has.
+  /// Throws Interrupted if a signal has come.
   void throw_if_requested() { throw_if_ending_signal_noted(); }
 
  private:

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without links, "." and "..", as far as the path exists; a link may lead to what does not exist yet.
+/// The path without links, "." and "..", as far as it exists; a link may lead to a file that does not exist
+/// yet.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   fs::path absolute = fs::absolute(path, error);
@@ -27,7 +28,7 @@ fs::path resolved(const fs::path& path) {
   return error ? absolute.lexically_normal() : canonical;
 }
 
-/// A rename replaces a link, not what it leads to: such a file goes by two names.
+/// A rename replaces a link rather than its target, so such a file has two names.
 bool is_same(const fs::path& a, const fs::path& b) {
   const auto in_its_folder = [](const fs::path& path) {
     return resolved(path.has_parent_path() ? path.parent_path() : fs::path(".")) / path.filename();

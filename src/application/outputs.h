@@ -12,34 +12,33 @@
 
 namespace mssim {
 
-/// A file of a command: what it is, as messages call it, and where.
+/// A file of a command: its role, as in messages, and its path.
 struct NamedFile {
   std::string role;  ///< for example "--trace"
   std::filesystem::path path;
 };
 
-/// Throws UsageError unless every file that a command writes, also under the name that it has until it is
-/// whole, is another one than all others and than those that the command reads; links and "." in paths are
-/// seen through.
+/// Throws UsageError unless every file that a command writes differs from all others and from those that it
+/// reads. Considers temporary names too, and resolves links and "." in paths.
 void require_distinct(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read);
 
-/// Throws UsageError where the name of a file that gets `content`, for example "PNG", ends as that of
-/// another kind of file does: neither in nothing nor in one of these, the first of which is proposed.
+/// Throws UsageError if the name of a file with `content`, for example "PNG", has an extension other than
+/// `extensions`. The message proposes the first of these.
 void require_extension(const NamedFile& file, const std::string& content,
                        const std::vector<std::string_view>& extensions);
 
-/// Remembers main's arguments for the provenance of what the program writes. Called once, first.
+/// Keeps main's arguments for the provenance of written files. Must be called once, first.
 void remember_arguments(int argc, char** argv);
 
-/// Where this run's numbers come from, with the OpenCL devices of the machine where one may be used:
-/// only then are drivers asked. Scenes are added with add_scene.
+/// The provenance of this run. `uses_device`: includes the machine's OpenCL devices; only then drivers are
+/// queried. Scenes are added with add_scene.
 Provenance run_provenance(int threads, bool uses_device);
 
-/// Its command line in one line, quoted where a shell needs it.
+/// The command line of the run in one line, quoted for a shell if necessary.
 std::string command_line(const Provenance& provenance);
 
-/// The header of a trace of `scene`, stepped by `backend` (called `backend_name` in the table) in the run of
-/// that provenance.
+/// The header of a trace of `scene`, stepped by `backend` in the run of that provenance. `backend_name`: its
+/// name in the table.
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
                          const Integrator& integrator, const Provenance& provenance);
 

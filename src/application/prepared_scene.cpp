@@ -19,7 +19,7 @@
 namespace mssim {
 namespace {
 
-/// Meshes, and bodies to dress, are what does not follow from a scene's file alone.
+/// Only meshes and dressed bodies do not follow from the scene's file alone.
 std::string difference(const SceneSpec& spec, const SceneCounts& counts,
                        const std::optional<SceneCounts>& stated) {
   if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
@@ -31,7 +31,7 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts,
                          : "TetGen, or another file, makes another mesh");
 }
 
-/// The middle of the leg on the point's side, or of the trunk where that is nearer.
+/// The middle of the leg on the point's side, or of the trunk if that is nearer.
 Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
   if (profile.has_legs()) {
     const PlanPoint leg = profile.leg_middle(point.y);
@@ -73,11 +73,11 @@ void warn_of_note(const PreparedScene& scene) {
 void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured) {
   const auto is_shipped = [](const SceneHash& scene) {
     try {
-      // What a folder calls by the name of a file would be read from wherever that leads.
+      // A path would be read as the user's own file.
       return !is_path_of_scene(scene.name) && is_scene(scene.name) &&
              scene.fnv1a_64 == fnv1a_64(find_scene(scene.name).source);
     } catch (const std::exception&) {
-      return false;  // no scene can be read that it could be
+      return false;  // not a readable scene
     }
   };
   std::set<std::string> shipped;
@@ -90,9 +90,9 @@ void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured) {
 }
 
 FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body) {
-  // What the garment meets: an arm beside the hip is nothing to be inside of.
+  // The part that the garment touches: an arm next to the hip must not count as the body's inside.
   const auto solid = std::make_shared<const Solid>(body->profile.trunk_and_legs().surface);
-  // A hand that was cut off takes some of the hip with it: cloth inside the whole body does not stand off.
+  // Cutting a hand off also removes part of the hip: cloth inside the whole body does not stand off.
   const auto whole = std::make_shared<const Solid>(body->surface);
   return {[solid](std::span<const Vec3d> points) { return solid->depths(points); },
           [body](const Vec3d& point) { return limb_middle(body->profile, point); },

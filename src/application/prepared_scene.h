@@ -20,29 +20,30 @@ struct PreparedScene {
   System system;
   SceneCounts counts;
   double dt_s = 0;  ///< the scene's, or the largest safe one for `auto`
-  /// How the scene differs from what its file states, and what of a body a garment ignores; or empty.
+  /// Differences between the scene and its file, and the parts of a body that a garment ignores; may be
+  /// empty.
   std::string note;
-  std::shared_ptr<const MeasuredBody> body;  ///< that a garment is put on; none of other scenes
+  std::shared_ptr<const MeasuredBody> body;  ///< on which a garment is dressed; none for other scenes
 };
 
-/// Builds the scene of its parts. Throws SceneError.
+/// Builds the scene from its parts. Throws SceneError.
 PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts);
 
-/// Prepares a scene whose parts are read for it alone. Throws SceneError and MissingProgram.
+/// Prepares a scene, reading its parts. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(SceneSpec spec);
 
-/// The modes of the scene, for the stability limits of its integrators.
+/// Bound of the scene's modes, for the stability limits of its integrators.
 ModeBound mode_bound(const System& system);
 
-/// Says the note, if there is one, on stderr.
+/// Prints the scene's note, if any, to stderr.
 void warn_of_note(const PreparedScene& scene);
 
-/// Sets scene_as_shipped of rows that were measured with scenes of these hashes; the others have no published
-/// time.
+/// Sets scene_as_shipped of rows that were measured with scenes of these hashes. Only a scene as shipped has
+/// a published time.
 void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured);
 
-/// A body to measure fits against: the mesh of its trunk and legs, which is what garments meet; for how far
-/// cloth stands off, all of it.
+/// A body for measuring fits: the mesh of its trunk and legs, which garments touch; for distances between
+/// cloth and body, all of it.
 FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body);
 
 }  // namespace mssim

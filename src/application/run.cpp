@@ -24,7 +24,7 @@
 namespace mssim {
 
 std::int64_t count_steps(const SimulationPlan& plan) {
-  // A frame's steps are counted in an int, and beyond 2^53 times lose whole steps.
+  // A frame's steps are counted in an int, and beyond 2^53 steps times are not exact.
   constexpr double most_steps = std::numeric_limits<int>::max();
   const double exact_steps = plan.duration_s / plan.dt_s;
   if (!(exact_steps >= 0.5 && exact_steps <= most_steps)) {
@@ -39,7 +39,7 @@ std::int64_t count_steps(const SimulationPlan& plan) {
 FrameGrid frame_grid(double frames_per_second, double dt_s) {
   const double steps_per_frame = 1 / (frames_per_second * dt_s);
   if (!(steps_per_frame >= 1))
-    throw UsageError("--fps {:.6g} is more than one frame a step of {:.6g} s; take --fps {:.6g} or less",
+    throw UsageError("--fps {:.6g} is more than one frame per step of {:.6g} s; take --fps {:.6g} or less",
                      frames_per_second, dt_s, dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s));
   return {steps_per_frame};
 }
@@ -108,14 +108,15 @@ void RunRecorder::record(const Frame& frame) {
   wait_for_frame();
   energies_.push_back({frame.time_s, frame.energy});
   if (!wanted()) return;
-  const OnAllProcessCpus unbound;  // not the CPU of this thread alone
+  const OnAllProcessCpus unbound;  // not only on the CPU of this thread
   writing_ = std::async(as_the_system_can, [this, frame, state = frame.state] {
     write({frame.step, frame.time_s, state, frame.energy, frame.losses});
   });
 }
 
 void RunRecorder::write(const Frame& frame) {
-  // First the curve, so that it has the energies of every frame of the trace, whichever of the two fails.
+  // The curve comes first, so that it has the energies of every frame of the trace, whichever of the two
+  // fails.
   if (curve_) curve_->append({frame.time_s, frame.energy});
   if (trace_) trace_->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
   if (pictures_) pictures_->draw(frame.state.position);
@@ -167,7 +168,7 @@ std::string RunRecorder::kept() {
 
 namespace {
 
-/// The chosen backend, made by `in_single`, make_backend or make_dressing_backend, or by `in_double`.
+/// Makes the chosen backend: with `in_single` (make_backend or make_dressing_backend) or with `in_double`.
 template <class InSingle, class InDouble>
 auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                     const Integrator& integrator, const InSingle& in_single, const InDouble& in_double) {
@@ -184,15 +185,15 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   if (info.role != BackendRole::baseline)
     throw UsageError(
         "--precision double needs --backend {}, not \"{}\": the other backends of mssim compute in single "
-        "precision only, and a program in its own",
+        "precision only, and programs choose their own",
         baseline_backend().name, options.backend);
   return in_double(scene.system, integrator, scene.dt_s);
 }
 
-/// Tells who waits long why.
+/// Warns if accounting takes long.
 void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, const Integrator& integrator) {
   constexpr double passes_for_energies = 4;
-  constexpr double springs_per_second = 1e8;  // of the double-precision reference, roughly
+  constexpr double springs_per_second = 1e8;  // of the double-precision reference, approximately
   constexpr double patience_s = 10;
   const double seconds = static_cast<double>(count_steps(plan)) * static_cast<double>(system.springs.size()) *
                          (passes_for_energies + expected_evaluations(integrator)) / springs_per_second;
@@ -201,8 +202,8 @@ void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, c
               << " s in all\n";
 }
 
-/// What the three kinds of energy and the losses add up to at the end, less what they did at the start, over
-/// the largest change that one kind of energy makes from frame to frame: zero in a perfect world.
+/// The sum of energies and losses at the end, less that at the start, divided by the largest change of one
+/// kind of energy between frames; ideally zero.
 std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, const EnergyLosses& losses) {
   double in_motion = 0;
   for (const auto kind : {&Energy::kinetic, &Energy::elastic, &Energy::gravitational}) {
@@ -228,10 +229,10 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
   return headers;
 }
 
-/// Dresses the scene's garment until it has settled, for no longer than --duration says, prints how it went
-/// and how the garment fits unless it is to be silent, and says on stderr what is out of bounds. Records the
-/// start, the frames of the grid and how the garment rests. Returns an ExitCode. Throws NotVerified when the
-/// simulation blows up, naming the step, WriteError and Interrupted.
+/// Dresses the scene's garment until it has settled, for at most --duration. Unless silent, prints the course
+/// and the fit; prints violated bounds to stderr. Records the start, the frames of the grid and the final
+/// state. Returns an ExitCode. Throws NotVerified with the step if the simulation blows up, WriteError and
+/// Interrupted.
 int run_garment(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                 const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
@@ -241,8 +242,7 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
         "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
         "leave it out");
   const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
-  // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
-  // file.
+  // After the headers, which load libraries that catch signals themselves, and before any file exists.
   StopRequest stop;
   const FrameGrid frames = frame_grid(plan.frames_per_second, plan.dt_s);
   SettlingRule rule;
@@ -273,7 +273,7 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
           const auto activity = fmt::format("{}, {:.2f} s simulated of at most {:.2f}",
                                             backend->progress().draping ? "draping" : "closing seams",
                                             static_cast<double>(iterations) * scene.dt_s, rule.longest_s);
-          progress.update(activity, 0);  // when it will have settled, nobody knows
+          progress.update(activity, 0);  // the time of settling is unknown
           return true;
         },
         recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
@@ -313,7 +313,7 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
   };
   const auto backend = chosen_backend(options, info, scene, integrator, make_backend, in_double);
   const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
-  StopRequest stop;  // where run_garment has it
+  StopRequest stop;  // as in run_garment
   RunRecorder recorder(options.files, scene, headers);
   if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
   std::int64_t steps = 0;
@@ -384,7 +384,7 @@ int run_scene(RunOptions options) {
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
-  // Unless asked otherwise 60 frames a simulated second, or one a step where steps are longer.
+  // By default 60 frames per simulated second, or one per step if steps are longer.
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
                             options.fps.value_or(std::min(60.0, 1 / scene.dt_s)), options.losses};
   return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)

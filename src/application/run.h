@@ -18,92 +18,92 @@
 
 namespace mssim {
 
-/// How long to simulate and how often to look.
+/// Duration and step of a simulation, and the rate of its frames.
 struct SimulationPlan {
   double dt_s = 0;
   double duration_s = 0;
   double frames_per_second = 0;  ///< of simulated time
-  /// Whether to account for energy losses (EnergyLedger), which makes a run several times slower.
+  /// Whether to account for energy losses (EnergyLedger), which slows a run down several times.
   bool accounts_for_losses = false;
 };
 
-/// A moment of a simulation.
+/// The state of a simulation at one time.
 struct Frame {
   std::int64_t step = 0;  ///< counted from 0, the start
   double time_s = 0;
   const State& state;
   Energy energy;
-  std::optional<EnergyLosses> losses;  ///< since the start, where the plan asks for them
+  std::optional<EnergyLosses> losses;  ///< since the start, if the plan requests them
 };
 
-/// What a simulation tells and asks while it runs.
+/// Callbacks of a simulation.
 struct SimulationWatch {
   /// Called with the start and then with every frame.
   std::function<void(const Frame& frame)> on_frame;
-  /// Called between steps, with how many of how many are done; what it throws ends the simulation.
+  /// Called between steps with the finished and the total number; an exception ends the simulation.
   std::function<void(std::int64_t done, std::int64_t steps)> on_progress = [](std::int64_t /*done*/,
                                                                               std::int64_t /*steps*/) {};
 };
 
-/// Steps `backend`, which was made for `system` and `integrator`, from the system's start through the whole
-/// duration, which is rounded to whole steps; a frame is the step nearest to its time. Throws NotVerified
-/// when the simulation blows up, naming step, time and node; frames up to then have been delivered. Throws
-/// UsageError for a plan of no steps or of more than one frame a step.
+/// Steps `backend`, which must be made for `system` and `integrator`, from the system's start for the
+/// duration, rounded to whole steps. Frames are at the steps nearest to their times. Throws NotVerified with
+/// step, time and node if the simulation blows up; earlier frames have been delivered. Throws UsageError for
+/// a plan of no steps or of more than one frame per step.
 void simulate(Backend& backend, const System& system, const Integrator& integrator,
               const SimulationPlan& plan, const SimulationWatch& watch);
 
-/// Steps of a plan. Throws UsageError like simulate().
+/// Number of steps of a plan. Throws UsageError like simulate().
 std::int64_t count_steps(const SimulationPlan& plan);
 
-/// The frames of steps of `dt_s`. Throws UsageError for more than one frame a step.
+/// The frames of a simulation with steps of `dt_s`. Throws UsageError for more than one frame per step.
 FrameGrid frame_grid(double frames_per_second, double dt_s);
 
-/// What a run writes from its frames, each only where it has a name.
+/// Files that a run writes from its frames; an empty name means none.
 struct RunFiles {
   std::string trace;
   std::string energy_curve;
   std::string pictures;    ///< a folder
-  bool temporary = false;  ///< nobody is told of them
+  bool temporary = false;  ///< not reported to the user
 
   bool any() const { return !trace.empty() || !energy_curve.empty() || !pictures.empty(); }
 };
 
-/// What the files say about how they came about, beside what the scene says, and how pictures look.
+/// Headers of the files, and options of the pictures.
 struct FileHeaders {
   TraceHeader trace;
   std::string command_line;  ///< of the energy curve
   PictureOptions pictures;
 };
 
-/// Throws UsageError when two of the files, the XDMF of the trace, and the files that the scene is read from,
-/// are the same.
+/// Throws UsageError if two of these are the same file: the files, the XDMF of the trace, and the files of
+/// the scene.
 void require_distinct(const RunFiles& files, const SceneSpec& scene);
 
-/// Writes the frames of a run into its files, each while the simulation goes on to the next one, because
-/// compressing a large frame takes as long as many steps; and keeps their energies.
+/// Writes the frames of a run into its files while the simulation continues, because compressing a large
+/// frame takes as long as many steps. Also keeps their energies.
 class RunRecorder {
  public:
-  /// Begins the files of a scene that there are to be. Throws WriteError, also where another writer has one.
+  /// Opens the files. Throws WriteError, also if another process writes one of them.
   RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers);
 
   /// Whether anything is written.
   bool wanted() const { return trace_ || curve_ || pictures_; }
-  /// Throws WriteError where the frame before cannot be written.
+  /// Throws WriteError if the previous frame could not be written.
   void record(const Frame& frame);
   const std::vector<EnergySample>& energies() const { return energies_; }
 
-  /// Runs `simulation`, which records, and finishes the files: also when it blows up or is interrupted,
-  /// because the frames before that are good and show what happened. Says on stderr what has been written.
-  /// Where a file cannot be written any more, files stay under their temporary names with all frames that
-  /// were recorded before, and the WriteError says so. Passes on what `simulation` throws.
+  /// Runs `simulation`, which records frames, and finishes the files. It finishes them even if the simulation
+  /// blows up or is interrupted, because the earlier frames are good. Prints the names of the written files
+  /// to stderr. If a file cannot be written, the files keep their temporary names and all frames recorded
+  /// before, and the WriteError says so. Rethrows the exceptions of `simulation`.
   void finish_after(const std::function<void()>& simulation);
 
  private:
   void write(const Frame& frame);
-  /// Waits until the last frame is written. Throws WriteError where it cannot be.
+  /// Waits until the last frame is written. Throws WriteError on failure.
   void wait_for_frame();
   void finish();
-  /// What the files hold that did not get their names, for the end of a message.
+  /// The content of files that did not get their names, as the end of a message.
   std::string kept();
 
   bool temporary_;
@@ -111,13 +111,13 @@ class RunRecorder {
   std::optional<EnergyCurve> curve_;
   std::optional<PictureFolder> pictures_;
   std::vector<EnergySample> energies_;
-  std::future<void> writing_;  ///< of a frame into the files; nobody else touches them meanwhile
+  std::future<void> writing_;  ///< of a frame; nothing else accesses the files meanwhile
 };
 
-/// Simulated seconds of a run that says nothing of them.
+/// Default simulated time, s.
 inline constexpr double default_duration_s = 1;
 
-/// What to simulate, by what, how long, and what to write.
+/// Options of a run: scene, backend, duration and files.
 struct RunOptions {
   std::string scene;
   std::string backend = "openmp";
@@ -125,18 +125,18 @@ struct RunOptions {
   std::string integrator = "semi-euler";
   std::string precision = "single";
   std::optional<double> dt_s;
-  std::optional<double> duration_s;  ///< default_duration_s where it is not given
-  std::optional<double> fps;         ///< frames per simulated second, 60 where it is not given
+  std::optional<double> duration_s;  ///< default_duration_s if not given
+  std::optional<double> fps;         ///< frames per simulated second, 60 if not given
   RunFiles files;
-  PictureOptions pictures;  ///< of files.pictures, but for the threads
+  PictureOptions pictures;  ///< of files.pictures, except for the threads
   bool losses = false;
-  bool silent = false;  ///< prints no tables of how it went
+  bool silent = false;  ///< prints no result tables
   ExecutionOptions execution;
 };
 
-/// Simulates the scene, dresses its garment until it has settled, writes the files and prints how it went.
-/// Returns an ExitCode. Throws UsageError, SceneError, Unsupported, Unavailable, MissingProgram, NotVerified
-/// where the simulation blows up, WriteError and Interrupted.
+/// Simulates the scene (a garment until it has settled), writes the files and prints the results. Returns an
+/// ExitCode. Throws UsageError, SceneError, Unsupported, Unavailable, MissingProgram, WriteError,
+/// Interrupted, and NotVerified if the simulation blows up.
 int run_scene(RunOptions options);
 
 }  // namespace mssim

@@ -24,10 +24,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Peaks of this machine, by threads and bytes of the working set.
+/// Peaks of this machine, by number of threads and bytes of the working set.
 using Peaks = std::map<std::pair<int, std::size_t>, MachinePeak>;
 
-/// What a step of the combination works on, in a scene of this size.
+/// Size of a step of the combination, on a scene of this size.
 StepSize size_for(const Combination& combination, const StepSize& scene) {
   return combination.stored_springs ? with_stored_springs(scene, *combination.stored_springs) : scene;
 }
@@ -38,9 +38,9 @@ std::pair<int, std::size_t> peak_key(const Combination& combination, const StepS
           static_cast<std::size_t>(working_set_bytes(*combination.integrator, size_for(combination, scene)))};
 }
 
-/// Measures the peaks that the combinations are held against, now. None for a garment: what a step of it has
-/// to do depends on what touches and what is sewn; none of a cloth that does not fit here; none for implicit
-/// integrators, whose solvers go on for as long as it takes; and none where only samples are wanted.
+/// Measures the peaks that the combinations are compared with. There are none for a garment, whose work per
+/// step depends on what touches and what is sewn; for a cloth in windows; for implicit integrators, whose
+/// solvers iterate until they converge; and for a job that only takes samples.
 Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
@@ -65,19 +65,20 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
   if (const auto peak = peaks.find(peak_key(combination, size)); combination.on_host && peak != peaks.end())
     row.roofline_fraction = roofline_fraction(cost, seconds, peak->second);
   if (row.roofline_fraction && *row.roofline_fraction > 1)
-    append_sentence(row.note,
-                    three_digits(100 * *row.roofline_fraction) +
-                        " % of the roofline: faster than this machine was seen to do the work of a step; "
-                        "does it take all steps, or was the machine busy when its peak was measured?");
+    append_sentence(
+        row.note,
+        three_digits(100 * *row.roofline_fraction) +
+            " % of the roofline: faster than the measured peak of this machine allows; does the backend "
+            "take all steps, or was the machine busy when its peak was measured?");
 }
 
 /// Compares a backend with the reference.
 using Verifier = std::function<Verification(Combination& combination, const BackendInfo& info)>;
 
-/// Runs the reference; of a garment when a backend is first compared with it. `draped`: the garment, settled,
-/// which must outlive the verifier; none where the scene is no garment or cannot be dressed. `step_seconds`:
-/// is set to what a step of it took where the ends of samples are compared with it, too. The verifier is
-/// empty where no backend has the scene with this integrator.
+/// Runs the reference; for a garment, when a backend is first compared with it. `draped`: the settled
+/// garment, which must outlive the verifier; none if the scene is not a garment or cannot be dressed. Sets
+/// `step_seconds` to the reference's time per step if the ends of samples are compared with it too. The
+/// verifier is empty if no backend supports the scene with this integrator.
 Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const std::optional<State>& draped,
                        double& step_seconds) {
   if (job.garment && !dresses(integrator)) return {};
@@ -119,7 +120,7 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
                                                          const BackendInfo& /*info*/) mutable {
     Verification found =
         verify(*combination.backend, *job.system, reference, job.dt_s, combination.steps_taken);
-    if (found.failure && reference.recalled) {  // no row fails by what a file says
+    if (found.failure && reference.recalled) {  // a cached file must not make a row fail
       reference = refer(true);
       found = verify(*combination.backend, *job.system, reference, job.dt_s);
     }
@@ -129,7 +130,7 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
   };
 }
 
-/// Steps that a sample takes at most, so that where it ends can be compared with the reference.
+/// Largest number of steps of a sample whose end can be compared with the reference.
 int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
   if (job.garment) return max_sample_steps;  // its ends are not compared
   if (job.windowed) return verification_steps;
@@ -138,27 +139,27 @@ int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
   return comparable_steps(*job.system, integrator, job.dt_s, checkable);
 }
 
-/// What an integrator's reference leaves.
+/// Results of an integrator's reference.
 struct AfterReference {
   int most_steps = max_sample_steps;  ///< of a sample
-  double step_seconds = 0;            ///< that a step of the reference took
+  double step_seconds = 0;            ///< time per step of the reference
   Verifier verifier = {};
-  std::optional<SecondStretch> second = {};  ///< where it is part of the verification
+  std::optional<SecondStretch> second = {};  ///< if it is part of the verification
   std::optional<Combination> serial = {};    ///< verified in the end, if it is among the job's backends
 };
 
-/// Programs in ranks read the scene's file, whatever System they are made for.
+/// Programs that run in ranks read the scene file, whatever System they are made for.
 bool builds_scenes_itself(const BackendInfo& info) {
   return info.program != nullptr && info.program->in_ranks;
 }
 
-/// Lets another backend of the kind step the second stretch.
+/// Steps the second stretch with another instance of the backend.
 void verify_second(Combination& combination, const SceneJob& job, const BackendInfo& info,
                    const SecondStretch& stretch) {
   combination.backend->rest();
   ExecutionOptions execution = job.execution;
   execution.scene += "-small";  // a program may know scenes by their names
-  const std::string cannot = "failed: it does not step a small scene of the kind: ";
+  const std::string cannot = "failed: it does not step a small scene of the same kind: ";
   try {
     const auto backend = make_backend(info, stretch.system, *combination.integrator, job.dt_s, execution);
     if (const auto wrong = verify_second(*backend, stretch)) fail(combination, "failed: " + *wrong);
@@ -167,12 +168,12 @@ void verify_second(Combination& combination, const SceneJob& job, const BackendI
   } catch (const Unavailable& reason) {
     fail(combination, cannot + reason.what());
   } catch (const BackendFailure& failure) {
-    throw BackendFailure(std::string(failure.what()) + ", on a small scene of the kind", failure.output,
+    throw BackendFailure(std::string(failure.what()) + ", on a small scene of the same kind", failure.output,
                          failure.late);
   }
 }
 
-/// Makes the backend, to be judged in at most so many steps.
+/// Makes the backend, which is judged after at most `most_steps` steps.
 Combination make_unjudged(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
                           const State& start, int most_steps) {
   Combination combination = make_combination(job, info, integrator, start);
@@ -184,7 +185,7 @@ Combination make_unjudged(const SceneJob& job, const BackendInfo& info, const In
   return combination;
 }
 
-/// Judges it as job.verified or else the comparison with the reference does.
+/// Takes the verdict of job.verified or, without it, of the comparison with the reference.
 void judge(Combination& combination, const SceneJob& job, const BackendInfo& info,
            const AfterReference& reference) {
   if (combination.backend && job.verified)
@@ -197,9 +198,8 @@ void judge(Combination& combination, const SceneJob& job, const BackendInfo& inf
     });
 }
 
-/// Does what takes one thread for each of the job's integrators, by their number, and for each of so many
-/// `parts` that do not need each other: as many at the same time as the backends have threads, and first
-/// those that take longer.
+/// Calls `work`, which takes one thread, for each of the job's integrators, by number, and for each of
+/// `parts` independent parts. Runs as many at the same time as the backends have threads, longest first.
 void for_each_integrator(const SceneJob& job, std::size_t parts,
                          const std::function<void(std::size_t i, std::size_t part)>& work) {
   std::vector<std::size_t> order(job.integrators.size());
@@ -210,7 +210,7 @@ void for_each_integrator(const SceneJob& job, std::size_t parts,
                    [&](std::size_t task) { work(order[task / parts], task % parts); });
 }
 
-/// Takes as many steps as a reference is compared after that does not end before contact. Throws Interrupted
+/// Takes the steps after which a reference that does not end before contact is compared. Throws Interrupted
 /// like run_reference.
 void step_beside_reference(Combination& combination, const SceneJob& job) {
   const int steps = std::min(combination.most_steps, verification_steps);
@@ -223,9 +223,9 @@ void step_beside_reference(Combination& combination, const SceneJob& job) {
   }
 }
 
-/// Runs the references of all integrators and verifies `serial` with each, but for job.verified. The results
-/// have the integrators' order. `serial` takes its steps beside the references; of a garment behind them,
-/// because there it starts again and again where a reference was.
+/// Runs the references of all integrators and, without job.verified, verifies `serial` with each. The results
+/// are in the integrators' order. `serial` steps while the references run; for a garment it steps after them,
+/// because it restarts from states of the reference.
 std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
                                            const State& start) {
   std::vector<AfterReference> results(job.integrators.size());
@@ -259,7 +259,7 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   return results;
 }
 
-/// What the samples so far say.
+/// Rows of the samples so far.
 std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, const StepSize& size,
                                const Peaks& peaks) {
   std::vector<ResultRow> rows;
@@ -276,7 +276,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
   return rows;
 }
 
-/// Gives the combinations their earlier samples, as many as all of them have, and says how many those are.
+/// Gives the combinations their earlier samples, as many as all of them have, and returns how many.
 int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>& earlier) {
   std::size_t complete = SIZE_MAX;
   for (Combination& combination : combinations) {
@@ -298,13 +298,13 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
   return static_cast<int>(complete);
 }
 
-/// With which round this run began to measure, and when.
+/// The round with which this run began to measure, and the time of its start.
 struct FirstRound {
   int number = 0;
   Clock::time_point start = Clock::now();
 };
 
-/// Says which sample comes next. `rounds`: those before it, and the share of its own that is done.
+/// Reports the next sample. `rounds`: rounds before it, plus the finished share of its own.
 void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, const SceneJob& job,
                  const BenchWatch& watch) {
   std::string activity = fmt::format("round {}", static_cast<int>(rounds) + 1);
@@ -319,16 +319,16 @@ void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, c
                  job.preparation + (1 - job.preparation) * done);
 }
 
-/// Which samples start where, and which of them are checked. Programs cannot know it: what they are asked is
-/// the same for every sample, and the check waits until no sample follows.
+/// Chooses where samples start and which are checked. Programs cannot predict this: every sample makes the
+/// same requests, and the check comes after the last sample.
 class SampleSecrets {
  public:
-  /// `start`: of all samples, where their ends are not checked. Must outlive it.
+  /// `start`: of all samples, if their ends are not checked. Must outlive this.
   SampleSecrets(const SceneJob& job, const State& start)
       : job_(job), start_(start), checks_(!job.garment && !job.windowed && !job.verified) {}
 
-  /// Chooses the round that is checked, of those that there may be. `end`: when the last one is to have
-  /// ended, with a deadline.
+  /// Chooses the round to check among the possible ones. `end`: with a deadline, the latest end of the last
+  /// round.
   void choose(const FirstRound& first, Clock::time_point end) {
     if (job_.deadline)
       checked_from_ =
@@ -337,7 +337,7 @@ class SampleSecrets {
       checked_round_ = first.number + static_cast<int>(between_0_and_1() * (job_.rounds - first.number));
   }
 
-  /// The start of a round's samples.
+  /// Returns the start state of a round's samples.
   const State& begin_round(int round) {
     if (!checks_) return start_;
     present_ = static_cast<std::uint32_t>(random_());
@@ -346,19 +346,19 @@ class SampleSecrets {
     if (checks_this_) check();
     return of_round_;
   }
-  /// Checks the round that has begun, whatever was chosen.
+  /// Checks the current round, whatever was chosen.
   void check() {
     checks_this_ = has_checked_ = true;
     checked_ = present_;
   }
 
   bool is_due() const { return checks_ && !has_checked_; }
-  /// The node to look at first, in a round that is checked.
+  /// The first node to examine, if the round is checked.
   std::optional<std::size_t> first_node() const {
     return checks_this_ ? std::optional<std::size_t>(first_) : std::nullopt;
   }
 
-  /// Compares the ends of the samples that were checked. The backends have been ended.
+  /// Compares the ends of the checked samples. The backends have been ended before.
   void compare(std::vector<Combination>& combinations) const {
     if (!has_checked_) return;
     const State start = sample_start(*job_.system, checked_);
@@ -390,10 +390,10 @@ class SampleSecrets {
   int checked_round_ = 0;
   Clock::time_point checked_from_;
   bool checks_this_ = false, has_checked_ = false;
-  std::uint32_t present_ = 0, checked_ = 0;  ///< of which round's start
+  std::uint32_t present_ = 0, checked_ = 0;  ///< wave numbers of these rounds
 };
 
-/// What SampleSecrets::compare will take, about, after samples as long as the combinations' are now.
+/// Expected time of SampleSecrets::compare after samples as long as the combinations' are now.
 Clock::duration expected_check(const SceneJob& job, const std::vector<Combination>& combinations,
                                const std::vector<AfterReference>& references) {
   if (job.garment || job.windowed || job.verified) return {};
@@ -413,8 +413,8 @@ Clock::duration expected_check(const SceneJob& job, const std::vector<Combinatio
       std::chrono::duration<double>(std::max(longest, all / at_once)));
 }
 
-/// One sample of every combination, in this order, from `start`. False when it was stopped, and then without
-/// a trace.
+/// Takes one sample of every combination, in this order, from `start`. Returns false and discards the round
+/// if stopped.
 bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
                 const FirstRound& first, const SceneJob& job, const State& start,
                 std::optional<std::size_t> first_node, bool kept, const BenchWatch& watch) {
@@ -504,7 +504,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     watch.after_round(rows_of(all, size, peaks));
     measured_any = true;
   }
-  // Fewer rounds than the deadline let expect: one more, whose times do not count.
+  // The deadline allowed fewer rounds than expected: take one more, whose times do not count.
   if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
   for (Combination& combination : all) {
     if (combination.backend) require_prompt_steps(combination);

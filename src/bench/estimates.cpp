@@ -13,33 +13,33 @@ namespace {
 
 constexpr double state_node = 2 * sizeof(Vec3d);
 
-/// The states that a run of the reference holds: ten steps ago, now, and the last before contact, which it
-/// leaves.
+/// States that a run of the reference holds: ten steps ago, now, and the last before contact, which is its
+/// result.
 constexpr double reference_states = 3;
-/// What a garment's reference leaves: the states where stretches start and end, and their errors.
+/// States that a garment's reference leaves: start and end of each stretch, and their errors.
 constexpr double garment_reference_node = 4 * stretches * state_node + 2 * stretches * sizeof(double);
 
-// Seconds, as measured on two cores of a server of 2024.
-constexpr double spring_s = 7e-9;          // the force of one, in the plain list
-constexpr double other_methods = 0.3;      // a garment's or implicit step of others than serial, in its steps
-constexpr double built_spring_s = 1.5e-7;  // building the scene
-constexpr double moved_node_s = 4e-8;      // setting a state
-constexpr double peaks_s = 0.5;            // of one working set, with one thread and with all
-constexpr double samples_to_calibrate = 3;  // growing ones, and until the backend is warm
-constexpr double checked_step = 3.5;        // of two references that a sample is compared with, in such steps
-constexpr double garment_step = 1.7;        // of the plain list, in steps of a cloth's
-constexpr double verified_garment = 4;      // steps of a verification, over those of a cloth's
+// Seconds, measured on two cores of a server of 2024.
+constexpr double spring_s = 7e-9;      // force of one spring in the plain list
+constexpr double other_methods = 0.3;  // a garment's or implicit step of other backends, relative to serial
+constexpr double built_spring_s = 1.5e-7;   // building the scene
+constexpr double moved_node_s = 4e-8;       // setting a state
+constexpr double peaks_s = 0.5;             // for one working set, with one thread and with all
+constexpr double samples_to_calibrate = 3;  // trials of growing length, then until the backend is warm
+constexpr double checked_step = 3.5;    // cost of the check per step of a sample, in steps of the reference
+constexpr double garment_step = 1.7;    // a garment's step of the plain list, relative to a cloth's
+constexpr double verified_garment = 4;  // a garment's verification step, relative to a cloth's
 
-/// Steps until a garment has settled: the finer its cloth, the more.
+/// Steps until a garment has settled: more for a finer cloth.
 double dressing_steps(double nodes) { return 40 * std::sqrt(nodes); }
 
-/// Seconds of a step of the plain list.
+/// Seconds per step of the plain list.
 double list_step_time(const Integrator& integrator, const SceneSize& size) {
   return spring_s * static_cast<double>(size.springs) * expected_evaluations(integrator) *
          (size.garment ? garment_step : 1);
 }
 
-/// Seconds of a step of the backend.
+/// Seconds per step of the backend.
 double step_time(const BackendInfo& backend, const Integrator& integrator, const SceneSize& size) {
   const double list = list_step_time(integrator, size);
   const bool is_plain = backend.role == BackendRole::baseline || backend.program != nullptr ||
@@ -58,7 +58,7 @@ std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize
   const auto nodes = static_cast<double>(size.nodes);
   const double system =
       nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
-  double running = 0, serial = 0, held = system + state_node * nodes;  // a round's start
+  double running = 0, serial = 0, held = system + state_node * nodes;  // including the start state of a round
   for (const Integrator* integrator : settings.integrators) {
     const MemoryUse reference = reference_memory(*integrator, size.grid);
     running = std::max(running, reference.bytes(*integrator, size.nodes, size.springs, 1) +

@@ -31,7 +31,7 @@ namespace {
 /// How a bench prints its rows; `github` is github_table().
 enum class SummaryFormat : std::uint8_t { table, csv, json, github };
 
-/// What was asked for, and how it is printed.
+/// The requested bench, and how to print it.
 struct BenchRequest : BenchOptions {
   SummaryFormat format = SummaryFormat::table;
 };
@@ -58,7 +58,7 @@ std::vector<std::string> devices_of(RowPointers rows) {
   return sentences;
 }
 
-/// What stands below `table`, a row_table.
+/// Remarks to be printed after `table`, a row_table.
 std::string remarks(RowPointers rows, std::string_view table, const Provenance& provenance,
                     std::optional<int> width) {
   std::vector<std::string> sentences = devices_of(rows);
@@ -71,9 +71,9 @@ std::string remarks(RowPointers rows, std::string_view table, const Provenance& 
   return text;
 }
 
-/// The rows for a reader: the columns that answer "how fast, how right". As a table (row_table) they are
-/// written for `terminal`, with what is to know of the numbers below. `provenance` tells what was asked for.
-/// Ends with a newline; empty for a table without rows.
+/// The rows for a reader, with the columns that answer "how fast, how right". A table (row_table) is laid out
+/// for `terminal` and followed by remarks. `provenance` has the requested threads. Ends with a newline; empty
+/// for a table without rows.
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
                     const Terminal& terminal) {
   if (format == SummaryFormat::github) return to_text(github_table(rows), ListingFormat::json);
@@ -100,12 +100,13 @@ std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const
                  format);
 }
 
-/// The rows of scenes of which only the structure is told; none in the format `github`, which is for times.
+/// The rows of scenes whose structure is shown but which are not timed; empty in the format `github`, which
+/// is for times.
 std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
   return text_of(structure_rows(rows), format);
 }
 
-/// Prints what would be measured, and about how long that takes.
+/// Prints the plan: what would be measured, and the expected time.
 void tell_plan(const BenchPlan& plan) {
   const ExpectedTime all = total(times_of(plan.timed));
   const double rounds = expected_rounds(plan);
@@ -124,7 +125,7 @@ void tell_plan(const BenchPlan& plan) {
   std::cout << "about " << seconds(all) << " s in all\n";
 }
 
-/// Before hours of measuring, not after.
+/// Printed before hours of measuring, not after.
 void warn_of_missing_speedups(const BenchPlan& plan) {
   std::vector<std::string_view> backends;
   if (!plan.timed.empty())
@@ -140,7 +141,7 @@ void tell_before(const BenchPlan& plan) {
   warn_of_missing_speedups(plan);
 }
 
-/// What the mesh of a scene of bodies is. Throws std::invalid_argument for a scene without tetrahedra.
+/// The structure of a scene of bodies. Throws std::invalid_argument for a scene without tetrahedra.
 StructureRow structure_of(const PreparedScene& scene) {
   const auto* mesh = std::get_if<TetrahedralMesh>(&scene.system.topology);
   if (mesh == nullptr) throw std::invalid_argument(scene.spec.name + " has no tetrahedra");
@@ -150,7 +151,7 @@ StructureRow structure_of(const PreparedScene& scene) {
   row.springs_unique = scene.counts.springs_unique;
   row.springs_published = scene.counts.springs_published.value();
   row.tetrahedra = mesh->tetrahedra.size();
-  // At the start a body is turned and moved, but not deformed.
+  // At the start, a body is rotated and moved, but not deformed.
   row.smallest_dihedral_angle_deg = smallest_dihedral_angle({scene.system.start.position, mesh->tetrahedra});
   return row;
 }
@@ -180,7 +181,7 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
   std::cerr << '\n';
 }
 
-/// The rows of those that were asked for, a path among them, by name.
+/// Row names of the requested backends, including those given as a path.
 std::vector<std::string> asked_backends(const BenchOptions& options, const BenchPlan& plan) {
   std::vector<std::string> names;
   if (!options.backends.empty())
@@ -188,7 +189,7 @@ std::vector<std::string> asked_backends(const BenchOptions& options, const Bench
   return names;
 }
 
-/// The suite whose scenes are measured by guides, which take no samples of a step.
+/// Runs the suite whose scenes are measured by guides, without samples of single steps.
 int run_guide_suite(const BenchRequest& options) {
   const auto refuse = [&](bool given, const std::string& name) {
     if (given) throw UsageError("{} cannot be used with --suite {}: leave it out", name, options.suite);
@@ -247,8 +248,7 @@ int run(const BenchRequest& options) {
   return code;
 }
 
-/// The integrators that are compared where none are named, suite by suite where they differ from the usual
-/// ones.
+/// The default integrators, followed by those of suites with other defaults.
 std::string default_integrators() {
   const auto named = [](std::span<const std::string_view> integrators) {
     return integrators.size() == all_integrators.size()
@@ -274,7 +274,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
   add_scenes(arguments, "--scene", options->scenes,
              "Scenes to measure: names (see mssim list scenes) or files");
   arguments.add("--suite NAME", options->suite,
-                "Scenes and what is compared on them: " + listed(suites, "or") +
+                "Scenes, and what to compare on them: " + listed(suites, "or") +
                     " (see mssim list suites); tables stands for table1, table2 and table3",
                 one_of("suite", names, {{"all", "tables"}}));
   arguments.add_list(
@@ -290,24 +290,25 @@ std::function<int()> declare_bench(Arguments& arguments) {
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",
                        whole_number(1, most_rounds));
-  arguments.add_number("--time-budget SECONDS", options->time_budget_s,
-                       "Time for the measurement, in as many rounds as fit; traces take extra time",
-                       positive_number());
+  arguments.add_number(
+      "--time-budget SECONDS", options->time_budget_s,
+      "Time limit for the measurement, which takes as many rounds as fit; traces take extra time",
+      positive_number());
   arguments.add_number(
       "--windows N", options->windows,
-      "Verify cloths in N windows, without building the whole (default: only where the whole does "
-      "not fit into the memory, in --ranks + 8); with backends in ranks alone",
+      "Verify cloths in N windows instead of as a whole; only for backends in ranks (default: --ranks + 8 "
+      "windows if the whole cloth does not fit into memory)",
       whole_number(2, 100'000));
   arguments.add_flag("--new-references", options->new_references,
-                     "Take no double-precision references of earlier runs, and keep none for later ones");
+                     "Neither use double-precision references of earlier runs nor keep new ones");
   arguments.add_flag("--dry-run", options->dry_run,
                      "Print what would be measured and about how long it would take, then exit");
   arguments.add("--out FOLDER", options->output.folder,
                 "Folder for the results: tables, samples, provenance");
-  const Argument resume = arguments.add_flag(
-      "--resume", options->output.resume,
-      "Continue an interrupted run of the same command: keep the finished rounds of the folder");
-  arguments.add_flag("--overwrite", options->output.overwrite, "Replace the results that the folder has")
+  const Argument resume =
+      arguments.add_flag("--resume", options->output.resume,
+                         "Continue an interrupted run of the same command, keeping its finished rounds");
+  arguments.add_flag("--overwrite", options->output.overwrite, "Replace existing results in the folder")
       .excludes(resume);
   arguments.add_flag("--trace", options->output.trace,
                      "Also trace each combination into FOLDER/traces, after it has been timed");
@@ -319,9 +320,10 @@ std::function<int()> declare_bench(Arguments& arguments) {
        {"github", SummaryFormat::github}},
       "What to print: table, csv, json, or github (the input of github-action-benchmark, "
       "also written into FOLDER) (default: table)");
-  arguments.add("--verified FOLDER", options->verified,
-                "Result folder in which this program has already verified these combinations: rely on it, "
-                "and only take samples");
+  arguments.add(
+      "--verified FOLDER", options->verified,
+      "Result folder of an earlier run of this program that verified these combinations; only samples "
+      "are taken");
   return [options] {
     if (!options->threads.empty()) options->execution.threads = std::ranges::max(options->threads);
     return run(*options);

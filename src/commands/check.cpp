@@ -29,7 +29,7 @@
 namespace mssim {
 namespace {
 
-/// A bench of these backends and integrators, as it is where nothing else is asked for.
+/// Settings of a bench of these backends and integrators with default options.
 BenchSettings usual_settings(std::vector<const BackendInfo*> backends,
                              std::vector<const Integrator*> integrators) {
   BenchSettings settings;
@@ -57,9 +57,9 @@ bool can_step(const SceneSize& size, const Integrator& integrator, const Backend
   return !is_implicit(integrator) || backend.make_implicit != nullptr;
 }
 
-/// A row for each integrator and backend that can step the scene: the largest stable dt, the memory that a
-/// bench of this combination takes for as many threads as there are processors, and how long a bench of the
-/// usual rounds and a run of the usual duration take, about.
+/// A row for each integrator and backend that can step the scene: the largest stable dt, the memory of a
+/// bench of this combination with all processors, and the expected times of a bench and a run of default
+/// length.
 Table combination_table(const PreparedScene& scene, const SceneSize& size, const ModeBound& modes) {
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
   Table table;
@@ -82,7 +82,7 @@ Table combination_table(const PreparedScene& scene, const SceneSize& size, const
   return table;
 }
 
-/// The integrators that a bench takes unasked.
+/// Default integrators of a bench.
 std::vector<const Integrator*> usual_integrators() {
   std::vector<const Integrator*> usual;
   for (const std::string_view name : comparison_of_suite("").integrators)
@@ -90,8 +90,8 @@ std::vector<const Integrator*> usual_integrators() {
   return usual;
 }
 
-/// Names the integrators, of those that a bench takes unasked, with which the scene may blow up: the limit is
-/// on the safe side. Empty where there is none.
+/// A warning about the default integrators with which the scene may blow up, according to a limit on the safe
+/// side. Empty if there is none.
 std::string warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
   std::vector<std::string_view> unstable;
   double smallest = scene.dt_s;
@@ -110,7 +110,7 @@ std::string warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
       scene.dt_s, listed(unstable), smallest);
 }
 
-/// A bench that says nothing of backends and integrators takes them all at once.
+/// A bench without --backend and --integrator holds all combinations in memory at once.
 std::string warning_of_memory(const SceneSize& size) {
   const BenchSettings settings = usual_settings(comparison_of_suite("").backends(), usual_integrators());
   const auto shortage = memory_shortage(bench_memory_needed(settings, size));
@@ -124,8 +124,8 @@ struct CheckOptions {
 };
 
 int run(const CheckOptions& options) {
-  Table rows;          // each combination with what its scene is
-  std::string tables;  // for a reader: what the scene is in a line of its own
+  Table rows;          // each combination, with the properties of its scene
+  std::string tables;  // for a reader: the properties of each scene on a line of their own
   for (const std::string& name : options.scenes) {
     const PreparedScene scene = prepare_scene(find_scene(name));
     const SceneSize size = size_of(scene.spec, scene.counts);

@@ -26,7 +26,7 @@ namespace {
 constexpr auto table = std::to_array<Command>({
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
-    {"run", "Simulate one scene; write a trace or an energy curve if asked to",
+    {"run", "Simulate one scene; optionally write a trace or an energy curve",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
     {"render", "Draw pictures or a movie of a trace or a scene",
      "mssim render --scene jeans4k --out jeans.png", declare_render},
@@ -50,27 +50,26 @@ constexpr auto table = std::to_array<Command>({
 });
 
 constexpr std::string_view exit_codes =
-    "Exit codes: 0 all well; 1 a row is not verified, a simulation blew up, a garment\n"
+    "Exit codes: 0 success; 1 a row is not verified, a simulation blew up, a garment\n"
     "does not fit, or a comparison found a regression; 2 bad usage or input; 3 a\n"
-    "device or program that was asked for is missing; 4 a file could not be read or\n"
-    "written.";
+    "requested device or program is missing; 4 a file could not be read or written.";
 
 /// A user may name a scene without --scene before it.
 std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }
 
 int fail(int code, const std::string& sentence) {
-  std::cerr << "mssim: " << escaped(sentence) << '\n';  // names in it may hold anything
+  std::cerr << "mssim: " << escaped(sentence) << '\n';  // names may contain control characters
   return code;
 }
 
-/// The standard library's own sentence names a call in it.
+/// The standard library's message contains the name of a function.
 std::string sentence_of(const std::filesystem::filesystem_error& error) {
   const std::string file = error.path1().string(), reason = " (" + error.code().message() + "): ";
   return file.empty() ? "the working folder cannot be found" + reason + "change into a folder that is there"
                       : file + " cannot be looked up" + reason + "check the path and its permissions";
 }
 
-/// Ends with the exit code of what was thrown, and says why.
+/// Runs a command and returns the exit code for what it throws, after printing the message.
 int run_guarded(const std::function<int()>& run) {
   try {
     return run();
@@ -78,7 +77,7 @@ int run_guarded(const std::function<int()>& run) {
     remove_temporary_folder_of_process();
     std::signal(interrupted.signal, SIG_DFL);
     std::raise(interrupted.signal);
-    return 128 + interrupted.signal;  // where the signal is blocked
+    return 128 + interrupted.signal;  // only if the signal is blocked
   } catch (const Error& error) {
     return fail(error.exit_code, error.what());
   } catch (const std::bad_alloc&) {
@@ -105,7 +104,7 @@ int run_program(int argc, char** argv) {
   remember_arguments(argc, argv);
   if (argc > 1 && argv[1] == driver_trial_word)
     run_driver_trial({argv + 2, static_cast<std::size_t>(argc - 2)});
-  if (argc > 1 && argv[1][0] != '-') {  // the parser would take it for a word too many
+  if (argc > 1 && argv[1][0] != '-') {  // the parser would report an unexpected argument
     const std::string_view word = argv[1];
     if (std::ranges::find(commands(), word, &Command::name) == commands().end())
       return fail(exit_bad_input, unknown_command(word));
@@ -137,8 +136,7 @@ int run_program(int argc, char** argv) {
   } else {
     code = run_guarded(run.at(request.command));
   }
-  // Results that could not be written are no results (a full disk; a closed pipe ends the program by
-  // SIGPIPE).
+  // Results that could not be written are lost (a full disk; a closed pipe ends the program by SIGPIPE).
   if (!std::cout.flush()) return fail(exit_file_error, "standard output could not be written");
   return code;
 }

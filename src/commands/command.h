@@ -9,18 +9,19 @@
 
 namespace mssim {
 
-/// A row of the TABLE of subcommands. A new one is one row in command.cpp and a file of its own.
+/// A row of the TABLE of subcommands. A new one is a row in command.cpp and a file of its own.
 struct Command {
   std::string_view name;
   std::string_view description;
   std::string_view example;  ///< shown by `mssim --help` and `mssim COMMAND --help`
-  /// Declares its arguments and returns what runs after they have been parsed: it returns an ExitCode.
+  /// Declares the command's arguments. Returns the function to run after parsing, which returns an ExitCode.
   std::function<int()> (*declare)(Arguments& arguments);
 };
 
+/// The TABLE.
 std::span<const Command> commands();
 
-/// Command::declare of each, in the file that is called as the command.
+/// Command::declare of each command, defined in the file of the command's name.
 std::function<int()> declare_bench(Arguments& arguments);
 std::function<int()> declare_run(Arguments& arguments);
 std::function<int()> declare_render(Arguments& arguments);
@@ -34,7 +35,7 @@ std::function<int()> declare_new_backend(Arguments& arguments);
 std::function<int()> declare_list(Arguments& arguments);
 std::function<int()> declare_help(Arguments& arguments);
 
-/// The complaint about a word that is no row's name.
+/// The error message for an unknown command.
 std::string unknown_command(std::string_view name);
 
 /// Runs the whole program. Messages go to stderr, results to stdout. Never throws.

@@ -21,15 +21,15 @@ namespace mssim {
 namespace {
 
 struct CompareOptions {
-  AbOptions ab;  ///< of which two folders have base, next and threshold
+  AbOptions ab;  ///< for two folders: only base, next and threshold
   bool programs = false;
   double threshold_percent = 5;
   ComparisonFormat format = ComparisonFormat::table;
   bool force = false;
 };
 
-/// Times from unlike machines or builds are no regression and no progress: says how they differ, and refuses
-/// them unless that is what is wanted.
+/// Times from different machines or builds show no regression or progress: reports the differences, and
+/// refuses unless forced.
 void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool force) {
   std::vector<std::string> all = differences(base.provenance, next.provenance);
   const std::vector<std::string> of_rows = differences(base.rows, next.rows);
@@ -42,7 +42,7 @@ void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool f
   std::cerr << "mssim: compared anyway: " << sentence << '\n';
 }
 
-/// One line for combinations that are not in the table, however many.
+/// Prints one line about combinations that are not in the table, however many.
 void tell(const std::string& what, const std::vector<std::string>& combinations) {
   if (combinations.empty()) return;
   std::cerr << "mssim: " << what << ": " << combinations.front();
@@ -50,7 +50,7 @@ void tell(const std::string& what, const std::vector<std::string>& combinations)
   std::cerr << '\n';
 }
 
-/// Why the comparison ends with 1: each combination that is slower or lost.
+/// Reasons for exit code 1: each combination that is slower or lost.
 std::vector<std::string> regressions(const RunComparison& comparison) {
   std::vector<std::string> sentences;
   for (const ComparedRow& row : comparison.rows) {
@@ -104,8 +104,7 @@ std::function<int()> declare_compare(Arguments& arguments) {
       .add("BASE", options->ab.base,
            "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
       .required();
-  arguments.add("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
-      .required();
+  arguments.add("NEW", options->ab.next, "Folder or program to compare with BASE").required();
   arguments.add_number("--threshold PERCENT", options->threshold_percent,
                        "Smallest change that counts, in percent (default: 5)", positive_number());
   arguments.add_choice<ComparisonFormat>("--format", options->format,
@@ -133,12 +132,12 @@ std::function<int()> declare_compare(Arguments& arguments) {
                 "With --ab: integrators (default: semi-euler)")
       .needs(ab);
   arguments
-      .add_number("--threads N", options->ab.threads, "With --ab: threads (default: all processors)",
+      .add_number("--threads N", options->ab.threads, "With --ab: threads (default: one per available CPU)",
                   whole_number(1, most_threads))
       .needs(ab);
   arguments
-      .add_number("--time-budget SECONDS", options->ab.time_budget_s,
-                  "With --ab: seconds it may take (default: 300)", number_between(1, 86400))
+      .add_number("--time-budget SECONDS", options->ab.time_budget_s, "With --ab: time limit (default: 300)",
+                  number_between(1, 86400))
       .needs(ab);
   return [options] { return run(*options); };
 }

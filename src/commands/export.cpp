@@ -29,7 +29,7 @@ struct ExportOptions {
   FrameOptions frames;
 };
 
-/// Endings of files that have the format; the first is the usual one.
+/// File extensions of the format; the first is the default.
 std::vector<std::string_view> extensions_of(ExportFormat format) {
   if (format == ExportFormat::vtkhdf) return {".vtkhdf", ".hdf", ".h5", ".hdf5"};
   return {format == ExportFormat::obj ? ".obj" : ".ply"};
@@ -39,14 +39,14 @@ std::string name_of(ExportFormat format) {
   return format == ExportFormat::obj ? "OBJ" : format == ExportFormat::ply ? "PLY" : "VTKHDF";
 }
 
-/// fall.obj -> fall-000012.obj, numbered as in the trace.
+/// fall.obj -> fall-000012.obj, with the frame's number in the trace.
 fs::path numbered(const fs::path& file, std::size_t frame) {
-  constexpr std::size_t digits = 6;  // so that names sort like frames
+  constexpr std::size_t digits = 6;  // names sort like frames
   return file.parent_path() /
          fmt::format("{}-{:0{}}{}", file.stem().string(), frame, digits, file.extension().string());
 }
 
-/// The frames asked for, each once and in the order of time; the last one where none are.
+/// The requested frames, each once and in order of time; by default the last one.
 std::vector<std::size_t> exported_frames(const FrameOptions& options, const std::vector<double>& times_s) {
   if (!options.given()) return {times_s.size() - 1};
   std::vector<std::size_t> frames = chosen_frames(options, times_s);
@@ -55,7 +55,7 @@ std::vector<std::size_t> exported_frames(const FrameOptions& options, const std:
   return frames;
 }
 
-/// The files for these frames: a format without times has one for each.
+/// The files for these frames: one per frame if the format has no times.
 std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<std::size_t>& frames) {
   const fs::path out =
       options.out.empty() ? "." / fs::path(options.trace).stem().concat(extensions_of(options.format).front())
@@ -108,13 +108,13 @@ std::function<int()> declare_export(Arguments& arguments) {
   arguments
       .add_choice("--format", options->format,
                   {{"obj", ExportFormat::obj}, {"ply", ExportFormat::ply}, {"vtkhdf", ExportFormat::vtkhdf}},
-                  "What to write: obj or ply, triangles, a file a frame; vtkhdf, all frames in one file, "
-                  "bodies as tetrahedra")
+                  "Format: obj or ply (triangles, one file per frame) or vtkhdf (all frames in one file, "
+                  "bodies as tetrahedra)")
       .required();
   arguments.add(
       "--out FILE", options->out,
-      "File to write (default: the trace's name, and .obj, .ply or .vtkhdf); several have their frame's "
-      "number behind the name");
+      "File to write (default: the trace's name with .obj, .ply or .vtkhdf); if there are several, the "
+      "frame's number is appended to the name");
   declare_frames(arguments, options->frames);
   return [options] { return run(*options); };
 }

@@ -33,8 +33,8 @@ struct ListOptions {
   OwnBackendOptions own_backends;
 };
 
-/// With what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why: once,
-/// since one cause (TetGen is missing) is behind all of them.
+/// Lists scenes with the numbers that they really have. Bodies whose mesh cannot be made have none. stderr
+/// gives the first reason only, because one cause (TetGen is missing) explains all.
 Table list_scenes(const ListOptions& /*options*/) {
   Table table;
   std::vector<std::string> uncounted;
@@ -61,7 +61,7 @@ Table list_scenes(const ListOptions& /*options*/) {
                {"description", spec.description}});
   }
   if (!uncounted.empty())
-    std::cerr << "mssim: nodes and springs of " << listed(uncounted) << " are left out: " << first_reason
+    std::cerr << "mssim: nodes and springs of " << listed(uncounted) << " are not shown: " << first_reason
               << '\n';
   return table;
 }
@@ -157,7 +157,7 @@ constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"devices", list_devices},
                                                  {"claims", list_claims}});
 
-/// And of what is printed as it is: schemas of JSON files.
+/// Things that are printed as they are: schemas of JSON files.
 struct Printed {
   std::string_view name;
   std::string (*text)();
@@ -185,12 +185,12 @@ std::function<int()> declare_list(Arguments& arguments) {
   arguments
       .add("WHAT", options->subject,
            "What to list: " + listed(known, "or") +
-               "; the schemas are JSON, of scene files and of claims.json",
+               "; the schemas are JSON Schemas of scene files and of claims.json",
            one_of("word", {known.begin(), known.end()}))
       .required();
   declare_listing_format(arguments, options->format);
   arguments.add("--device N|NAME", options->execution.device,
-                "OpenCL device that backends are checked with: its number or a part of its name or platform");
+                "OpenCL device to check backends with: its number or a part of its name or platform");
   declare_backend_folders(arguments, options->own_backends);
   return [options] { return run_list(*options); };
 }

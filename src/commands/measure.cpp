@@ -30,14 +30,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A body from a file that has been measured: what its scene file says of it, and what it is.
+/// A measured body from a file: its description in a scene file, and the body itself.
 struct MeasuredFile {
   BodyFile body;
   BodyProfile profile;
   BodyLandmarks landmarks;
 };
 
-/// A length for reading, m: to a tenth of a millimetre.
+/// A length for display, m, rounded to a tenth of a millimetre.
 double to_tenths(double metres) { return std::round(1e4 * metres) / 1e4; }
 
 Vec3d to_tenths(const Vec3d& point) {
@@ -50,10 +50,10 @@ std::string name_of_unit(double metres) {
   return unit == units.end() ? "" : std::string(unit->name);
 }
 
-/// What `mssim measure` has found of a body: rows of measure, value, unit and note.
+/// The results of `mssim measure` for a body: rows of measure, value, unit and note.
 class BodyListing {
  public:
-  /// `how` it is known, the same for all three.
+  /// `how`: the source of all three values.
   void add_stance(const BodyStance& stance, const std::string& how) {
     const std::string name = name_of_unit(stance.unit_m);
     add("unit", stance.unit_m, "m", name.empty() ? how : name + ", " + how);
@@ -66,7 +66,7 @@ class BodyListing {
           "to its left, up, ahead: legs on either side of x = 0, feet on the floor");
   }
 
-  /// `what` has been done about them.
+  /// `what`: how they are treated.
   void add_openings(std::span<const Opening> openings, const std::string& what) {
     for (std::size_t i = 0; i < openings.size(); ++i)
       add(fmt::format("opening_{}", i + 1), to_tenths(openings[i].size), "m",
@@ -95,7 +95,7 @@ class BodyListing {
 
   void add_landmark(const std::string& name, const Landmark& landmark) {
     add(name + "_height", to_tenths(landmark.height), "m",
-        landmark.by_proportion ? "by proportion: nothing shows it" : "");
+        landmark.by_proportion ? "estimated by proportion" : "");
     add(name + "_girth", landmark.girth ? Cell(to_tenths(*landmark.girth)) : Cell(), "m",
         landmark.girth ? "" : "the legs are not apart there");
   }
@@ -117,7 +117,7 @@ ordered_json section_of(const BodyFile& body) {
   return section;
 }
 
-/// The template's garment with another body, and without what it states for its own.
+/// The template's garment for another body, without what it states for its own body.
 ordered_json garment_for(const BodyFile& body, const ordered_json& garment) {
   ordered_json changed;
   for (const auto& [key, value] : garment.items()) {
@@ -130,8 +130,9 @@ ordered_json garment_for(const BodyFile& body, const ordered_json& garment) {
   return changed;
 }
 
-/// A node of as many in smaller jeans is lighter by as much as its cell is smaller, and dt goes with the root
-/// of its mass. Two digits, downwards; no longer than the template's, which is tried.
+/// The mass of a node is proportional to the area of its cell, which is smaller in smaller jeans of as many
+/// nodes; dt is proportional to the square root of the mass. Rounds down to two digits, and never exceeds the
+/// template's tested dt.
 double shorter_dt(double dt_s, const JeansMeasures& jeans, double hip_girth) {
   const JeansMeasures reference;
   constexpr double reference_hip = 0.98;
@@ -143,9 +144,9 @@ double shorter_dt(double dt_s, const JeansMeasures& jeans, double hip_girth) {
   return std::floor(dt * digits_per_s * (1 + rounding)) / digits_per_s;
 }
 
-/// The text of a scene file to start from: jeans4k for this body. Cloth and dressing are that scene's; dt is
-/// shorter by as much as the jeans, of as many nodes, are smaller. `file` is where it is to stand. Throws
-/// SceneError for what no scene file can hold, such as a name that is no UTF-8.
+/// Text of a scene file to start from: jeans4k for this body. Cloth and dressing are that scene's; dt is
+/// scaled with the size of the jeans, which have as many nodes. `file` is the path of the scene. Throws
+/// SceneError for content that a scene file cannot hold, such as a name that is not UTF-8.
 std::string jeans_scene(const fs::path& file, const MeasuredFile& found) {
   const JeansMeasures jeans = jeans_for_body(found.profile, found.landmarks);
   try {
@@ -165,12 +166,12 @@ std::string jeans_scene(const fs::path& file, const MeasuredFile& found) {
     section["thigh_ease_m"] = jeans.thigh_ease.value();
     section["waist_ease_m"] = jeans.waist_ease;
     section["crotch_ease_m"] = jeans.crotch_ease;
-    // As people dress: the waistband in their hands, the legs hanging from it.
+    // As people dress: they hold the waistband, and the legs hang from it.
     ordered_json& dressing = scene["garment"]["dressing"];
     dressing["held"] = "upper edge";
     dressing["seaming_gravity"] = 1;
-    // What is held gives way less, so that seams close later. One that is open when their time is up is sewn
-    // across its gap, and friction keeps the cloth beside it stretched.
+    // Held cloth yields less, so seams close later. A seam that is open when its time is up is sewn across
+    // the gap, and friction then keeps the cloth next to it stretched.
     constexpr double more = 2;
     for (const char* key : {"seam_force_n_per_m", "longest_seaming_s"})
       dressing[key] = more * dressing.at(key).get<double>();
@@ -184,7 +185,7 @@ std::string jeans_scene(const fs::path& file, const MeasuredFile& found) {
   }
 }
 
-/// Eyes, mouth, a neck without its head; narrower than any waist.
+/// Largest opening to close: eyes, mouth, a neck without its head; narrower than any waist.
 constexpr double largest_closed_m = 0.2;
 
 struct MeasureOptions {
@@ -207,7 +208,7 @@ std::optional<double> unit_given(const std::string& text) {
                    unit_names());
 }
 
-/// A scene is not replaced unasked, and a body never.
+/// An existing scene is replaced only on request, and a body never.
 void require_free(const MeasureOptions& options) {
   const fs::path scene = options.scene;
   if (scene.extension() != ".json")
@@ -230,7 +231,7 @@ void tell_of_ignored_parts(const BodyProfile& profile) {
   if (!ignored.empty()) std::cerr << "mssim: " << ignored << '\n';
 }
 
-/// Measures the body of a file, printing what is found as far as it goes. Throws InputError.
+/// Measures the body of a file, and prints the results as far as it gets. Throws InputError.
 MeasuredFile measure_file(const MeasureOptions& options) {
   auto [surface, note] = read_surface(options.body);
   if (!note.empty()) std::cerr << "mssim: " << printable(note, 1000) << '\n';
@@ -266,7 +267,7 @@ MeasuredFile measure_file(const MeasureOptions& options) {
   }
 }
 
-/// Writes a scene for the body, and says whether its jeans can be cut.
+/// Writes a scene for the body, and reports whether its jeans can be drafted.
 int write_scene(const MeasureOptions& options, MeasuredFile found) {
   const fs::path scene = options.scene;
   found.body.file = fs::relative(options.body, fs::absolute(scene).parent_path()).string();
@@ -298,7 +299,7 @@ int measure_scene(const MeasureOptions& options) {
   const BodyProfile body = measured_body(spec).profile;
   tell_of_ignored_parts(body);
   BodyListing listing;
-  listing.add_stance(file ? file->stance : BodyStance{}, "by the scene");
+  listing.add_stance(file ? file->stance : BodyStance{}, "from the scene");
   listing.add_measures(body, find_landmarks(body));
   tell(options, listing);
   return exit_ok;
@@ -324,7 +325,7 @@ int run_measure(const MeasureOptions& options) {
   }
 }
 
-/// The words of a table, as choices that set an optional.
+/// The words of a table as choices of an optional value.
 template <class Value, std::size_t n>
 std::map<std::string, std::optional<Value>> choices_of(const std::array<std::string_view, n>& names) {
   std::map<std::string, std::optional<Value>> choices;
@@ -340,13 +341,13 @@ std::function<int()> declare_measure(Arguments& arguments) {
       .required();
   arguments.add(
       "--unit UNIT", options->unit,
-      fmt::format("Unit of the file: {}or its metres (default: found from the height)", unit_names()));
+      fmt::format("Unit of the file: {}or its metres (default: detected from the height)", unit_names()));
   arguments.add_choice("--up", options->up, choices_of<UpAxis>(up_axis_names),
-                       "Axis of the file along which the body stands: y or z (default: found)");
+                       "Upright axis of the body in the file: y or z (default: detected)");
   arguments.add_choice("--facing", options->facing, choices_of<Facing>(facing_names),
-                       "Where the body looks: +x, -x, +y, -y, +z or -z (default: found)");
+                       "Direction that the body faces: +x, -x, +y, -y, +z or -z (default: detected)");
   arguments.add_flag("--close-holes", options->close_holes,
-                     "Fill openings of the surface that are up to 0.2 m across");
+                     "Close openings of the surface that are up to 0.2 m across");
   const Argument scene =
       arguments.add("--scene FILE", options->scene, "Scene file to write: jeans for the body, for mssim run");
   arguments.add_flag("--overwrite", options->overwrite, "Replace the scene file if it exists").needs(scene);

@@ -18,32 +18,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a backend to start from is written in.
+/// Language of a starter.
 enum class StarterLanguage : std::uint8_t { python, cpp };
 
-/// A file of a backend to start from.
+/// A file of a starter.
 struct StarterFile {
   fs::path name;
   std::string text;
   bool executable = false;
-  bool shared = false;  ///< the same for every backend: one that stands there already serves this one, too
+  bool shared = false;  ///< identical for every backend; an existing identical file is kept
 };
 
-/// A backend to start from: a working example and what goes with it, and how to use it.
+/// A backend to start from: a working example with its other files, and commands that use it.
 struct Starter {
   std::vector<StarterFile> files;
-  std::vector<std::string> commands;  ///< for a shell, in the order of their use
+  std::vector<std::string> commands;  ///< for a shell, in order of use
 };
 
-/// The name of the examples, which gives way to the new one's.
+/// The name in the examples, which is replaced by the new name.
 constexpr std::string_view example_name = "my_backend";
 
-/// What a program of one of these names would import instead of the module that it needs.
+/// Modules that a backend needs; a program of such a name would be imported instead of the module.
 constexpr std::array<std::string_view, 3> needed_modules{"mssim_backend", "numpy", "h5py"};
 
-/// Whether the Python in PATH has a module of that name, of its library or installed: the program's folder
-/// goes before those, so that what the example imports, and all that this imports, would get the program
-/// instead. False where there is no Python, which would run no such program either.
+/// Whether the Python in PATH has a module of that name, in its library or installed. The program's folder is
+/// searched first, so the imports of the example would find the program instead. False without Python, which
+/// could not run such a program either.
 bool is_module_of_python(const std::string& name) {
   const auto python = find_program("python3");
   if (!python || name.find('-') != std::string::npos) return false;  // `import a-b` is none
@@ -74,7 +74,7 @@ void require_usable(const std::string& name) {
     throw UsageError(name + " is the name of a module that backends need: give another name");
 }
 
-/// The text of an example, with the name of the new backend in it.
+/// The text of an example, with the name of the new backend.
 std::string example_for(const std::string& name, std::string_view extension) {
   std::string text = read_file(data_folder() / "examples" / (std::string(example_name).append(extension)));
   for (std::size_t at = text.find(example_name); at != std::string::npos;
@@ -87,7 +87,7 @@ std::string bench_command(const fs::path& program) {
   return "mssim bench --scene cloth2500 --backend " + shell_word("serial,openmp," + program.string());
 }
 
-/// The starter of that name, whose files are to lie in `folder`. Throws UsageError for a name that would not
+/// The starter with that name, whose files are to be in `folder`. Throws UsageError for a name that would not
 /// work.
 Starter starter_of(const std::string& name, StarterLanguage language, const fs::path& folder) {
   require_usable(name);
@@ -95,7 +95,7 @@ Starter starter_of(const std::string& name, StarterLanguage language, const fs::
   if (language == StarterLanguage::python) {
     if (is_module_of_python(name))
       throw UsageError(name + " is the name of a module of python3, which would be imported from " + name +
-                       ".py by all that needs it: give another name, my_" + name + " say");
+                       ".py by programs that need it: choose my_" + name + " for example");
     const std::string file = name + ".py";
     return {{{file, example_for(name, ".py"), true}}, {bench_command(folder / file)}};
   }
@@ -112,7 +112,7 @@ struct NewBackendOptions {
   StarterLanguage language = StarterLanguage::python;
 };
 
-/// Whether the file is to be written. Throws UsageError where another one stands in its place.
+/// Whether the file must be written. Throws UsageError if another file has its name.
 bool is_wanted(const StarterFile& file, const fs::path& path) {
   std::error_code none;
   if (!fs::exists(fs::symlink_status(path, none))) return true;
@@ -120,11 +120,11 @@ bool is_wanted(const StarterFile& file, const fs::path& path) {
     throw UsageError(printable(path.string(), 1000) + " already exists: give another name or --out");
   if (read_file(path) != file.text)
     throw UsageError(printable(path.string(), 1000) +
-                     " is another version's than this mssim's: give another --out, or remove it");
+                     " is from another version of mssim: give another --out, or remove it");
   return false;
 }
 
-/// Whoever may read it may run it.
+/// Allows everyone who may read the file to run it.
 void make_executable(const fs::path& file) {
   const fs::perms readers = fs::status(file).permissions() &
                             (fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
@@ -156,10 +156,10 @@ std::function<int()> declare_new_backend(Arguments& arguments) {
       .add_choice(
           "--language", options->language,
           {{"python", StarterLanguage::python}, {"c++", StarterLanguage::cpp}},
-          "What to write: python, one file that needs NumPy and h5py; c++, one file and a header that "
-          "needs HDF5's C library")
+          "Language: python (one file; needs NumPy and h5py) or c++ (one file and a header; needs HDF5's "
+          "C library)")
       .required();
-  arguments.add("--out DIR", options->out, "Folder to write into (default: this one)");
+  arguments.add("--out DIR", options->out, "Folder to write into (default: the working folder)");
   return [options] { return run_new_backend(*options); };
 }
 

@@ -17,8 +17,9 @@ std::size_t frame_number(const std::string& word, std::size_t frames) {
   if (word == "last") return frames - 1;
   const auto number = number_in<std::int64_t>(word);
   if (!number || *number < 0)
-    throw UsageError("--frames: \"{}\" is no frame; give numbers from 0 on, ranges like 10-20, last, or all",
-                     printable(word));
+    throw UsageError(
+        "--frames: \"{}\" is not a frame; give numbers from 0 on, ranges like 10-20, last, or all",
+        printable(word));
   if (static_cast<std::uint64_t>(*number) >= frames)
     throw UsageError("--frames: there is no frame {}; the last one is {}", *number, frames - 1);
   return static_cast<std::size_t>(*number);
@@ -30,8 +31,8 @@ std::vector<std::size_t> all_of(std::size_t frames) {
   return list;
 }
 
-/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is:
-/// a path that exists.
+/// Length of the first name or file in the text. Files of scenes and of backends are recognised in the same
+/// way: a path that exists.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
@@ -48,7 +49,7 @@ Argument declare_frames(Arguments& arguments, FrameOptions& options) {
                                              number_between(0, 1e9));
   arguments
       .add_list("--frames LIST", options.frames,
-                "Take these frames only: numbers from 0 on, ranges like 10-20, last, all")
+                "Take only these frames: numbers from 0 on, ranges like 10-20, last, all")
       .excludes(time);
   return time;
 }
@@ -94,14 +95,14 @@ void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::st
                       std::optional<Argument> needed) {
   const std::array all{
       arguments.add("--view VIEW", choice.view,
-                    "From where: front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees "
+                    "Viewpoint: front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees "
                     "(default: three-quarter)"),
       arguments.add("--size WIDTHxHEIGHT", choice.size,
                     "Size of a picture in pixels (default: " + usual_size + ')'),
       arguments.add_choice(
           "--colour", choice.colour,
           {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
-          "What colours tell apart: object, panel (of a garment) or strain (default: object)")};
+          "What the colours show: object, panel (of a garment) or strain (default: object)")};
   for (Argument argument : all)
     if (needed) argument.needs(*needed);
 }
@@ -109,13 +110,14 @@ void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::st
 PictureOptions picture_options(const PictureChoice& choice, const std::string& usual_size, int threads) {
   const auto view = view_direction(choice.view);
   if (!view)
-    throw UsageError("--view: \"" + printable(choice.view) +
-                     "\" is no view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
+    throw UsageError(
+        "--view: \"" + printable(choice.view) +
+        "\" is not a view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
   const auto size = two_numbers(choice.size.empty() ? usual_size : choice.size, most_picture_pixels);
   if (!size)
-    throw UsageError("--size: \"{}\" is no size; give WIDTHxHEIGHT, up to {} pixels each",
+    throw UsageError("--size: \"{}\" is not a size; give WIDTHxHEIGHT, up to {} pixels each",
                      printable(choice.size), most_picture_pixels);
-  if (choice.colour != ColourBy::object) require_font();  // of their legends
+  if (choice.colour != ColourBy::object) require_font();  // for the legend
   return {*view, size->first, size->second, choice.colour, threads};
 }
 
@@ -157,32 +159,31 @@ void declare_listing_format(Arguments& arguments, ListingFormat& target) {
 
 void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads) {
   const std::string meaning =
-      "Threads, and compute units of an OpenCL device that is a processor (default: one for every processor)";
+      "Threads, and compute units of an OpenCL device that is a processor (default: one per available CPU)";
   if (threads == nullptr)
     arguments.add_number("--threads N", options.threads, meaning, whole_number(1, most_threads));
   else
     arguments.add_number("--threads N,...", *threads,
-                         meaning + "; of several numbers each is a row of its own",
+                         meaning + "; each of several numbers gets rows of its own",
                          whole_numbers(1, most_threads));
   arguments.add_number("--ranks N", options.ranks,
-                       "Processes of the backend mpi, of --threads threads each; mpi:N says it of one row "
+                       "Processes of the backend mpi, of --threads threads each; mpi:N sets it for one row "
                        "(default: as many as --threads, of one thread each)",
                        whole_number(1, most_ranks));
   arguments.add("--launcher COMMAND", options.launcher,
-                "Command that starts the processes of the backend mpi, to which `-n N PROGRAM` is added "
-                "(default: mpirun)");
+                "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)");
   arguments.add("--device N|NAME", options.device,
                 "OpenCL device: its number or a part of its name or platform (see mssim list devices)");
   arguments.add_choice<DeviceMemory>(
       "--memory", options.memory,
       {{name_of(DeviceMemory::copy), DeviceMemory::copy},
        {name_of(DeviceMemory::shared), DeviceMemory::shared}},
-      "How host and OpenCL device exchange data: shared, without copying where the device can, or copy "
+      "How host and OpenCL device exchange data: shared (without copying if the device can) or copy "
       "(default: shared)");
   arguments.add_choice<Roots>(
       "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
-      "How openmp and gather-vectors find the lengths of springs: fast, with AVX-512 by an estimate and a "
-      "Newton step, or exact, which gives the same bits on every processor that has multiply-adds (default: "
+      "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and a "
+      "Newton step) or exact (bitwise identical on every processor with fused multiply-adds) (default: "
       "fast)");
 }
 
@@ -193,7 +194,7 @@ Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& option
 
 Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
   return arguments.add_number("--backend-limit SECONDS", options.limit_s,
-                              "Longest time in which a program that is a backend must answer (default: 120)",
+                              "Time limit for each answer of a program that is a backend (default: 120)",
                               number_between(0.001, longest_time_limit_s));
 }
 
@@ -202,20 +203,19 @@ void declare_stepping(Arguments& arguments, RunOptions& options, const std::stri
   const auto of_a_simulation = [&](Argument argument) {
     if (needed) argument.needs(*needed);
   };
-  of_a_simulation(
-      arguments.add("--backend NAME|FILE", options.backend,
-                    "Backend that simulates it: a name (see mssim list backends), or a program of "
-                    "your own, a path with a slash (default: openmp)"));
+  of_a_simulation(arguments.add("--backend NAME|FILE", options.backend,
+                                "Backend: a name (see mssim list backends), or the path of your own program, "
+                                "with a slash (default: openmp)"));
   of_a_simulation(declare_backend_folders(arguments, options.own_backends));
   of_a_simulation(declare_backend_limit(arguments, options.own_backends));
   of_a_simulation(arguments.add("--integrator NAME", options.integrator, "Integrator (default: semi-euler)"));
   of_a_simulation(
       arguments.add_number("--duration SECONDS", options.duration_s,
-                           "Simulated time (default: 1); for a garment the longest time that it may take to "
-                           "settle (default: 4)",
+                           "Simulated time (default: 1); for a garment, the limit for it to settle "
+                           "(default: 4)",
                            positive_number()));
   arguments.add_number("--fps N", options.fps, about_fps, positive_number());
-  of_a_simulation(arguments.add_number("--dt SECONDS", options.dt_s, "Time of a step (default: the scene's)",
+  of_a_simulation(arguments.add_number("--dt SECONDS", options.dt_s, "Time step (default: the scene's)",
                                        positive_number()));
   declare_execution(arguments, options.execution);
 }

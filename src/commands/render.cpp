@@ -30,11 +30,11 @@ namespace fs = std::filesystem;
 
 struct RenderOptions {
   std::string trace;
-  RunOptions run;  ///< of --scene; its fps is that of a movie, too
+  RunOptions run;  ///< for --scene; its fps also applies to a movie
   std::string out, sheet_size;
   PictureChoice look;
   FrameOptions frames;
-  std::optional<std::string> movie;  ///< the file, where it is named here and not by `out`
+  std::optional<std::string> movie;  ///< the file, if named by --movie instead of --out
 };
 
 constexpr double movie_fps = 30;
@@ -42,11 +42,11 @@ constexpr std::uint32_t most_on_a_sheet = 20;  // across and down
 
 using Size = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Columns and rows of the sheet; none where there is none.
+/// Columns and rows of the sheet; none without --sheet.
 std::optional<Size> sheet_size(const RenderOptions& options) {
   const auto sheet = two_numbers(options.sheet_size, most_on_a_sheet);
   if (!sheet && !options.sheet_size.empty())
-    throw UsageError("--sheet: \"{}\" is no number of pictures; give COLUMNSxROWS, up to {} each",
+    throw UsageError("--sheet: \"{}\" is not a number of pictures; give COLUMNSxROWS, up to {} each",
                      printable(options.sheet_size), most_on_a_sheet);
   return sheet;
 }
@@ -59,7 +59,7 @@ PictureOptions pictures_of(const RenderOptions& options) {
                          complete(options.run.execution).threads);
 }
 
-/// "bodies20587" of a scene's name or file, "fall" of fall.h5.
+/// "bodies20587" for a scene's name or file, "fall" for fall.h5.
 std::string stem_of(const RenderOptions& options) {
   return fs::path(options.trace.empty() ? options.run.scene : options.trace).stem().string();
 }
@@ -72,7 +72,7 @@ fs::path output_of(const RenderOptions& options) {
                                                                            : "-sheet.png"));
 }
 
-/// The frames that are drawn, in their order.
+/// The frames to draw, in order.
 std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceContent& content) {
   std::vector<std::size_t> chosen = chosen_frames(options.frames, content.time_s);
   if (const auto sheet = sheet_size(options))
@@ -80,14 +80,14 @@ std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceC
   return options.movie ? chosen : std::vector{chosen.back()};
 }
 
-/// At which a movie shows frames as fast as they follow each other in simulated time.
+/// Frame rate at which a movie runs in simulated time.
 double natural_fps(const TraceContent& content, const std::vector<std::size_t>& frames) {
   const double simulated_s = content.time_s[frames.back()] - content.time_s[frames.front()];
   return simulated_s > 0 ? std::clamp(static_cast<double>(frames.size() - 1) / simulated_s, 0.1, 1000.0)
                          : movie_fps;
 }
 
-/// Draws the chosen frames of a trace: the bytes of the file, and what is in it.
+/// Draws the chosen frames of a trace. Returns the bytes of the file, and a description of its content.
 std::string drawn_file(const RenderOptions& options, const PictureOptions& picture,
                        const TraceReader& trace) {
   const TraceContent& content = trace.content();
@@ -113,24 +113,25 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   return png_of(pictures.front().picture);
 }
 
-/// Frames per simulated second that the pictures need of a run: a scene may be large, and its trace with it.
+/// Frames per simulated second that a run must provide for the pictures. A large scene has a large trace, so
+/// it takes no more than needed.
 double fps_of_run(const RenderOptions& options) {
   if (options.run.fps) return *options.run.fps;
   if (options.movie || options.frames.given()) return movie_fps;
   const double duration_s = options.run.duration_s.value_or(default_duration_s);
   const auto sheet = sheet_size(options);
   const std::uint32_t moments = sheet ? sheet->first * sheet->second : 2;
-  // When a garment has settled nobody knows.
+  // It is unknown when a garment will have settled.
   if (sheet && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content)) return movie_fps;
   return std::max(moments - 1, 1U) / duration_s;
 }
 
 int render(const RenderOptions& options) {
   const PictureOptions picture = pictures_of(options);
-  // Before anything is simulated.
+  // Checked before anything is simulated.
   if (sheet_size(options)) require_font();
   if (options.movie && options.run.fps && (*options.run.fps < 0.1 || *options.run.fps > 1000))
-    throw UsageError("--fps: a movie has 0.1 to 1000 frames a second, not " + decimal(*options.run.fps));
+    throw UsageError("--fps: a movie has 0.1 to 1000 frames per second, not " + decimal(*options.run.fps));
   if (options.movie && !options.movie->empty() && !options.out.empty())
     throw UsageError("--movie and --out both name the file: \"{}\" and \"{}\"; leave one of them out",
                      printable(*options.movie), printable(options.out));
@@ -157,7 +158,7 @@ int render(const RenderOptions& options) {
     for (const fs::path& file : files_of(find_scene(run.scene)))
       read.push_back({"a file of the scene", file});
     require_distinct({{"--out", out}}, read);
-    AtomicFile(out).remove();  // finds what cannot be written before anything is simulated
+    AtomicFile(out).remove();  // finds an unwritable file before anything is simulated
     code = run_scene(run);
   } else {
     require_distinct({{"--out", out}}, {{"the trace", trace}, {"the XDMF beside the trace", xdmf_of(trace)}});
@@ -178,13 +179,13 @@ std::function<int()> declare_render(Arguments& arguments) {
           .add("--scene NAME|FILE", options->run.scene, "Simulate this scene and draw it: a name or a file")
           .excludes(trace);
   arguments.add("--out FILE", options->out,
-                "File to write (default: the trace's or the scene's name, and .png or .webp)");
+                "File to write (default: the trace's or the scene's name with .png or .webp)");
   declare_pictures(arguments, options->look,
                    fmt::format("{}, and {} on a sheet and in a movie", usual_picture_size, size_of_many));
   const Argument time = declare_frames(arguments, options->frames);
   const Argument sheet = arguments
                              .add("--sheet COLUMNSxROWS", options->sheet_size,
-                                  "Put so many moments, evenly spread, on one sheet")
+                                  "Put this many moments, evenly spread, on one sheet")
                              .excludes(time);
   arguments
       .add_flag_with_text("--movie [FILE]", options->movie,
@@ -193,7 +194,7 @@ std::function<int()> declare_render(Arguments& arguments) {
       .excludes(time);
   declare_stepping(
       arguments, options->run,
-      "Frames per simulated second of a scene (default: as many as are drawn, 30 of a movie), and per "
+      "Frames per simulated second of a scene (default: as many as are drawn, 30 for a movie), and per "
       "second of a movie (default: as simulated)",
       scene);
   return [options] { return render(*options); };

@@ -20,7 +20,7 @@ std::function<int()> declare_run(Arguments& arguments) {
                 "single, or double with --backend serial (default: single)",
                 one_of("precision", {"single", "double"}));
   arguments.add("--trace FILE", options->files.trace,
-                "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView beside it");
+                "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView next to it");
   arguments.add("--energy-curve FILE", options->files.energy_curve,
                 "Write the energies of all frames to this CSV file");
   const Argument pictures = arguments.add(

@@ -378,11 +378,11 @@ TEST_F(BenchScene, DoesNotTakeOverWhatWasVerifiedOfAnotherSystemOrPlace) {
     EXPECT_EQ(row.ms_per_step, std::nullopt);
     return row.status;
   };
-  EXPECT_THAT(status_with([](ResultRow& row) { row.threads = 7; }), HasSubstr("with 7 threads, and this is"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.threads = 7; }), HasSubstr("with 7 threads was verified"));
   EXPECT_THAT(status_with([](ResultRow& row) { row.device = "a GPU"; }),
-              HasSubstr("on a GPU with 1 thread,"));
+              HasSubstr("on a GPU with 1 thread was"));
   EXPECT_THAT(status_with([](ResultRow& row) { row.dt_s = 0.5; }), HasSubstr("in steps of 0.5 s"));
-  EXPECT_THAT(status_with([](ResultRow& row) { ++row.nodes; }), HasSubstr("failed: verified was 100 nodes"));
+  EXPECT_THAT(status_with([](ResultRow& row) { ++row.nodes; }), HasSubstr("failed: 100 nodes"));
   EXPECT_THAT(status_with([](ResultRow& row) { row.springs_unique = 1; }), HasSubstr("and 1 springs"));
   EXPECT_THAT(status_with([](ResultRow& row) { row.backend = "openmp"; }), HasSubstr("no earlier process"));
 }
@@ -414,7 +414,7 @@ TEST_F(BenchScene, FindsAProgramThatIsRightOnlyWhereItIsVerified) {
       EXPECT_EQ(row.ms_per_step.has_value(), right);
     }
   };
-  expect_found(Cheat::postpones, "not done when it says so");
+  expect_found(Cheat::postpones, "reports steps before they are done");
   expect_found(Cheat::grows, "not finite");
   for (const Cheat what : {Cheat::stops, Cheat::drifts, Cheat::remembers})
     expect_found(what, "position error");

@@ -163,14 +163,14 @@ says 'serial .* lost  *failed: late'
 
 ab 0 new-partly new-both --backend openmp,serial
 says 'openmp .* same'
-warns 'new-partly has no time of .*serial.*: unsupported: no such method'
+warns 'new-partly has no time for .*serial.*: unsupported: no such method'
 ab 1 new-both new-partly --backend openmp,serial
 says 'openmp .* same'
 says 'serial .* lost  *unsupported: no such method'
 ab 0 new-losing new-both --backend openmp,serial
 says 'openmp .* same'
 if grep -q '^cloth2500 *serial' "$work/out"; then fail "a row stands that BASE has lost"; fi
-warns 'new-losing had a time of .*serial.* none in a later round (failed: late)'
+warns 'new-losing had a time for .*serial.* none in a later round (failed: late)'
 
 ab 1 new-two new-gone --backend openmp,serial
 says 'openmp .* same'

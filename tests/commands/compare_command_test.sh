@@ -54,10 +54,10 @@ says 'openmp .* same'
 compare 0 "$work/base" "$work/faster"
 says 'openmp .* 0\.9 .* faster'
 compare 0 "$work/base" "$work/noisy"
-says 'serial .* undecided  [0-9]* samples a side would decide'
+says 'serial .* undecided  [0-9]* samples per side would decide'
 warns '1 of 2 combinations is undecided'
 compare 0 "$work/few" "$work/few-slower"
-says 'serial .* undecided  5 samples a side would decide'
+says 'serial .* undecided  5 samples per side would decide'
 compare 0 "$work/base" "$work/few"
 warns 'only BASE has: cloth2500, openmp, semi-euler$'
 compare 0 "$work/few" "$work/base/timings.csv"

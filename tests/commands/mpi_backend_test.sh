@@ -90,9 +90,9 @@ ends 0 bench --scene cloth2500 --backend openmp,mpi:3,mpi:1 --integrator semi-eu
 [ "$(hashes counts | wc -l)" -eq 1 ] || fail "mpi:3 has other bits: $(cat counts/timings.csv)"
 sed -n '/"mpi:3": {/,/^    }/p' counts/provenance.json | grep -q '"ranks": 3,' ||
   fail "the provenance does not say in how many processes: $(cat counts/provenance.json)"
-expect 2 'mpi:0 says a number of ranks that cannot be: give one from 1 to 65536' bench --scene cloth2500 --backend mpi:0
-expect 2 'mpi:two says a number of ranks' bench --scene cloth2500 --backend mpi:two
-expect 2 'serial:2 says a number of ranks or threads, which serial does not take' bench --scene cloth2500 --backend serial:2
+expect 2 'mpi:0 has an invalid number of ranks: give one from 1 to 65536' bench --scene cloth2500 --backend mpi:0
+expect 2 'mpi:two has an invalid number of ranks' bench --scene cloth2500 --backend mpi:two
+expect 2 'serial:2 has a number of ranks or threads, which serial does not take' bench --scene cloth2500 --backend serial:2
 expect 2 'unknown backend "mpl:2"' bench --scene cloth2500 --backend mpl:2
 expect 2 'ranks is for backends that run in several processes, and none of these does' bench --scene cloth2500 --backend openmp --ranks 2
 expect 2 'launcher is for backends that run in several processes' run --scene cloth2500 --duration 0.01 --launcher srun

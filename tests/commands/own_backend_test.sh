@@ -143,7 +143,7 @@ printf '{"command": ["./spring_list"]}' >beside.json
 ends 0 bench --scene ./small.json --backend beside --integrator semi-euler --rounds 2
 expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder backends
 expect 2 'there are two backends called here' "${bench[@]}" --backend here --backend-folder backends,twin
-expect 2 'is called like the backend serial of mssim' "${bench[@]}" --backend serial --backend-folder twin
+expect 2 "has the same name as mssim's backend serial" "${bench[@]}" --backend serial --backend-folder twin
 expect 2 '/comand is not a known key' "${bench[@]}" --backend ./wrong.json
 expect 3 'there is no program ./nothing' "${bench[@]}" --backend ./nothing
 expect 3 'wrong.txt is not executable; chmod +x it' "${bench[@]}" --backend ./wrong.txt

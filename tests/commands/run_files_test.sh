@@ -53,7 +53,7 @@ expect 4 'new/shots, which is not empty; empty it or choose another folder' \
   "${fall[@]}" --duration 0.01 --pictures new/shots --trace refused.h5
 [ -z "$(find . -name 'refused*')" ] || fail "a refused run leaves a file"
 expect 2 '--size needs --pictures' "${fall[@]}" --size 160x120
-expect 2 '"up" is no view' "${fall[@]}" --pictures unseen --view up
+expect 2 '"up" is not a view' "${fall[@]}" --pictures unseen --view up
 [ ! -e unseen ] || fail "a refused run leaves a folder"
 
 # A disk that is full: the trace and the energies of its frames are kept.

@@ -36,7 +36,7 @@ units=$(column_of whole/timings.csv threads | sed -n 3p)
 [ "$(columns whole/timings.csv | grep -Ec "^(opencl|hybrid):$units:on $units processors instead of 1: the driver of .* cannot divide it")" -eq 2 ] ||
   fail "notes: $(columns whole/timings.csv)"
 [ "$(grep -Ec "^  .*(opencl|hybrid) +$units +[0-9.]+ \(!\) " out)" -eq 2 ] || fail "the table marks no rows: $(cat out)"
-legend="(!) on more processors than asked for: hybrid ($units instead of 1), opencl ($units instead of 1)"
+legend="(!) on more processors than requested: hybrid ($units instead of 1), opencl ($units instead of 1)"
 grep -qxF "$legend" out || fail "the table does not say what the mark means: $(cat out)"
 grep -qxF "$legend." whole/table1.md || fail "table1.md does not say what the mark means: $(cat whole/table1.md)"
 [ "$(grep -Ec '^\| `(opencl|hybrid)`.*\*\* \(!\)' whole/table1.md)" -eq 2 ] || fail "table1.md marks no rows: $(cat whole/table1.md)"

@@ -20,22 +20,24 @@ namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
-/// The least of so many is hardly disturbed, even where other programs want every processor, too: with eight
-/// of them on two processors the ratio of two such spreads by 0.1, that of medians by 0.5.
+/// The least of seven samples is hardly disturbed, even if other programs compete for every processor: with
+/// eight of them on two processors, the ratio of two such samples varies by 0.1, that of medians by 0.5.
 constexpr int samples_a_process = 7;
 
-/// A verification may be slow, on a busy machine say: it gets so many times the time budget and a minute.
+/// Limit of a verification, which may be slow on a busy machine, as a multiple of the time budget plus a
+/// minute.
 constexpr double verification_limit = 3;
-/// Samples take less than a verification, or about as much where each process verifies again.
+/// Limit of samples, in times of a verification. They take less, or about as much if each process verifies
+/// again.
 constexpr double verifications_a_sample = 10;
-/// A help page takes a moment.
+/// Limit of printing a help page, which is fast.
 constexpr double longest_help_s = 60, spare_help_s = 10;
 
 unsigned whole_seconds(double seconds) { return static_cast<unsigned>(seconds + 0.5); }
 
-/// One of the two programs of a comparison, run again and again, each time as a new process. All that runs it
-/// throws UsageError when the program fails, Unavailable when it misses a device, CsvError for results that
-/// cannot be read, and Interrupted, after the process under way has been ended.
+/// One of the two programs, run repeatedly, each time as a new process. All member functions that run it
+/// throw UsageError if it fails, Unavailable if it lacks a device, CsvError for results that cannot be read,
+/// and Interrupted after the running process has been ended.
 class AbProgram {
  public:
   /// Throws MissingProgram for a file that cannot be run.
@@ -45,14 +47,14 @@ class AbProgram {
       throw MissingProgram("cannot run {}: give the path of an mssim program", file);
     child_.program = fs::absolute(file);
     child_.folder = fs::current_path();  // scenes may be files named from here
-    // One that never ends shall not run for ever.
+    // Bounds a program that would never end.
     child_.cpu_seconds =
         static_cast<unsigned>(options.time_budget_s + 60) * std::max(1U, std::thread::hardware_concurrency());
     child_.elapsed_seconds = whole_seconds(verification_limit * (options.time_budget_s + 60));
   }
 
-  /// Whether its bench takes --verified, as its help says. Throws UsageError where it says nothing in a
-  /// minute.
+  /// Whether its bench has the option --verified, according to its help. Throws UsageError if the help does
+  /// not end within a minute.
   bool takes_verified() const {
     ChildProcess child = child_;
     child.arguments = {"bench", "--help"};
@@ -65,25 +67,25 @@ class AbProgram {
            result.output.find("--verified") != std::string::npos;
   }
 
-  /// The process that verifies everything, so that what is sampled later can rest on it.
+  /// The process that verifies everything, on which later samples rely.
   ChildProcess verification() const {
     return bench_process(options_.backends, options_.integrators, 1, verified_folder());
   }
-  /// Takes what came of it: the rows of a bench of one round.
+  /// Takes the result of the verification: the rows of a bench of one round.
   std::vector<CombinationTime> take_verification(const ChildResult& result) {
     verified_ = true;
     std::vector<CombinationTime> rows = rows_of(result, verified_folder());
     require_any_time(rows, result);
     return rows;
   }
-  /// After a verification that took so long, samples may take ten times that, where that is more.
+  /// Extends the limit of samples to ten times that of the verification, if that is more.
   void allow(double verification_s) {
     child_.elapsed_seconds =
         std::max(child_.elapsed_seconds, whole_seconds(verifications_a_sample * verification_s));
   }
 
-  /// Samples of these backends and integrators, which verifies them again where no verification was taken.
-  /// `first`: nothing is known of them yet.
+  /// Samples these backends and integrators; verifies them again if no verification was taken. `first`:
+  /// whether their status is still unknown.
   std::vector<CombinationTime> bench(const std::vector<std::string>& backends,
                                      const std::vector<std::string>& integrators, bool first) const {
     const TemporaryFolder folder;
@@ -119,7 +121,8 @@ class AbProgram {
   }
 
   std::vector<CombinationTime> rows_of(const ChildResult& result, const fs::path& out) const {
-    // A row that is not verified ends a bench with 1, one that cannot run with 3; the row says so itself.
+    // A bench ends with 1 for a row that is not verified and with 3 for one that cannot run; the row has the
+    // details.
     const bool has_rows = !result.out_of_time && result.signal == 0 &&
                           (result.exit_code == exit_ok || result.exit_code == exit_not_verified ||
                            result.exit_code == exit_unavailable) &&
@@ -128,7 +131,7 @@ class AbProgram {
     return read_combination_times(out / "timings.csv");
   }
 
-  /// Throws Unavailable where nothing that was asked for can run.
+  /// Throws Unavailable if no requested combination can run.
   void require_any_time(const std::vector<CombinationTime>& rows, const ChildResult& result) const {
     const auto is_timed = [](const CombinationTime& row) { return row.least_ms.has_value(); };
     if (result.exit_code == exit_unavailable && std::ranges::none_of(rows, is_timed)) fail(result);
@@ -158,7 +161,7 @@ class AbProgram {
   bool verified_ = false;
 };
 
-/// A combination under way. Its pairs grow until they are settled.
+/// A combination that is being measured. Its pairs grow until they are settled.
 struct Series {
   PairedTimes pairs;
   bool settled = false;
@@ -170,7 +173,8 @@ const CombinationTime* find(const std::vector<CombinationTime>& times, const Pai
   return found == times.end() ? nullptr : &*found;
 }
 
-/// The combinations that both programs have; what only one has, or BASE has no time of, is told and left out.
+/// The combinations that both programs have. Those that only one has, or that have no time in BASE, are
+/// reported and left out.
 std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
                                     const std::vector<CombinationTime>& next, const AbOptions& options) {
   std::vector<Series> series;
@@ -179,7 +183,7 @@ std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
     if (!find(next, pairs))
       std::cerr << "mssim: only " << options.base << " has " << combination_name(time) << '\n';
     else if (!time.least_ms)
-      std::cerr << "mssim: " << options.base << " has no time of " << combination_name(time) << ": "
+      std::cerr << "mssim: " << options.base << " has no time for " << combination_name(time) << ": "
                 << time.status << '\n';
     else
       series.push_back({pairs});
@@ -190,22 +194,22 @@ std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
   return series;
 }
 
-/// A combination that NEW has no time of is lost; the one that BASE had shows what there was.
+/// Marks a combination without a time in NEW as lost; a time of BASE shows what it was.
 void lose(Series& series, const CombinationTime& base, const std::string& why) {
   if (series.pairs.base_ms.empty()) series.pairs.base_ms.push_back(*base.least_ms);
   series.pairs.lost = why;
   series.settled = true;
 }
 
-/// Adds a round to a combination. Where BASE has no time of it any more, tells so and returns false: there is
-/// nothing to compare it with.
+/// Adds a round to a combination. If BASE has no time for it any more, there is nothing to compare with:
+/// reports that and returns false.
 bool add_round(Series& series, const std::vector<CombinationTime>& base,
                const std::vector<CombinationTime>& next, const AbOptions& options) {
   PairedTimes& pairs = series.pairs;
   const CombinationTime *a = find(base, pairs), *b = find(next, pairs);
   if (!a || !a->least_ms) {
     std::cerr << fmt::format(
-        "mssim: {} had a time of {} and has none in a later round ({}); run it alone to see why\n",
+        "mssim: {} had a time for {} but has none in a later round ({}); run it alone to see why\n",
         options.base, combination_name(pairs), a ? a->status : "the row is missing");
     return false;
   }
@@ -219,7 +223,7 @@ bool add_round(Series& series, const std::vector<CombinationTime>& base,
   return true;
 }
 
-/// What the combinations that are not settled have as this member, each name once.
+/// The values of this member in the combinations that are not settled, each once.
 std::vector<std::string> still_wanted(std::string PairedTimes::*member, const std::vector<Series>& series) {
   std::vector<std::string> names;
   for (const Series& one : series)
@@ -228,7 +232,7 @@ std::vector<std::string> still_wanted(std::string PairedTimes::*member, const st
   return names;
 }
 
-/// Those of the backends that were asked for whose rows are still wanted.
+/// The requested backends whose rows are not settled.
 std::vector<std::string> backends_wanted(const AbOptions& options, const std::vector<Series>& series) {
   const std::vector<std::string> rows = still_wanted(&PairedTimes::backend, series);
   std::vector<std::string> asked;
@@ -237,8 +241,8 @@ std::vector<std::string> backends_wanted(const AbOptions& options, const std::ve
   return asked;
 }
 
-/// Whether the memory does for a bench of either at the same time, with as much again to spare, as far as
-/// this program can tell: one that is compared may have scenes or backends that this one does not know.
+/// Whether there is memory for a bench of both programs at the same time, with as much to spare. This is an
+/// estimate: a compared program may have scenes or backends that this one does not know.
 bool both_fit(const AbOptions& options) {
   BenchOptions bench;
   bench.scenes = options.scenes;
@@ -256,8 +260,8 @@ bool both_fit(const AbOptions& options) {
   }
 }
 
-/// Verifies both programs once, where both can rely on it afterwards, and says which combinations there are.
-/// Otherwise every process of either verifies again, and the first round will say it: none.
+/// Verifies both programs once, if both can rely on it later, and returns the combinations. Otherwise every
+/// process verifies again and the result is empty; the first round then finds the combinations.
 std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& options,
                            ProgressLine& progress) {
   for (std::size_t which = 0; which < programs.size(); ++which)
@@ -309,7 +313,7 @@ RunComparison compare_programs(const AbOptions& options) {
       std::erase_if(
           series, [&](Series& one) { return !one.settled && !add_round(one, times[0], times[1], options); });
       if (series.empty())
-        throw UsageError("nothing is left to compare: {} has lost every combination, as is said above",
+        throw UsageError("nothing is left to compare: {} has lost every combination; see the messages above",
                          options.base);
       ++rounds;
       longest_s = std::max(longest_s, round_watch.seconds());

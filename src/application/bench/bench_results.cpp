@@ -41,7 +41,7 @@ bool is_finished(const BenchSettings& settings, const std::string& scene,
   if (asked != measured)
     throw UsageError("the folder has other backends or integrators of " + scene +
                      " than this command: --resume needs the same ones; choose another --out, "
-                     "or --overwrite to measure anew");
+                     "or --overwrite to measure again");
   return std::ranges::all_of(
       earlier, [&](const ResultRow& row) { return row.status != "ok" || row.rounds >= settings.rounds; });
 }
@@ -63,35 +63,36 @@ fs::path folder_of(const fs::path& path) {
   return folder;
 }
 
-/// What numbers of a row can be computed from is shorter.
+/// Limit of a time, so that numbers derived from it are finite.
 constexpr double longest_ms = 1e12;
 
-/// What is measured has a time above zero in every round.
+/// Throws UsageError unless the row has a time above zero in every round.
 void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.status != "ok") return;
   const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
   if (row.samples_ms.empty())
-    throw UsageError(where + "no samples, though timings.csv says ok; measure the folder anew");
+    throw UsageError(where +
+                     "no samples, although its status in timings.csv is ok; measure the folder again");
   for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
     if (!(row.samples_ms[round] > 0 && row.samples_ms[round] <= longest_ms))
       throw UsageError(
-          "{}no time above zero in round {}, or one of more than 1e12 ms; measure the folder anew", where,
+          "{}no time above zero in round {}, or one of more than 1e12 ms; measure the folder again", where,
           round + 1);
 }
 
-/// Throws UsageError where there are sentences that say why --resume cannot continue in the folder.
+/// Throws UsageError if there are reasons why --resume cannot continue in the folder.
 void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
   if (!differences.empty())
     throw UsageError("--resume cannot continue in " + folder + ": " + join(differences, "; ") +
-                     "; choose another --out, or --overwrite to measure anew");
+                     "; choose another --out, or --overwrite to measure again");
 }
 
 std::string revision(const BuildInfo& build) {
   return std::string(build.commit) + (build.dirty ? ", changed" : "");
 }
 
-/// One table shall not mix what different programs or machines measured, nor hold rows of which the
-/// provenance says nothing.
+/// A table must not mix results of different programs or machines, nor contain rows that its provenance does
+/// not describe.
 void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
   std::vector<std::string> all = differences(earlier, now);
   if (revision(earlier.build) != revision(now.build))
@@ -108,10 +109,10 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
   require_resumable(all, folder);
 }
 
-/// What stands in the folder already and is to stay: with --resume what an earlier run of the same program on
-/// the same machine left, with --overwrite nothing. Throws UsageError where the folder has results and
-/// neither was asked for, or where --resume would mix what is not alike or keep scenes that this command does
-/// not have, and what reading them throws.
+/// Rows of the folder that are to stay: with --resume those of an earlier run of the same program on the same
+/// machine, with --overwrite none. Throws UsageError if the folder has results and neither option was given,
+/// or if --resume would mix different origins or keep scenes that this command does not have; and the errors
+/// of reading.
 std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan) {
   if (!folder.has_results()) return {};
   const BenchOutput& output = plan.output;
@@ -132,14 +133,14 @@ std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan)
   return {};
 }
 
-/// Why what was verified then need not be right now.
+/// Reasons why an earlier verification may not hold now.
 std::vector<std::string> doubts(const Provenance& then, const Provenance& now) {
   std::vector<std::string> all = differences(then, now);
   if (!then.program_fnv1a_64 || then.program_fnv1a_64 != now.program_fnv1a_64)
     all.emplace_back("it was written by another program");
   if (then.device_memory != now.device_memory)
     all.push_back(fmt::format("--memory was {} and is {}", then.device_memory, now.device_memory));
-  // None are named by a bench whose backends need none.
+  // A bench whose backends need no OpenCL device records none.
   if (!now.opencl_devices.empty() && then.opencl_devices != now.opencl_devices)
     all.emplace_back("the OpenCL devices are not the same");
   for (const BackendProgramRecord& program : now.backend_programs)
@@ -182,7 +183,7 @@ MeasuredRun read_run(const fs::path& path) {
 std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now) {
   MeasuredRun earlier = read_run(folder);
   if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
-    throw UsageError("--verified cannot rely on {}: {}; leave it out to verify anew", folder,
+    throw UsageError("--verified cannot rely on {}: {}; leave it out to verify again", folder,
                      join(all, "; "));
   return std::move(earlier.rows);
 }

@@ -14,63 +14,62 @@
 
 namespace mssim {
 
-/// The rows of a bench: what an earlier run left, and what is measured now.
+/// Rows of a bench: those of an earlier run, and those measured now.
 class BenchRows {
  public:
   explicit BenchRows(std::vector<ResultRow> earlier) : rows_(std::move(earlier)) {}
 
   const std::vector<ResultRow>& all() const { return rows_; }
   std::vector<ResultRow> of_scene(const std::string& name) const;
-  /// Puts `rows` where the scene's rows were, or at the end.
+  /// Replaces the scene's rows by `rows`, or appends them.
   void replace(const std::string& scene, std::vector<ResultRow> rows);
 
  private:
   std::vector<ResultRow> rows_;
 };
 
-/// Whether an earlier run finished all that the settings ask for of a scene. Throws UsageError when it
-/// measured other combinations of it: samples of one row are compared with those of the others round by
-/// round.
+/// Whether an earlier run completed every requested combination of the scene. Throws UsageError if it
+/// measured other combinations, because samples of different rows are compared round by round.
 bool is_finished(const BenchSettings& settings, const std::string& scene,
                  const std::vector<ResultRow>& earlier);
 
-/// What `mssim bench --out` left in a folder.
+/// The content of a folder written by `mssim bench --out`.
 struct MeasuredRun {
   Provenance provenance;
-  std::vector<ResultRow> rows;  ///< those that are ok have samples
+  std::vector<ResultRow> rows;  ///< those with status ok have samples
 };
 
-/// Reads a result folder, named by itself or by a file in it. Throws UsageError when there is none or its
-/// samples are not those of its rows, CsvError and ProvenanceError for files that cannot be read.
+/// Reads a result folder, given as its path or the path of a file in it. Throws UsageError if there is none
+/// or its samples do not match its rows; CsvError and ProvenanceError for files that cannot be read.
 MeasuredRun read_run(const std::filesystem::path& path);
 
-/// The rows of a result folder that were verified by the very program that runs now (the same bytes), on the
-/// same machine, for the same threads, devices and scenes; whatever of them failed there stays failed. Throws
-/// UsageError where it is not so, and what reading them throws. `now`: with the scenes.
+/// The rows of a result folder that were verified by the same program (to the byte), on the same machine,
+/// with the same threads, devices and scenes. Rows that failed there stay failed. Throws UsageError if the
+/// folder does not match, and the errors of reading it. `now`: with the scenes.
 std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now);
 
-/// Throws UsageError where these rows of a folder leave out a combination of the scene.
+/// Throws UsageError if these rows of a folder lack a combination of the scene.
 void require_rows(const std::vector<ResultRow>& verified, const std::string& scene,
                   const BenchSettings& settings, const std::string& folder);
 
-/// The results of a bench, what an earlier run left among them, in the plan's folder where there is one.
+/// Results of a bench, with those of an earlier run, in the plan's folder if it has one.
 class BenchResults {
  public:
-  /// Takes the folder, with what of it is to stay. `plan` must outlive it. Throws like earlier_rows and
+  /// Opens the folder with the rows that are to stay. `plan` must outlive this. Throws like earlier_rows and
   /// ResultFolder.
   explicit BenchResults(const BenchPlan& plan);
 
   const std::vector<ResultRow>& rows() const { return rows_.all(); }
   std::vector<ResultRow> of_scene(const std::string& name) const { return rows_.of_scene(name); }
-  /// The names of the files of these rows (file_stems), among those of all scenes.
+  /// The names of the files of the scene's rows (file_stems), unique among those of all scenes.
   std::vector<std::string> stems_of_scene(const std::string& name) const;
 
-  /// Takes the rows of a scene in place of those that it had, adds the published times, and writes the
-  /// folder. Throws UsageError where they are not comparable with what an earlier run left, and WriteError.
+  /// Replaces the rows of a scene, adds the published times, and writes the folder. Throws UsageError if they
+  /// are not comparable with those of an earlier run, and WriteError.
   void keep(const std::string& scene, std::vector<ResultRow> rows);
-  /// Writes what scenes are. Throws WriteError.
+  /// Writes the structure of scenes. Throws WriteError.
   void keep(const std::vector<StructureRow>& rows);
-  /// Writes what github-action-benchmark reads. Throws WriteError.
+  /// Writes the input of github-action-benchmark. Throws WriteError.
   void keep_for_github() const;
 
  private:

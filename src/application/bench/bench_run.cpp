@@ -19,8 +19,8 @@ bool is_wrong(const ResultRow& row) {
   return row.status.starts_with("failed") || (row.status == "ok" && !row.verified);
 }
 
-/// Whether `member` of the row is one of `names`, and no row of the scene that has the same could run: a
-/// backend that has a garment with one of the integrators has it.
+/// Whether `member` of the row is one of `names`, and no row of the scene with the same value could run. A
+/// backend that supports a garment with one of the integrators is not missed.
 bool is_missed(const ResultRow& row, const std::vector<std::string>& names, std::string ResultRow::*member,
                const std::vector<ResultRow>& rows) {
   return std::ranges::find(names, row.*member) != names.end() &&
@@ -62,7 +62,7 @@ TimeBudget::Clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<TimeBudget::Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Adds to a job what the scene is. `scene` must outlive it.
+/// Adds the scene's content to a job. `scene` must outlive it.
 void add_scene(SceneJob& job, const PreparedScene& scene) {
   job.system = &scene.system;
   job.springs_published = scene.counts.springs_published;
@@ -187,7 +187,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
                              std::filesystem::path(plan.output.folder) / "traces", plan.output.resume, watch))
         results.keep(job.name, std::move(rows));
     } catch (const Interrupted& interrupted) {
-      // A wait for a program was cut short; the rounds before it are kept.
+      // An interrupted wait for a program; the completed rounds are kept.
       note_ending_signal(interrupted.signal);
     }
     if (stop.requested()) return;

@@ -19,40 +19,39 @@
 
 namespace mssim {
 
-/// How a bench ends, and why.
+/// Exit code of a bench, with reasons.
 struct BenchVerdict {
-  /// 1 when a measured row is wrong; 3 when a backend or integrator that was asked for by name could not run.
+  /// 1 if a measured row is wrong; 3 if a backend or integrator that was requested by name could not run.
   ExitCode exit_code = exit_ok;
-  std::vector<std::string> reasons;  ///< a sentence for each row that led to it
+  std::vector<std::string> reasons;  ///< a sentence for each row that caused it
 };
 
-/// `asked_backends` and `asked_integrators`: by name.
+/// The verdict on `rows`. `asked_backends` and `asked_integrators` are those requested by name.
 BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& asked_backends,
                         const std::vector<std::string>& asked_integrators);
 
-/// Traces every combination whose row is ok, from the start over as many steps as it was verified with, into
-/// FOLDER/STEM.h5, `stems` being those of the rows' files: what `mssim bench --trace` does after the timing.
-/// Files that are there already stay when `keep_existing`. `provenance`: the bench's. Ends between two traces
-/// when it is asked to. A row has failed where the program behind its backend fails now; returns whether one
-/// has. Throws WriteError.
+/// Traces every combination whose row is ok, from the start for as many steps as in the verification, into
+/// FOLDER/STEM.h5 with the rows' `stems`: the work of `mssim bench --trace` after the timing. Existing files
+/// stay if `keep_existing`. `provenance`: the bench's. Stops between two traces on request. A row fails if
+/// its program fails now; returns whether one did. Throws WriteError.
 bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::vector<ResultRow>& rows,
                         const std::vector<std::string>& stems, const Provenance& provenance,
                         const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch);
 
-/// Shares a bench's time out among its scenes, so that all get about as many rounds.
+/// Divides the time of a bench among its scenes, so that all get about as many rounds.
 class TimeBudget {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Starts now. No `seconds` is no limit. Throws UsageError when the time is not enough for one round of
-  /// each scene.
+  /// Starts now. Without `seconds` there is no limit. Throws UsageError if the time is too short for one
+  /// round of each scene.
   TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> scenes);
 
-  /// When all is to have ended; none without a limit.
+  /// When everything must have ended; none without a limit.
   std::optional<Clock::time_point> end() const { return end_; }
-  /// When the next scene, which begins now, is to have been measured and checked; none without a limit.
+  /// When the next scene, which begins now, must have been measured and checked; none without a limit.
   std::optional<Clock::time_point> begin_scene();
-  /// The scene's first round has ended, which tells how far to believe what was expected.
+  /// Must be called after the scene's first round, whose time corrects the expectations.
   void first_round_done();
 
  private:
@@ -60,12 +59,12 @@ class TimeBudget {
   std::vector<ExpectedTime> scenes_;  ///< those that have not begun
   ExpectedTime present_;
   Clock::time_point present_start_;
-  double expected_ = 0, taken_ = 0;  ///< seconds up to the first round, of all scenes so far
+  double expected_ = 0, taken_ = 0;  ///< seconds before the first round, for all scenes so far
 };
 
-/// Builds and measures the plan's timed scenes, one after the other, but for what the results have of them
-/// already, and keeps the rows after every round. With --trace traces each scene behind its measurement. Ends
-/// early when it is asked to. Throws like UnbuiltScene::prepare, BenchResults::keep and write_bench_traces.
+/// Builds and measures the plan's timed scenes one by one, except for rounds that the results already have,
+/// and keeps the rows after every round. With --trace, traces each scene after its measurement. Stops early
+/// on request. Throws like UnbuiltScene::prepare, BenchResults::keep and write_bench_traces.
 void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results);
 
 }  // namespace mssim

@@ -13,11 +13,11 @@
 namespace mssim {
 namespace {
 
-/// A step that takes so long (s) is timed without a step before it: waking threads takes some 50 us, and
+/// Steps that take this long (s) are timed without a warm-up step: waking threads takes about 50 us, and
 /// filling the caches little more.
 constexpr double long_step_s = 0.01;
 
-/// No step takes less (s): a handful of nodes is more than tens of operations.
+/// No step takes less time (s): even a handful of nodes is more than tens of operations.
 constexpr double least_step_s = 1e-8;
 
 struct SampleTime {
@@ -25,7 +25,7 @@ struct SampleTime {
   double processor_s = 0;
 };
 
-/// Goes back to what samples start from.
+/// Returns to the state from which samples start.
 void restart(Combination& combination) {
   if (combination.windows)
     combination.windows->restart();
@@ -41,7 +41,7 @@ double seconds_of(const Work& work) {
   return std::chrono::duration<double>(Clock::now() - before).count();
 }
 
-/// Runs the steps of one sample.
+/// Times the steps of one sample.
 SampleTime time_sample(Combination& combination, int steps) {
   Backend& backend = *combination.backend;
   restart(combination);
@@ -50,11 +50,12 @@ SampleTime time_sample(Combination& combination, int steps) {
     restart(combination);
   }
   const double processor_before = backend.processor_seconds();
-  const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));  // no clock sees less
+  // No clock resolves less than 1 ns.
+  const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));
   return {wall_s, backend.processor_seconds() - processor_before};
 }
 
-/// What a row is about, beyond its names.
+/// Description of a row beyond its names.
 std::string subject_of(const ResultRow& row) {
   return fmt::format("{} nodes and {} springs in steps of {:.6g} s on {} with {}", row.nodes,
                      row.springs_unique, row.dt_s, row.device, pluralize(row.threads, "thread"));
@@ -68,7 +69,7 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
     combination.step_seconds = time_steps(steps) / steps;
     if (combination.step_seconds < least_step_s)
       return fail(combination,
-                  fmt::format("failed: its steps are not done when it says so: {} take less than 10 ns each",
+                  fmt::format("failed: it reports steps before they are done: {} take less than 10 ns each",
                               pluralize(steps, "step")));
     const int fit =
         sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
@@ -82,7 +83,7 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
     combination.steps = steps;
     return;
   }
-  // Part of a sample each, because a warm backend needs three of them to show it.
+  // Each is part of a sample, because a warm backend needs three trials to prove it.
   const int trial_steps = std::max(1, steps / 4);
   std::vector<double> trials;
   while (trials.size() < most_warm_up_trials && !is_warm(trials)) trials.push_back(time_steps(trial_steps));
@@ -92,7 +93,7 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
       sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
 }
 
-/// Ends a combination that is not measured any further.
+/// Ends a combination that is not measured further.
 void drop(Combination& combination, const std::string& status) {
   combination.row.status = status;
   end(combination);
@@ -101,7 +102,7 @@ void drop(Combination& combination, const std::string& status) {
   combination.windows = nullptr;
 }
 
-/// What reading a state that has just come to be takes, the shortest of some times.
+/// Time of reading a new state, s: the shortest of three.
 double reading_seconds_after_a_step(Combination& combination) {
   double shortest = std::numeric_limits<double>::max();
   for (int time = 0; time < 3; ++time) {
@@ -230,7 +231,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   if (found->device != row.device || found->threads != row.threads || found->nodes != row.nodes ||
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
     return fail(combination,
-                fmt::format("failed: verified was {}, and this is {}", subject_of(*found), subject_of(row)));
+                fmt::format("failed: {} was verified, but this is {}", subject_of(*found), subject_of(row)));
   static_cast<Agreement&>(row) = *found;
   row.dressing = found->dressing;
   row.verified = true;
@@ -251,7 +252,7 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
                                 std::optional<std::size_t> first) {
   std::optional<double> ms;
   attempt(combination, [&] {
-    combination.backend->communication();  // of what came before
+    combination.backend->communication();  // discards that of earlier steps
     const SampleTime time = time_sample(combination, combination.steps);
     if (const auto costs = combination.backend->communication()) combination.communication.push_back(*costs);
     std::optional<State> state;
@@ -287,12 +288,12 @@ void require_prompt_steps(Combination& combination) {
     return;
   const double sample = median(combination.sample_seconds), reading = median(combination.reading_seconds);
   if (reading - combination.step_reading_seconds.value_or(0) <= sample) return;
-  fail(combination,
-       fmt::format(
-           "failed: its steps are not done when it says so: it takes {:.6g} ms for {}, and then {:.6g} "
-           "ms to give the state, where that takes {:.6g} ms after one step",
-           1e3 * sample, pluralize(combination.steps, "step"), 1e3 * reading,
-           1e3 * combination.step_reading_seconds.value_or(0)));
+  fail(
+      combination,
+      fmt::format("failed: it reports steps before they are done: it takes {:.6g} ms for {}, and then {:.6g} "
+                  "ms to return the state, which takes {:.6g} ms after one step",
+                  1e3 * sample, pluralize(combination.steps, "step"), 1e3 * reading,
+                  1e3 * combination.step_reading_seconds.value_or(0)));
 }
 
 void summarise(ResultRow& row, const ResultRow* serial) {

@@ -30,8 +30,8 @@ struct Generation {
   std::string_view name;
 };
 
-/// The numbers are those that the kernel tells processors apart by (arch/x86/kernel/cpu/amd.c and
-/// asm/intel-family.h) and Arm's main ID registers.
+/// Numbers by which the kernel distinguishes x86 processors (arch/x86/kernel/cpu/amd.c and
+/// asm/intel-family.h), and those of Arm's main ID registers.
 constexpr Generation generations[]{
     {amd, 0x17, 0x00, 0x2f, "Zen"},           {amd, 0x17, 0x50, 0x5f, "Zen"},
     {amd, 0x17, 0x30, 0x4f, "Zen 2"},         {amd, 0x17, 0x60, 0x7f, "Zen 2"},
@@ -51,7 +51,7 @@ constexpr Generation generations[]{
 
 namespace fs = std::filesystem;
 
-/// First line of a file, empty when it cannot be read.
+/// First line of a file; empty if it cannot be read.
 std::string first_line(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
@@ -66,7 +66,7 @@ std::string_view trimmed(std::string_view text) {
                                          : text.substr(first, text.find_last_not_of(blank) - first + 1);
 }
 
-/// The value behind the first "key<separator>value" line of a file, without blanks and quotes.
+/// Value of the first "KEY<separator>VALUE" line of a file, without blanks and quotes.
 std::string value_of(const fs::path& file, std::string_view key, char separator) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -78,7 +78,7 @@ std::string value_of(const fs::path& file, std::string_view key, char separator)
   return {};
 }
 
-/// The number that the text starts with, 0 when there is none.
+/// Number at the start of the text; 0 if there is none.
 template <class Number>
 Number leading_number(std::string_view text) {
   Number number{};
@@ -86,14 +86,14 @@ Number leading_number(std::string_view text) {
   return number;
 }
 
-/// The number that a text such as "0xd0c" stands for, 0 when it is none.
+/// Value of a text such as "0xd0c"; 0 if it is not a number.
 int hexadecimal_number(std::string_view text) {
   int number = 0;
   if (text.starts_with("0x")) std::from_chars(text.data() + 2, text.data() + text.size(), number, 16);
   return number;
 }
 
-/// Logical CPUs in a list of the kernel such as "0-3,8".
+/// Number of logical CPUs in a list of the kernel such as "0-3,8".
 int count_cpus(const std::string& list) {
   int count = 0;
   std::istringstream ranges(list);
@@ -105,7 +105,7 @@ int count_cpus(const std::string& list) {
   return count;
 }
 
-/// "48K", "1024K", "32M" as the kernel writes the size of a cache.
+/// Size of a cache in bytes, from the kernel's notation: "48K", "1024K", "32M".
 std::uint64_t bytes_of(const std::string& size) {
   const auto number = leading_number<std::uint64_t>(size);
   const std::size_t unit = size.empty() ? std::string::npos : std::string_view("KMG").find(size.back());
@@ -139,7 +139,7 @@ std::vector<Cache> read_caches(const fs::path& cpus) {
   return caches;
 }
 
-/// Drivers say it in one of two ways: whether boost is on, or whether turbo is off.
+/// Drivers report either whether boost is on, or whether turbo is off.
 std::optional<bool> read_turbo(const fs::path& cpus) {
   if (const std::string boost = first_line(cpus / "cpufreq/boost"); !boost.empty()) return boost == "1";
   if (const std::string off = first_line(cpus / "intel_pstate/no_turbo"); !off.empty()) return off == "0";
@@ -159,7 +159,7 @@ std::string kernel_name() {
                            : std::string();
 }
 
-/// The design of the first processor in a file such as /proc/cpuinfo.
+/// Design of the first processor in a file such as /proc/cpuinfo.
 std::string read_generation(const fs::path& file) {
   const std::string vendor = value_of(file, "vendor_id", ':');
   if (!vendor.empty())
@@ -182,7 +182,7 @@ std::vector<std::pair<std::string, std::string>> thread_environment() {
   return variables;
 }
 
-/// The home folder's name is the user's name more often than not.
+/// The name of the home folder is usually the user's name.
 std::string without_home(std::string_view argument) {
   const char* home = std::getenv("HOME");
   const std::string_view folder = home ? home : "";
@@ -200,7 +200,7 @@ std::string without_home(std::string_view argument) {
   return result;
 }
 
-/// Hash of the running program's file; none where it cannot be read.
+/// Hash of the running program's file; none if it cannot be read.
 std::optional<std::uint64_t> program_hash() {
   try {
     return fnv1a_64(read_file("/proc/self/exe"));
@@ -218,7 +218,7 @@ std::string now_utc() {
   return text.data();
 }
 
-/// Programs that compute beside the bench, on the average of the last minute, before they are worth a word.
+/// Smallest load of other programs, as an average of the last minute, that is worth a warning.
 constexpr double least_load = 0.25;
 
 bool binds_threads(const Provenance& provenance) {
@@ -287,7 +287,7 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
 
 void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
                  const std::filesystem::path& folder) {
-  // Larger ones are data, and reading them would take longer than a step.
+  // Larger files are data; reading them would take too long.
   constexpr std::size_t largest_file = std::size_t{64} << 20;
   for (std::string& word : record.command) {
     const bool is_program = &word == &record.command.front();
@@ -296,7 +296,7 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
     try {
       record.files.push_back({shown, fnv1a_64(read_file(file, largest_file))});
     } catch (const ReadError&) {
-      continue;  // an argument that is no file
+      continue;  // not a file
     }
   }
   const auto same_name = [](const FileHash& a, const FileHash& b) { return a.name == b.name; };
@@ -321,17 +321,16 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
     noise.push_back("the frequency governor is \"" + *machine.governor +
                     "\": choose \"performance\" (cpupower frequency-set -g performance)");
   if (machine.turbo.value_or(false))
-    noise.emplace_back(
-        "turbo is on, so that the frequency depends on temperature and neighbours: turn it off");
+    noise.emplace_back("turbo is on, so the frequency depends on temperature and other cores: turn it off");
   const std::size_t cpus = provenance.allowed_cpus.size();
   if (provenance.threads > 1 && cpus > 0 && static_cast<std::size_t>(provenance.threads) > cpus)
-    noise.push_back(fmt::format("{} threads share {}: ask for fewer with --threads", provenance.threads,
+    noise.push_back(fmt::format("{} threads share {}: give fewer with --threads", provenance.threads,
                                 pluralize(cpus, "logical CPU")));
   if (machine.cpu_quota && provenance.threads > *machine.cpu_quota)
     noise.push_back(fmt::format(
-        "a quota of this container lets {} run for the time of {:.1f} processors and then stops them: {}",
+        "this container's quota limits {} to the time of {:.1f} processors: {}",
         pluralize(provenance.threads, "thread"), *machine.cpu_quota,
-        provenance.threads > 1 ? "ask for fewer with --threads, or raise the quota" : "raise the quota"));
+        provenance.threads > 1 ? "give fewer with --threads, or raise the quota" : "raise the quota"));
   if (provenance.threads > 1 && !binds_threads(provenance))
     noise.emplace_back("threads may move from CPU to CPU: set OMP_PROC_BIND=true");
   return noise;

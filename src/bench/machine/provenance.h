@@ -13,76 +13,77 @@
 
 namespace mssim {
 
-/// What a program was built from and how: the part of every provenance that is known before a run.
+/// How a program was built: the part of every provenance that is known before a run.
 struct BuildInfo {
   std::string version;     ///< of the project, for example "0.1.0"
   std::string commit;      ///< 40 hex digits, or "unknown" when built outside a git repository
-  bool dirty = false;      ///< the program's sources differed from that commit
+  bool dirty = false;      ///< whether the program's sources differed from that commit
   std::string compiler;    ///< name and version, for example "GNU 12.2.0"
-  std::string flags;       ///< given to the compiler for all that is timed
+  std::string flags;       ///< compiler flags of all timed code
   std::string build_type;  ///< CMake's, for example "Release"
 };
 
-/// What the running program was built from.
+/// BuildInfo of the running program.
 const BuildInfo& build_info();
 
-/// What a processor says of itself in /proc/cpuinfo. On x86-64 `maker` is the vendor's identification; on Arm
-/// it is the implementer's number as the kernel writes it ("0x41"), `model` the part's, and `family` zero.
+/// Identification of a processor in /proc/cpuinfo. On x86-64 `maker` is the vendor's identification. On Arm
+/// it is the implementer's number as the kernel writes it ("0x41"), `model` is the part's number, and
+/// `family` is zero.
 struct CpuIdentification {
   std::string_view maker;
   int family = 0;
   int model = 0;
 };
 
-/// The design behind the name, for example "Zen 4" or "Sapphire Rapids": names such as "AMD EPYC", which
-/// virtual machines often give, say nothing of how fast a processor is. Empty where the table has none.
+/// Name of the processor's design, for example "Zen 4" or "Sapphire Rapids". Names such as "AMD EPYC", which
+/// virtual machines often report, do not show how fast a processor is. Empty if the table has no entry.
 std::string_view cpu_generation(const CpuIdentification& cpu);
 
-/// A cache of one level and type, of which the machine may have several.
+/// A kind of cache, by level and type; the machine may have several of it.
 struct Cache {
   int level = 0;
   std::string type;         ///< "Data", "Instruction" or "Unified"
-  std::uint64_t bytes = 0;  ///< of one
+  std::uint64_t bytes = 0;  ///< size of one
   int count = 0;            ///< in the machine
   int sharing = 0;          ///< logical CPUs that share one
 };
 
-/// What can be known about a Linux machine without asking for rights. What cannot be read is empty or zero.
+/// Properties of a Linux machine that can be read without privileges. Unknown ones are empty or zero.
 struct Machine {
   std::string cpu_model;
   std::string cpu_generation;           ///< its design
   int logical_cpus = 0;                 ///< online
-  std::optional<bool> smt;              ///< whether cores have several of them
-  int numa_nodes = 0;                   ///< parts of the memory that are nearer to some of them
-  double cpu_mhz = 0;                   ///< of the first CPU, now
+  std::optional<bool> smt;              ///< whether cores have several logical CPUs
+  int numa_nodes = 0;                   ///< parts of the memory that are nearer to some CPUs
+  double cpu_mhz = 0;                   ///< present frequency of the first CPU
   std::vector<Cache> caches;            ///< by level, then type
-  std::optional<std::string> governor;  ///< of the first CPU's frequency; none in most virtual machines
-  std::optional<bool> turbo;         ///< whether the frequency may exceed the nominal one, where it is said
-  std::vector<double> load_average;  ///< over 1, 5 and 15 minutes
+  std::optional<std::string> governor;  ///< of the first CPU; none in most virtual machines
+  std::optional<bool> turbo;            ///< whether the frequency may exceed the nominal one, if known
+  std::vector<double> load_average;     ///< over 1, 5 and 15 minutes
   std::uint64_t memory_bytes = 0;
-  std::optional<double> cpu_quota;                  ///< processors' time that a container has
+  std::optional<double> cpu_quota;                  ///< CPUs' worth of time that a container may use
   std::optional<std::uint64_t> memory_limit_bytes;  ///< of a container
   std::string operating_system;                     ///< the distribution's name for itself
   std::string kernel;                               ///< system, release and architecture
 };
 
-/// "MODEL, GENERATION", as far as they are known.
+/// "MODEL, GENERATION", without what is unknown.
 inline std::string cpu_name(const Machine& machine) {
   return machine.cpu_generation.empty() ? machine.cpu_model
                                         : machine.cpu_model + ", " + machine.cpu_generation;
 }
 
-/// The machine that this runs on, as it is now. `root` stands before /proc, /sys and /etc; tests put a
-/// made-up machine there.
+/// Reads the properties of this machine, as they are now. `root` is put before /proc, /sys and /etc, so that
+/// tests can supply a made-up machine.
 Machine read_machine(const std::filesystem::path& root = "/");
 
-/// A scene and a hash of its file's text, by which two runs can tell whether they simulated the same.
+/// A scene and the hash of its file's text; equal hashes mean that two runs simulated the same scene.
 struct SceneHash {
   std::string name;
   std::uint64_t fnv1a_64 = 0;
 };
 
-/// A file that a program was run from, as its command names it.
+/// A file that a program was run from, named as in its command.
 struct FileHash {
   std::string name;
   std::uint64_t fnv1a_64 = 0;
@@ -90,49 +91,49 @@ struct FileHash {
   friend bool operator==(const FileHash& a, const FileHash& b) = default;
 };
 
-/// A program of the user's that is a backend.
+/// A user's program that is a backend.
 struct BackendProgramRecord {
   std::string name;
   std::vector<std::string> command = {};  ///< as its user wrote it
-  std::vector<FileHash> files = {};       ///< the program, and those of its arguments that are files, by name
-  int ranks = 0;              ///< processes that it runs in; 0: one, of as many threads as are asked for
-  int rank_threads = 0;       ///< of each of them
-  std::string launcher = {};  ///< the command that starts them; empty: the usual one
+  std::vector<FileHash> files = {};       ///< the program, and its arguments that are files, by name
+  int ranks = 0;              ///< processes that it runs in; 0: one, with the run's number of threads
+  int rank_threads = 0;       ///< per process
+  std::string launcher = {};  ///< the command that starts them; empty: the default
 
   friend bool operator==(const BackendProgramRecord& a, const BackendProgramRecord& b) = default;
 };
 
-/// Where numbers come from: enough to judge them and to measure them again. Names neither the user nor the
-/// host, and of the environment only what steers threads.
+/// Origin of measured numbers, in enough detail to judge them and to repeat the measurement. Names neither
+/// the user nor the host, and only those environment variables that control threads.
 struct Provenance {
   BuildInfo build;
-  std::optional<std::uint64_t> program_fnv1a_64;  ///< hash of the program's file; an older mssim did not tell
+  std::optional<std::uint64_t> program_fnv1a_64;  ///< of the program's file; none from older versions
   Machine machine;                                ///< when the run started
-  int threads = 0;                                ///< asked for
+  int threads = 0;                                ///< requested
   std::vector<int> allowed_cpus;                  ///< process_cpus()
   /// OMP_ and GOMP_ variables, by name.
   std::vector<std::pair<std::string, std::string>> thread_environment;
-  std::string device_memory;  ///< how backends with a device exchange data, where that was asked of them
+  std::string device_memory;                ///< how backends with a device exchange data, if requested
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
-  std::vector<std::string> noise;  ///< what makes times here longer or less certain
+  std::vector<std::string> noise;  ///< conditions that make times longer or less certain
   std::vector<SceneHash> scenes;
   std::vector<BackendProgramRecord> backend_programs;  ///< by name
-  std::vector<std::string>
-      command_line;  ///< the program without its folder; the home folder reads ~; escaped()
-  std::vector<std::string> earlier_starts_utc;  ///< of runs that this one goes on with, as below
+  std::vector<std::string> command_line;  ///< without the program's folder; the home folder is ~; escaped()
+  std::vector<std::string> earlier_starts_utc;  ///< of the runs that this one continues
   std::string started_utc;                      ///< ISO 8601, for example "2026-01-31T12:00:00Z"
 };
 
-/// Gathers all that can be known at the start; scenes, OpenCL devices and TetGen are the caller's to add.
+/// Gathers everything that is known at the start. The caller adds scenes, OpenCL devices and TetGen.
 /// `arguments` are main's.
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
 
-/// What a row's backend is, and the processors that it was asked to use.
+/// A row's backend and the number of processors that it was told to use.
 struct AskedProcessors {
-  std::string_view backend;  ///< without the threads that the row's name says: "openmp" of "openmp:2"
+  std::string_view backend;  ///< without the threads in the row's name: "openmp" for "openmp:2"
   int count = 0;
 };
+/// The backend and the requested processors of a row, from its name and the provenance.
 inline AskedProcessors asked_processors(const Provenance& provenance, std::string_view row_name) {
   for (const BackendProgramRecord& program : provenance.backend_programs)
     if (program.name == row_name)
@@ -143,17 +144,17 @@ inline AskedProcessors asked_processors(const Provenance& provenance, std::strin
                  : AskedProcessors{row_name, provenance.threads};
 }
 
-/// Adds a program that is a backend, `record`, to which the hashes of its files are added: `program` is the
-/// file of the command's first word, `folder` the one it runs in.
+/// Adds `record`, a program that is a backend, with the hashes of its files. `program` is the file of the
+/// command's first word, `folder` the working folder.
 void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
                  const std::filesystem::path& folder);
 
 /// Adds the hash of a scene file's text.
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);
 
-/// What makes times on this machine longer, or different from run to run: one sentence each with what to do,
-/// from the machine's load, governor and turbo and from the threads asked for and where they may run. What
-/// the system does not tell is no noise.
+/// Conditions that make times on this machine longer or less repeatable: one sentence each, with a remedy.
+/// Considers load, governor and turbo of the machine, the requested threads, and the CPUs where they may run.
+/// Conditions that the system does not report are ignored.
 std::vector<std::string> noise_of(const Provenance& provenance);
 
 }  // namespace mssim

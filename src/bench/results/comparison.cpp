@@ -9,7 +9,7 @@
 namespace mssim {
 namespace {
 
-/// Adds "WHAT was BEFORE and is NOW" where they differ, each sentence once.
+/// Adds "WHAT was BEFORE and is NOW" if they differ, each sentence once.
 void add(std::vector<std::string>& sentences, const std::string& what, const std::string& before,
          const std::string& now) {
   if (before == now) return;
@@ -17,7 +17,7 @@ void add(std::vector<std::string>& sentences, const std::string& what, const std
   if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
 }
 
-/// `with_generation`: an mssim that did not know generations wrote results that can be compared all the same.
+/// Results of an mssim that did not know generations can be compared without them.
 std::string cpu_of(const Machine& machine, bool with_generation) {
   return fmt::format("{} with {} logical CPUs", with_generation ? cpu_name(machine) : machine.cpu_model,
                      machine.logical_cpus);
@@ -27,7 +27,7 @@ std::string size_of(const ResultRow& row) {
   return fmt::format("one of {} nodes and {} springs", row.nodes, row.springs_unique);
 }
 
-/// With so few samples a side even times that do not overlap are not significant.
+/// With fewer samples per side, even times that do not overlap are not significantly different.
 constexpr std::size_t fewest_samples = 5;
 
 const ResultRow* find(std::span<const ResultRow> rows, const ResultRow& row) {
@@ -36,7 +36,7 @@ const ResultRow* find(std::span<const ResultRow> rows, const ResultRow& row) {
   return same == rows.end() ? nullptr : &*same;
 }
 
-/// A combination with its time in BASE.
+/// A combination and its time in BASE.
 template <class Combination>
 ComparedRow row_of(const Combination& combination, const std::vector<double>& base_ms) {
   ComparedRow row;
@@ -122,8 +122,8 @@ bool is_certain(const RatioEstimate& ratio, double threshold) {
 std::optional<std::size_t> samples_needed(const RatioEstimate& ratio, std::size_t samples, double threshold) {
   const double change = std::abs(std::log(ratio.ratio)), margin = std::log(1 + threshold);
   const double half_width = (std::log(ratio.high) - std::log(ratio.low)) / 2;
-  // Within the margin the interval has to end before it; beyond, it has to keep so far from 1 that the
-  // difference is significant, for which 2.58 deviations are asked where the interval has 1.96.
+  // Within the margin the interval must end before it. Beyond the margin it must keep away from 1 so far that
+  // the difference is significant; that takes 2.58 deviations where the interval has 1.96.
   const double wanted = change < margin ? margin - change : change * 1.96 / 2.58;
   const double needed = std::ceil(static_cast<double>(samples) * std::pow(half_width / wanted, 2));
   if (!(needed <= static_cast<double>(most_samples_asked))) return std::nullopt;

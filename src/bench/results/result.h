@@ -10,21 +10,20 @@
 
 namespace mssim {
 
-/// The backend whose rows the others are compared with (speedup_vs_serial): the one that is marked
-/// BackendRole::baseline.
+/// The backend that the others are compared with (speedup_vs_serial): the one marked BackendRole::baseline.
 inline constexpr std::string_view baseline_name = "serial";
 
-/// What the names of rows end in, before a number of threads, that step each body for itself.
+/// Suffix, before a number of threads, of the names of rows that step one body after the other.
 inline constexpr std::string_view each_suffix = ":each";
 
-/// A number that says how a dressed garment fits.
+/// A measure of how a dressed garment fits.
 struct FitNumberRecord {
   std::string name;             ///< ends in its unit
-  std::optional<double> value;  ///< none where it is not finite
-  std::optional<bool> within;   ///< what it must keep; none where it need not keep anything
+  std::optional<double> value;  ///< none if it is not finite
+  std::optional<bool> within;   ///< whether it is within its bound; none without a bound
 };
 
-/// How a backend dressed a garment once, from the start until it had settled.
+/// How a backend dressed a garment, from the start until it had settled.
 struct DressingRecord {
   std::uint64_t iterations = 0;            ///< steps
   std::optional<std::uint64_t> seamed_at;  ///< steps after which all seams were closed
@@ -34,32 +33,33 @@ struct DressingRecord {
   std::vector<FitNumberRecord> fit;
 };
 
-/// How far a row's state is from the reference's after the verification's steps.
+/// Difference between a row's state and the reference's after the verification's steps.
 struct Agreement {
   std::optional<double> position_error, energy_drift;
-  std::optional<std::uint64_t> state_hash;  ///< model/system.h; none where an older mssim did not tell
+  std::optional<std::uint64_t> state_hash;  ///< model/system.h; none from older versions of mssim
 };
 
-/// What the steps of a row took beside time, medians of the samples.
+/// Costs of a row's steps other than time; medians of the samples.
 struct MeasuredCosts {
   std::optional<double> processors_used;
-  // Of processes that take the steps together (Communication).
+  // For processes that step together (Communication).
   std::optional<double> waiting_share, packing_share, bytes_per_step, messages_per_step, latency_us,
       link_gigabytes_per_second;
 };
 
+/// A row's samples.
 struct Samples {
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
 };
 
 /// One combination of scene, backend and integrator, measured and verified: a row of timings.csv, whose
-/// columns result_columns describes. Values that do not exist (a failed row's times, a paper time that was
-/// never published) are empty.
+/// columns are described by result_columns. Missing values (a failed row's times, a time that was never
+/// published) are empty.
 struct ResultRow : Agreement, MeasuredCosts, Samples {
   std::string scene;
-  /// The scene is, to the byte, the one that mssim ships under its name: only that can be a paper's. No
-  /// column.
+  /// Whether the scene is, to the byte, the one that mssim ships under its name; only such a scene can be a
+  /// paper's. Not a column.
   bool scene_as_shipped = true;
   std::uint64_t nodes = 0, springs_unique = 0;
   std::optional<std::uint64_t> springs_published;
@@ -75,14 +75,14 @@ struct ResultRow : Agreement, MeasuredCosts, Samples {
   std::string status = "ok", note;
   int warm_up_trials = 0, outliers = 0;
 
-  // These and the samples stand in files of their own.
-  std::string program_output;  ///< what the program behind the backend wrote last, where there is one
-  std::optional<DressingRecord> dressing;  ///< of a garment
+  // Written to files of their own, like the samples.
+  std::string program_output;              ///< last output of the backend's program, if there is one
+  std::optional<DressingRecord> dressing;  ///< of garments only
 };
 
-/// A column of timings.csv: a value of a row.
+/// A column of timings.csv.
 struct ResultColumn {
-  std::string_view name;     ///< ends in its unit where it has one that is no share and no count
+  std::string_view name;     ///< ends in its unit, except for shares and counts
   std::string_view unit;     ///< empty: none
   std::string_view meaning;  ///< a sentence without its full stop, in Markdown
   std::variant<std::string ResultRow::*, bool ResultRow::*, int ResultRow::*, std::uint64_t ResultRow::*,
@@ -92,7 +92,7 @@ struct ResultColumn {
   bool is_hash = false;  ///< 16 hexadecimal digits
 };
 
-/// The TABLE of columns, in their order. Readers rely on it: new ones go to the end. docs/bench.md repeats
+/// The TABLE of columns, in their order. Readers rely on the order: append new ones. docs/bench.md repeats
 /// it.
 inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"scene", "", "the scene's name", &ResultRow::scene},
@@ -100,13 +100,12 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"springs_unique", "", "its springs, each counted once", &ResultRow::springs_unique},
     {"springs_published", "", "its springs as Hong et al. count them", &ResultRow::springs_published},
     {"backend", "", "the backend's name", &ResultRow::backend},
-    {"device", "", "what it ran on: `cpu`, with its instruction set, or an OpenCL device",
-     &ResultRow::device},
-    {"threads", "", "processors that compute a step", &ResultRow::threads},
+    {"device", "", "`cpu`, with its instruction set, or an OpenCL device", &ResultRow::device},
+    {"threads", "", "processors used per step", &ResultRow::threads},
     {"integrator", "", "the integrator's name", &ResultRow::integrator},
     {"dt_s", "s", "time step", &ResultRow::dt_s},
     {"rounds", "", "samples taken", &ResultRow::rounds},
-    {"ms_per_step", "ms", "time of a step, the median of the samples", &ResultRow::ms_per_step},
+    {"ms_per_step", "ms", "time per step, the median of the samples", &ResultRow::ms_per_step},
     {"ms_per_step_low", "ms",
      "lower end of the median's distribution-free 95 % interval; with fewer than six rounds the smallest "
      "sample",
@@ -132,14 +131,13 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      "total energy less the reference's, over the reference's kinetic plus elastic energy; of a scene at "
      "rest, over a hundred times the energy of what is rounded",
      &ResultRow::energy_drift},
-    {"verified", "", "whether the steps agree with the reference, and the samples ended where they should",
+    {"verified", "", "whether the steps agree with the reference, and the samples have the right end states",
      &ResultRow::verified},
     {"status", "",
      "`ok`, or `failed`, `unsupported`, `unavailable` or `not timed` (verified all the same) with the "
      "reason",
      &ResultRow::status},
-    {"note", "",
-     "what a reader should know, for example that this TetGen made another mesh than the scene states",
+    {"note", "", "remarks, for example that this TetGen made another mesh than the scene states",
      &ResultRow::note},
     {"warm_up_trials", "", "trials before the samples, until the backend was warm",
      &ResultRow::warm_up_trials},
@@ -164,7 +162,7 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      &ResultRow::link_gigabytes_per_second},
 });
 
-/// Are these, whatever is known of them, of the same scene, backend and integrator?
+/// Whether both are of the same scene, backend and integrator.
 template <class A, class B>
 bool same_combination(const A& a, const B& b) {
   return a.scene == b.scene && a.backend == b.backend && a.integrator == b.integrator;
@@ -176,14 +174,14 @@ std::string combination_name(const A& a) {
   return a.scene + ", " + a.backend + ", " + a.integrator;
 }
 
-/// Is this the time of something that works?
+/// Whether the row is ok and verified, so that its time counts.
 inline bool counts(const ResultRow& row) { return row.status == "ok" && row.verified; }
 
-/// Did its steps take more processors than these threads, which were asked for? So does a device that its
-/// driver cannot divide.
+/// Whether its steps took more processors than the `threads` that were requested. An OpenCL device does so if
+/// its driver cannot divide it.
 inline bool exceeds(const ResultRow& row, int threads) { return row.threads > threads; }
 
-/// The row's status; a row that was measured but not verified has failed.
+/// The row's status; a measured row that is not verified has failed.
 inline std::string status_of(const ResultRow& row) {
   return row.status == "ok" && !row.verified ? "failed: not verified" : row.status;
 }

@@ -1,8 +1,8 @@
 #include "bench/roofline/roofline.h"
 #include "platform/machine.h"
 
-// Highway compiles the text up to HWY_AFTER_NAMESPACE once for every instruction set, each time into a
-// namespace of its own. Beyond AVX3, in lower bits, are only instructions that a triad has no use for.
+// Highway compiles the text up to HWY_AFTER_NAMESPACE once for each instruction set, each time in a namespace
+// of its own. Targets above AVX3, in lower bits, only add instructions that a triad does not use.
 #define HWY_DISABLED_TARGETS (HWY_AVX3 - 1)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/roofline/machine_peak.cpp"
@@ -13,7 +13,7 @@
 #ifndef MSSIM_BENCH_MACHINE_PEAK_ONCE
 #define MSSIM_BENCH_MACHINE_PEAK_ONCE
 namespace mssim {
-/// Arrays of the triad are a multiple of this many floats long, four vectors of the widest kind.
+/// Length of the triad's arrays is a multiple of this many floats: four vectors of the widest kind.
 inline constexpr std::size_t triad_block = 128;
 }  // namespace mssim
 #endif
@@ -22,8 +22,8 @@ HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// a = b + s c over arrays of `size` floats, a multiple of triad_block, `passes` times. `stream` stores past
-/// the caches.
+/// Computes a = b + s c over arrays of `size` floats, a multiple of triad_block, `passes` times. `stream`:
+/// stores bypass the caches.
 void triad(float* HWY_RESTRICT a, const float* HWY_RESTRICT b, const float* HWY_RESTRICT c, std::size_t size,
            std::size_t passes, bool stream) {
   const hn::CappedTag<float, triad_block / 4> d;
@@ -39,15 +39,14 @@ void triad(float* HWY_RESTRICT a, const float* HWY_RESTRICT b, const float* HWY_
           hn::Store(hn::MulAdd(s, hn::Load(d, c + k), hn::Load(d, b + k)), d, a + k);
       }
     }
-    // Nobody may conclude that all passes but the last are superfluous.
+    // Keeps the compiler from removing all passes but the last.
     asm volatile("" : : "r"(a) : "memory");
   }
   if (stream) hwy::FlushStream();
 }
 
-/// Multiply-adds in chains that do not wait for one another, `rounds` in each chain. Twelve chains keep two
-/// units of latency four to six busy and fit into sixteen registers. Returns how many floating-point
-/// operations that was.
+/// Multiply-adds in independent chains, `rounds` in each. Twelve chains keep two units of latency four to six
+/// busy and fit into sixteen registers. Returns the number of floating-point operations.
 double multiply_adds(std::size_t rounds, float* HWY_RESTRICT result) {
   const hn::ScalableTag<float> d;
   const auto m = hn::Set(d, 0.5F);
@@ -92,9 +91,9 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double>(end - start).count();
 }
 
-/// Wall seconds from the first thread's start until `work(part)` is done for every part, of which each thread
-/// takes one. All threads are there before the first starts; waiting for them is not counted. (Should the
-/// runtime grant fewer threads, some take more parts, and the time shows it.)
+/// Wall seconds from the first thread's start until `work(part)` has finished for every part. Each thread
+/// takes one part. All threads exist before the first starts; waiting for them is not counted. If the runtime
+/// grants fewer threads, some take more parts, and the time includes that.
 template <class Work>
 double timed_on(int threads, const Work& work) {
   Clock::time_point first_start = Clock::time_point::max(), last_end = Clock::time_point::min();
@@ -115,9 +114,9 @@ double timed_on(int threads, const Work& work) {
   return seconds_between(first_start, last_end);
 }
 
-/// The best rate (amount per second, all threads together) of `work(part, repeats)`, which does `repeats`
-/// times `amount`. How often to repeat, so that a sample is long against what starts and ends it, is found on
-/// one thread: threads that wait for one another on a busy machine would look busy themselves.
+/// The best rate (amount per second, all threads together) of `work(part, repeats)`, which processes `amount`
+/// `repeats` times. The number of repetitions makes a sample long relative to its start and end. It is found
+/// on one thread, because on a busy machine the time of several includes their waiting.
 template <class Work>
 double best_rate(int threads, double amount, const Work& work) {
   constexpr double sample_seconds = 1e-3, total_seconds = 0.05;
@@ -127,7 +126,7 @@ double best_rate(int threads, double amount, const Work& work) {
     const Clock::time_point start = Clock::now();
     work(0, repeats);
     if (seconds_between(start, Clock::now()) >= sample_seconds) {
-      ++long_enough;  // twice, because once can be an interruption
+      ++long_enough;  // twice, because one may be an interruption
     } else {
       repeats *= 2;
       long_enough = 0;
@@ -141,7 +140,7 @@ double best_rate(int threads, double amount, const Work& work) {
   return amount * static_cast<double>(repeats) * threads / best;
 }
 
-/// The part of the triad's arrays that one thread works on.
+/// The part of the triad's arrays that one thread processes.
 struct TriadPart {
   hwy::AlignedFreeUniquePtr<float[]> a, b, c;
 };
@@ -158,7 +157,7 @@ double triad_bandwidth(int threads, std::size_t working_set_bytes) {
       *array = hwy::AllocateAligned<float>(size);
       if (!*array) throw std::bad_alloc();
     }
-  // Each thread touches its part first, so that the pages lie near it.
+  // Each thread touches its part first, so that the pages are on its NUMA node.
   timed_on(threads, [&](std::size_t thread) {
     TriadPart& part = parts[thread];
     std::fill_n(part.a.get(), size, 0.0F);

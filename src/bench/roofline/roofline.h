@@ -8,30 +8,30 @@
 
 namespace mssim {
 
-/// What one step has to do at least, however a backend stores the state: the roofline's two axes.
+/// The least work of one step, however a backend stores the state: the two axes of the roofline.
 struct StepCost {
   double bytes = 0;  ///< moved between memory and registers
   double flops = 0;  ///< floating-point operations; a fused multiply-add counts as two
 };
 
-/// Floating-point operations of one unique spring and one stage, when the force is computed once and given to
-/// both ends, d and u being the differences of position and velocity between them:
+/// Floating-point operations per unique spring and stage, if the force is computed once and applied to both
+/// ends. d and u are the differences of position and velocity between the ends:
 ///     d, u                           2 x 3 subtractions               6
 ///     d . d, u . d                   2 x (3 products, 2 sums)        10
 ///     spring_pull (spring_law.h)     root, reciprocal, product,
 ///                                    two multiply-adds                7
 ///     pull * d                       3 products                       3
 ///     onto one end, off the other    2 x 3 sums                       6
-/// Root and reciprocal count one each, as everywhere, though they take a processor longer: the bound is
+/// Root and reciprocal count as one operation each, as is usual, although they take longer; so the bound is
 /// optimistic. Sign changes are free.
 inline constexpr std::size_t flops_per_spring = 6 + 10 + 7 + 3 + 6;
 
-/// Operations of the acceleration of one node (node_laws.h), when the springs' constants were divided
-/// by its mass beforehand: viscous damping (3 products, 3 sums) and gravity (1 sum).
+/// Operations of the acceleration of one node (node_laws.h), if the springs' constants have been divided by
+/// its mass: viscous damping (3 products, 3 sums) and gravity (1 sum).
 inline constexpr std::size_t flops_per_acceleration = 3 + 3 + 1;
 
-/// Operations of the pointwise assignments of a stage, for one node: in each of three components a product
-/// for every term whose factor is not 1, and a sum between terms.
+/// Operations of a stage's pointwise assignments for one node: in each of three components a product for
+/// every term whose factor is not 1, and a sum between terms.
 constexpr std::size_t line_flops(const Stage& stage) {
   std::size_t count = 0;
   for (const Assignment& assignment : stage.assignments) {
@@ -43,8 +43,9 @@ constexpr std::size_t line_flops(const Stage& stage) {
   return 3 * count;
 }
 
-/// Vectors of three floats that a stage moves for one node: every slot that it reads, the gathered pair once
-/// however many neighbours look at it, and every slot that it writes. What lives within a stage is free.
+/// Vectors of three floats that a stage moves for one node: every slot that it reads and every slot that it
+/// writes. The gathered pair counts once, however many neighbours read it. Values that live only within a
+/// stage are free.
 constexpr std::size_t slots_moved(const Stage& stage) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < memory_slots; ++i) {
@@ -55,46 +56,46 @@ constexpr std::size_t slots_moved(const Stage& stage) {
   return count;
 }
 
-/// What a step works on.
+/// Size of the data that a step processes.
 struct StepSize {
   std::uint64_t nodes = 0;
   std::uint64_t springs = 0;    ///< unique ones
-  double bytes_per_spring = 0;  ///< memory that says which nodes a spring joins, and its rest length
+  double bytes_per_spring = 0;  ///< connectivity and rest length of a spring in memory
 };
 
-/// With the bytes that a spring takes in memory at least.
+/// The size of a system, with the least memory that a spring takes.
 StepSize step_size(const System& system);
 
-/// The size where only so many of the springs are in memory (Backend::stored_springs): others share theirs.
+/// The size if memory holds only `stored` springs (Backend::stored_springs) and the others share theirs.
 StepSize with_stored_springs(StepSize size, std::uint64_t stored);
 
-/// Cost of a step that passes over the nodes, and where they take memory over the springs, once per stage.
-/// Where stages overlap, so that one pass takes `steps_per_pass` whole steps (Backend::steps_per_pass), trial
-/// values never leave a cache: then a pass moves the state, in and out, and the springs.
-/// Left out, being small: pins, contact with the floor, what a cache line moves besides.
+/// Cost of a step that passes once per stage over the nodes and, if they take memory, the springs. If stages
+/// overlap, so that one pass takes `steps_per_pass` whole steps (Backend::steps_per_pass), trial values never
+/// leave a cache: a pass then moves the state, in and out, and the springs. Small contributions are left out:
+/// pins, contact with the floor, and other data in the same cache lines.
 StepCost step_cost(const Integrator& integrator, const StepSize& size, int steps_per_pass = 0);
 
-/// Bytes of all that a step of the integrator touches, slots and springs: the working set whose cache level
+/// Bytes of all slots and springs that a step of the integrator touches: the working set, whose cache level
 /// bounds the step.
 double working_set_bytes(const Integrator& integrator, const StepSize& size);
 
-/// What this machine does at best with a number of threads: the roofs of the roofline.
+/// Peak rates of this machine with a number of threads: the roofs of the roofline.
 struct MachinePeak {
-  double bytes_per_second = 0;  ///< triad a = b + s c, 12 bytes an element (two loads, one store)
+  double bytes_per_second = 0;  ///< triad a = b + s c, 12 bytes per element (two loads, one store)
   double flops_per_second = 0;  ///< fused multiply-adds in single precision, two operations each
 };
 
-/// Measures both in this process, now, with `threads` OpenMP threads (at least 1), in about a quarter of a
-/// second: the fastest of many repetitions, because a peak is what the machine can do undisturbed.
-/// The triad's three arrays together are about `working_set_bytes` large (from 1.5 KiB a thread up to 256
-/// MiB, where no cache helps any more), so that a step is held against the cache level that it works in. The
-/// store is tried both through the caches and past them. Vector instructions are the widest that this
-/// processor has. Throws std::bad_alloc.
+/// Measures both rates in this process with `threads` OpenMP threads (at least 1), in about a quarter of a
+/// second. Takes the fastest of many repetitions, because a peak is the rate of the undisturbed machine. The
+/// triad's three arrays together have about `working_set_bytes` (from 1.5 KiB per thread up to 256 MiB, which
+/// no cache holds), so a step is compared with the cache level that it works in. Stores are tried both
+/// through the caches and past them. Vector instructions are the widest that this processor has. Throws
+/// std::bad_alloc.
 MachinePeak measure_peak(int threads, std::size_t working_set_bytes);
 
-/// The least time that the machine needs for the step over the time it took: 1 on the roof.
-/// Source: S. Williams, A. Waterman, D. Patterson, Roofline: An Insightful Visual Performance Model for
-/// Multicore Architectures, Communications of the ACM 52 (2009), 65-76.
+/// The least time that the machine needs for the step, divided by the time it took: 1 on the roof. Source: S.
+/// Williams, A. Waterman, D. Patterson, Roofline: An Insightful Visual Performance Model for Multicore
+/// Architectures, Communications of the ACM 52 (2009), 65-76.
 double roofline_fraction(const StepCost& cost, double seconds, const MachinePeak& peak);
 
 }  // namespace mssim

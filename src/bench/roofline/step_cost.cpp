@@ -7,8 +7,8 @@ namespace mssim {
 constexpr std::size_t bytes_per_slot = 3 * sizeof(float);
 
 StepSize step_size(const System& system) {
-  // On a grid the place of a node says it all; a body has two node indices and a rest length, as in the
-  // packed unit of Hong et al.
+  // On a grid a node's place determines its springs; a body stores two node indices and a rest length per
+  // spring, as in the packed unit of Hong et al.
   const bool grid = std::holds_alternative<GridPatch>(system.topology);
   return {system.nodes(), system.springs.size(), grid ? 0. : 2 * sizeof(std::uint32_t) + sizeof(float)};
 }
@@ -20,7 +20,7 @@ StepSize with_stored_springs(StepSize size, std::uint64_t stored) {
 }
 
 StepCost step_cost(const Integrator& integrator, const StepSize& size, int steps_per_pass) {
-  constexpr std::size_t slots_of_state = 4;  // position and velocity, in and out
+  constexpr std::size_t slots_of_state = 4;  // position and velocity, read and written
   std::size_t slots = 0, node_flops = 0;
   for (std::size_t s = 0; s < integrator.stage_count; ++s) {
     slots += slots_moved(integrator.stages[s]);

@@ -29,9 +29,9 @@ requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const std
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
-/// Hash of all that a reference of a cloth or of bodies can depend on.
+/// Hash of everything that a reference of a cloth or bodies depends on.
 std::uint64_t hash_of(const System& system) {
-  // All members by name, so that none that comes is forgotten.
+  // Names all members, so that a new one cannot be forgotten.
   const auto& [topology, springs, materials, pins, masses, gravity, viscous_damping, floor, solver, start] =
       system;
   std::string numbers =
@@ -49,13 +49,13 @@ std::uint64_t hash_of(const System& system) {
   return hash;
 }
 
-/// What an entry holds behind its head, before the positions and velocities.
+/// Content of an entry between its head and the positions and velocities.
 struct Numbers {
   std::int64_t steps;
   double step_seconds;
 };
 
-/// The reference, or nothing for a file that is not, or no longer, what was written.
+/// Reads the reference of an entry; none if the file is missing, damaged or another one's.
 std::optional<Reference> read_entry(const fs::path& file, const std::string& head, const System& system) {
   const std::size_t vectors = system.nodes() * sizeof(Vec3d);
   const std::size_t size = head.size() + sizeof(Numbers) + 2 * vectors + sizeof(std::uint64_t);
@@ -82,7 +82,7 @@ std::optional<Reference> read_entry(const fs::path& file, const std::string& hea
 }
 
 void forget_oldest(const ReferenceCache& cache) {
-  /// As it was when the folder was read: other processes use entries and tidy up at the same time.
+  /// A file at the time when the folder was read; other processes may use and remove entries meanwhile.
   struct Entry {
     fs::path file;
     fs::file_time_type used;
@@ -126,7 +126,7 @@ void keep(const ReferenceCache& cache, const fs::path& file, const std::string& 
     entry.move_into_place();
     forget_oldest(cache);
   } catch (const WriteError&) {
-    // It is run anew next time; or another process is keeping the same.
+    // The reference is computed again next time, or another process is keeping the same one.
   }
 }
 

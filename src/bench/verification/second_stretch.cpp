@@ -65,14 +65,14 @@ System small_cloth(const System& scene, const GridPatch& grid) {
 System small_bodies(const System& scene) {
   System small = with_laws_of(scene);
   const auto [lightest, heaviest] = std::ranges::minmax_element(scene.node_mass);
-  const double spacing = 0.8 * mean_rest_length(scene);  // its edges and diagonals are some 1.3 times as long
+  const double spacing = 0.8 * mean_rest_length(scene);  // edges, diagonals: about 1.3 times it
   SolidBlock blocks;
   for (const double mass : {*lightest, *heaviest}) {
     const double x = small.node_mass.empty() ? -4 : 1;
     add_block(blocks, 4, 5, 6, spacing, {x * spacing, 0, -2.5 * spacing});
     small.node_mass.resize(blocks.position.size(), mass);
   }
-  // One edge is lowest.
+  // One edge is the lowest part.
   for (const Vec3d& at : blocks.position)
     small.start.position.push_back({at.x, 0.96 * at.y + 0.28 * at.z, 0.96 * at.z - 0.28 * at.y});
   const std::size_t of_first = blocks.position.size() / 2;
@@ -84,8 +84,8 @@ System small_bodies(const System& scene) {
   return small;
 }
 
-/// Strains it, lets it fall and slide, and puts the floor where its lowest nodes meet it in a quarter of the
-/// time.
+/// Strains the system, lets it fall and slide, and puts the floor where its lowest nodes meet it after a
+/// quarter of `seconds`.
 void set_going(System& system, double seconds, int number) {
   constexpr double strain = 0.01, impact = 0.01;  // impact: strain that it makes
   const double unit = mean_rest_length(system);
@@ -117,7 +117,7 @@ void set_going(System& system, double seconds, int number) {
   round_start_to_single(system);
 }
 
-/// Goes as far as can be compared.
+/// Runs the reference for as long as results can be compared, at most `most` steps.
 SecondStretch follow(System system, const Integrator& integrator, double dt_s, int most) {
   SecondStretch stretch{.system = std::move(system), .state = {}};
   const System& small = stretch.system;
@@ -146,7 +146,7 @@ SecondStretch follow(System system, const Integrator& integrator, double dt_s, i
     state = reference->state();
     const State other = step_rounded(*rounded, 1);
     if (!decided || first_bad_node(state)) break;
-    // A right backend was seen at 1.8 times it (cloths, semi-euler).
+    // A correct backend reached 1.8 times the rounded reference's deviation (cloths, semi-euler).
     constexpr double margin = 4;
     if (!(margin * position_roundings(integrator) * position_deviation(small, state, other) <= tolerance))
       continue;

@@ -27,10 +27,10 @@ double largest_coordinate(const State& state) {
 
 constexpr std::size_t most_nodes = 1U << 20U;
 
-/// From one node that is looked at to the next.
+/// Distance in node numbers between examined nodes.
 std::size_t stride_of(std::size_t nodes) { return (nodes + most_nodes - 1) / most_nodes; }
 
-/// Those of the nodes that are looked at.
+/// Positions of the examined nodes.
 std::vector<Vec3d> looked_at(const State& state, std::size_t first) {
   const std::size_t stride = stride_of(state.position.size());
   std::vector<Vec3d> positions;
@@ -45,7 +45,7 @@ double largest_distance(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b
   return largest;
 }
 
-/// The reference, and where roundings alone lead beside it.
+/// The reference, and a copy that is rounded after every step.
 class CheckedWay {
  public:
   CheckedWay(const System& system, const Integrator& integrator, double dt_s, const State& start,
@@ -73,7 +73,7 @@ class CheckedWay {
 
   const State& state() const { return present_; }
   bool met_floor() const { return met_floor_; }
-  double fastest() const { return fastest_; }  ///< m/s, of all nodes on the way
+  double fastest() const { return fastest_; }  ///< m/s, of all nodes so far
   std::unique_ptr<State> rounded() const {
     return rounded_ ? std::make_unique<State>(rounded_->state()) : nullptr;
   }
@@ -154,7 +154,7 @@ double energy_in_motion(const System& system, const State& state, const Energy& 
     const Vec3d& x = state.position[spring.first];
     rounded += system.materials[spring.kind].stiffness / 2 * rounding * rounding * dot(x, x) / 3;
   }
-  // Of what has no springs that resist, and does not move, nothing.
+  // Never 0, even for a scene at rest whose springs do not resist.
   return std::max({energy.kinetic + energy.elastic, rounded / share, std::numeric_limits<double>::min()});
 }
 
@@ -207,9 +207,9 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
   bool in_the_air = true;
   const int comparable = comparable_steps(system, integrator, dt_s, verification_steps);
   std::vector<double> step_seconds;
-  // To the end even after contact: a blow-up may only show then.
+  // Continues after contact, because a blow-up may only appear then.
   for (int steps = 0; steps < verification_steps;) {
-    // Not taken: those that run beside this one are to see it, too.
+    // The signal stays noted, for others that run at the same time.
     if (const int signal = noted_ending_signal()) throw Interrupted{signal};
     const int next =
         std::min(steps + steps_between_looks, steps < comparable ? comparable : verification_steps);
@@ -294,7 +294,7 @@ State sample_start(const System& system, std::uint32_t number) {
   };
   const double unit = mean_rest_length(system);
   const double speed = strain * unit * std::sqrt(stiffness_bound(system).stiffness);
-  // A wave for each direction of motion, each along a direction of its own.
+  // A wave for each direction of motion, each along its own direction.
   Vec3d k[3];
   double phase[3];
   for (int i = 0; i < 3; ++i) {

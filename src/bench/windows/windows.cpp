@@ -12,10 +12,11 @@
 namespace mssim {
 namespace {
 
-/// Rows and columns of a window where the cloth is large. What the reference computes around it costs more.
+/// Rows and columns of a window of a large cloth. The reference's domain around it costs more than the window
+/// itself.
 constexpr std::uint32_t usual_side = 128;
 constexpr std::uint32_t least_side = 8;
-/// Windows of a small cloth are so many times in its shorter side.
+/// Windows per shorter side of a small cloth.
 constexpr std::uint32_t windows_a_side = 8;
 
 bool overlap(const GridWindow& a, const GridWindow& b) {
@@ -23,7 +24,8 @@ bool overlap(const GridWindow& a, const GridWindow& b) {
          b.column < a.column + a.columns;
 }
 
-/// The i-th of numbers from 0 to 1 of which any first few lie evenly: the fractions of multiples of `step`.
+/// The i-th number, from 0 to 1, of a sequence whose first n numbers are spread evenly for every n: the
+/// fractions of multiples of `step`.
 double spread(std::size_t i, double step) {
   const double multiple = step * static_cast<double>(i + 1);
   return multiple - std::floor(multiple);
@@ -32,7 +34,7 @@ double spread(std::size_t i, double step) {
 // Powers of the root of x^3 = x + 1, whose multiples fill a square evenly.
 constexpr double row_step = 0.7548776662466927, column_step = 0.5698402909980532;
 
-constexpr int leg = 20;  ///< steps after which the domain is cut to what is still right
+constexpr int leg = 20;  ///< steps after which the domain is cut to the rows that are still right
 static_assert(std::ranges::find(window_looks, leg) != window_looks.end() && verification_steps % leg == 0);
 
 GridWindow domain_for(const GridWindow& window, int steps, const Integrator& integrator,
@@ -40,7 +42,7 @@ GridWindow domain_for(const GridWindow& window, int steps, const Integrator& int
   return domain_of(window, ghost_columns(integrator, static_cast<std::size_t>(steps)), grid);
 }
 
-/// What a state of a window says of another one in it.
+/// The part of a state of window `from` that belongs to window `to`.
 State cut(const State& state, const GridWindow& from, const GridWindow& to) {
   State part;
   for (std::uint32_t row = to.row; row < to.row + to.rows; ++row) {
@@ -109,7 +111,7 @@ WindowReference run_window_reference(const WindowedCloth& cloth, const GridWindo
   State before = system.start;
   bool in_the_air = true;
   const int comparable = comparable_steps(reference.system, integrator, dt_s, verification_steps);
-  // To the end even after contact: a blow-up may only show then.
+  // Continues after contact, because a blow-up may only appear then.
   for (int steps = 0; const int look : window_looks) {
     const int count = look - std::exchange(steps, look);
     backend->step(count);
@@ -213,7 +215,8 @@ Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth,
     if (error <= tolerance || error / tolerance <= worst) continue;
     worst = error / tolerance;
     result.failure = fmt::format(
-        "position error {:.6g} of a rest length exceeds {:.6g}{} in the window from row {} and column {} on",
+        "position error {:.6g} of a rest length exceeds {:.6g}{} in the window that starts at row {} and "
+        "column {}",
         error, tolerance, after, one.window.row, one.window.column);
   }
   result.energy_drift = energy_off / in_motion;

@@ -8,7 +8,7 @@
 namespace mssim {
 namespace {
 
-/// The rule for a number that `accepts` takes; `what` is what it is then.
+/// A rule for numbers that satisfy `accepts`; `what` describes such a number.
 template <class Number, class Accepts>
 ValueRule number_that(std::string what, Accepts accepts) {
   return [what = std::move(what), accepts](const std::string& text) -> std::string {
@@ -17,12 +17,12 @@ ValueRule number_that(std::string what, Accepts accepts) {
   };
 }
 
-/// What is given empty, for example by a script whose variable is not set, would else count as not given.
+/// An empty value, for example from an unset variable of a script, would otherwise count as not given.
 std::string filled(const std::string& text) {
   return text.empty() ? "\"\" is empty: give a value, or leave the option out" : "";
 }
 
-/// Without the word for its value.
+/// The argument's name without the word for its value.
 std::string name_alone(const std::string& name) { return name.substr(0, name.find(' ')); }
 
 }  // namespace

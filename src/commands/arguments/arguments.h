@@ -18,52 +18,53 @@ class Option;
 
 namespace mssim {
 
-/// What the value of an argument must be. It says in words what a value is not ("\"x\" is not a positive
-/// number"), or nothing where the value is good; the sentence around it, with the argument's name, is
-/// ProgramParser's. May replace the text by what it stands for. Empty: any text.
+/// Checks the value of an argument. Returns why the value is wrong ("\"x\" is not a positive number"), or an
+/// empty text if it is right. ProgramParser adds the argument's name and the rest of the sentence. A rule may
+/// replace the text by its canonical form. An empty function accepts any text.
 using ValueRule = std::function<std::string(std::string& text)>;
 
-/// Finite and above zero.
+/// Accepts finite numbers above zero.
 ValueRule positive_number();
-/// From `low` to `high`.
+/// Accepts numbers from `low` to `high`.
 ValueRule number_between(double low, double high);
+/// Accepts whole numbers from `low` to `high`.
 ValueRule whole_number(std::int64_t low, std::int64_t high);
-/// One of them, or several different ones that commas separate.
+/// Accepts one whole number, or several different ones separated by commas.
 ValueRule whole_numbers(std::int64_t low, std::int64_t high);
-/// One of these words, in any case; the text becomes the word as it stands here. `what` is what they name,
-/// `others` are words that users type for one of them.
+/// Accepts one of these words, in any case, and replaces the text by the word as given here. `what` names
+/// their kind; `others` are alternative spellings.
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others = {});
 
-/// An argument that has been declared: an option, a flag, or a word without a name.
+/// A declared argument: an option, a flag, or a positional argument.
 class Argument {
  public:
-  /// `name`: as Arguments takes it.
+  /// `name`: as in Arguments.
   Argument(CLI::Option& option, const std::string& name);
 
   Argument& required();
-  /// It is an error without `other`.
+  /// Makes it an error to give this without `other`.
   Argument& needs(const Argument& other);
-  /// It is an error together with `other`.
+  /// Makes it an error to give this together with `other`.
   Argument& excludes(const Argument& other);
 
  private:
   CLI::Option* option_;
 };
 
-/// Declares what a command takes on its command line. The command-line library stands behind it, in three
-/// files of this folder: its header costs each file that includes it seconds of compiling. A name is
-/// `--NAME`, or `--NAME VALUE` with the word for its value in --help, or `WORD` of an argument without a
-/// name. A target must outlive the parsing and keeps its value, the default, where the argument is not given.
+/// Declares the arguments of a command. Only arguments.cpp and program_parser.cpp include the command-line
+/// library, because its header adds seconds to the compilation of each file. A name is `--NAME`; `--NAME
+/// VALUE`, with the word for the value in --help; or `WORD` for a positional argument. A target must outlive
+/// the parsing; if the argument is not given, it keeps its value, which is the default.
 class Arguments {
  public:
   explicit Arguments(CLI::App& command) : command_(&command) {}
 
-  /// A text that `rule` accepts.
+  /// Takes a text that `rule` accepts.
   Argument add(const std::string& name, std::string& target, const std::string& description,
                const ValueRule& rule = {});
 
-  /// A number, an int or double, an optional one or several, that `rule` accepts; it accepts numbers of that
-  /// kind only.
+  /// Takes a number that `rule` accepts: an int or a double, an optional one, or several. `rule` must only
+  /// accept numbers of that type.
   template <class Target>
   Argument add_number(const std::string& name, Target& target, const std::string& description,
                       const ValueRule& rule) {
@@ -71,7 +72,7 @@ class Arguments {
         name, [&target](const std::string& text) { assign(target, text); }, description, rule);
   }
 
-  /// One of these words, in any case; the target becomes what it stands for.
+  /// Takes one of these words, in any case; the target becomes its value.
   template <class Value>
   Argument add_choice(const std::string& name, Value& target, const std::map<std::string, Value>& choices,
                       const std::string& description) {
@@ -82,23 +83,22 @@ class Arguments {
         description, one_of("value", std::move(words)));
   }
 
-  /// Several texts, separated by commas or, with `split`, by what it takes one text apart at.
+  /// Takes several texts, separated by commas or, if given, by `split`.
   Argument add_list(const std::string& name, std::vector<std::string>& target, const std::string& description,
                     const std::function<std::vector<std::string>(std::string_view)>& split = {});
 
-  /// True when it is given.
+  /// Sets the target to true if given.
   Argument add_flag(const std::string& name, bool& target, const std::string& description);
 
-  /// A flag that may be followed by a text: the target is empty where that is left out.
+  /// Takes a flag with an optional text; the target is empty if the text is omitted.
   Argument add_flag_with_text(const std::string& name, std::optional<std::string>& target,
                               const std::string& description);
 
-  /// The help page of the program that the command belongs to or, with a name, of that command of it; empty
-  /// where there is no such command.
+  /// The help page of the program, or of its command `name`; empty if there is no such command.
   std::string help_page(const std::string& name) const;
 
  private:
-  /// `take` gets the text as `rule` has left it.
+  /// `take` receives the text after `rule` has accepted it.
   Argument add_taken(const std::string& name, const std::function<void(const std::string&)>& take,
                      const std::string& description, const ValueRule& rule);
 

@@ -12,12 +12,11 @@
 namespace mssim {
 namespace {
 
-/// An entry of a help page, in lines that fit a terminal: `name` on the left, the text on the right in as
-/// many lines as it takes.
+/// An entry of a help page, in lines that fit a terminal: `name` on the left, the text on the right.
 std::string help_entry(const std::string& name, const std::string& text) {
   constexpr std::size_t left_column = 26, page_width = 80;
   std::string page = "  " + name, line;
-  // A name that fills its column has a line of its own.
+  // A name that fills its column gets a line of its own.
   if (page.size() + 2 > left_column) page += '\n';
   const auto put = [&] {
     const std::size_t start = page.rfind('\n') + 1;
@@ -33,18 +32,18 @@ std::string help_entry(const std::string& name, const std::string& text) {
   return page;
 }
 
-/// The command that was being parsed: the subcommand if there is one.
+/// The command that was being parsed: the subcommand, if any.
 const CLI::App& command_of(const CLI::App& app) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   return parsed.empty() ? app : *parsed.back();
 }
 
-/// As a user types it.
+/// The command as a user types it.
 std::string typed_name(const CLI::App& command) {
   return command.get_parent() ? "mssim " + command.get_name() : "mssim";
 }
 
-/// --NAME of what a user typed as an option: without a value behind '=', and with two dashes.
+/// --NAME for a typed option: without '=VALUE', and with two dashes.
 std::string long_form(std::string_view typed) {
   typed = typed.substr(0, typed.find('='));
   typed.remove_prefix(std::min(typed.find_first_not_of('-'), typed.size()));
@@ -64,10 +63,10 @@ std::string unknown_option(const std::string& typed, const CLI::App& command) {
   return sentence + did_you_mean(name, std::vector<std::string_view>(known.begin(), known.end()));
 }
 
-/// What is left over: an option that there is not, or a word too many.
+/// Describes an argument that was not consumed: an unknown option, or an extra word.
 std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord& option_of) {
   std::vector<std::string> rest = command.remaining();
-  std::erase(rest, "--");  // which only says that no option follows
+  std::erase(rest, "--");  // it only marks the end of options
   const auto option =
       std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   if (option != rest.end()) return unknown_option(*option, command);
@@ -78,12 +77,12 @@ std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord&
                                                  : ": an option begins with --");
 }
 
-/// What a parser's sentence begins with: the name of the option that it is about.
+/// The option named at the start of a parser's message.
 std::string subject_of(std::string_view message) {
   return std::string(message.substr(0, message.find_first_of(": ")));
 }
 
-/// The option of that name and what it wants.
+/// Message for a missing option, with the value that it needs.
 std::string missing(const std::string& name, const CLI::App& command) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return name + " is missing";
@@ -112,26 +111,26 @@ std::string problem(const CLI::ParseError& error, const CLI::App& command) {
   const std::string other = message.substr(message.rfind(' ') + 1);
   if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing(subject, command);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return wrong_count(subject, command);
-  // What takes a value has a check of its own (ValueRule), so this is a flag.
+  // Options with a value have a check of their own (ValueRule), so this is a flag.
   if (dynamic_cast<const CLI::ConversionError*>(&error)) return wrong_count(flag_in(message), command);
   if (dynamic_cast<const CLI::RequiresError*>(&error))
     return fmt::format("{0} needs {1}: add it, or leave out {0}", subject, other);
   if (dynamic_cast<const CLI::ExcludesError*>(&error))
     return fmt::format("{} and {} exclude each other: leave out one of them", subject, other);
-  return message;  // of the checks in ValueRule
+  return message;  // from the checks in ValueRule
 }
 
-/// What is wrong with a command line that its parser has refused: one sentence with the option, the value and
-/// the remedy, ending with where help is. `app` is the program, which has parsed the command line as far as
-/// it could; `option_of` is asked about a word that no option stands before.
+/// The error in a command line that was refused by its parser: one sentence with the option, the value and
+/// the remedy, ending with a pointer to the help. `app` is the program after parsing as far as possible;
+/// `option_of` suggests an option for a stray word.
 std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app, const OptionOfWord& option_of) {
   const CLI::App& command = command_of(app);
-  // A misspelt option also leaves the right one missing; it is the one to be told.
+  // A misspelt option also leaves the correct one missing; report the misspelling.
   const std::optional<std::string> surplus = leftover(command, option_of);
   return fmt::format("{}; see {} --help", surplus.value_or(problem(error, command)), typed_name(command));
 }
 
-/// How --help looks: usage, commands or options with a word for their value.
+/// Layout of --help: usage, then commands or options with the word for their value.
 class HelpPage final : public CLI::Formatter {
  public:
   std::string make_usage(const CLI::App* app, std::string name) const override {

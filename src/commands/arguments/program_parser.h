@@ -8,7 +8,7 @@
 
 namespace mssim {
 
-/// Says which option a word without one was probably meant for, such as "--scene"; empty where none.
+/// Returns the option that probably belongs before a stray word, such as "--scene"; empty if there is none.
 using OptionOfWord = std::function<std::string(const std::string& word)>;
 
 /// Reads the command line of a program with commands: `mssim COMMAND ARGUMENTS`.
@@ -18,16 +18,16 @@ class ProgramParser {
   ProgramParser(const std::string& name, const std::string& description, const std::string& version);
   ~ProgramParser();
 
-  /// A command; `end` stands at the end of its help page. Its arguments are to be declared before parsing.
+  /// Adds a command; `end` is the end of its help page. Its arguments must be declared before parsing.
   Arguments add_command(const std::string& name, const std::string& description, const std::string& end);
-  /// What stands at the end of the program's help page.
+  /// Sets the end of the program's help page.
   void end_help_with(const std::string& text);
 
-  /// What a command line asks for; of the three texts at most one is not empty.
+  /// The result of parsing; at most one of the three texts is not empty.
   struct Request {
-    std::string page;     ///< of --help or --version, to be printed
-    std::string refusal;  ///< one sentence on what is wrong with the command line, with the remedy
-    std::string command;  ///< name of the command to run; its targets are set
+    std::string page;     ///< for --help or --version, to be printed
+    std::string refusal;  ///< one sentence about the error in the command line, with a remedy
+    std::string command;  ///< name of the command to run; its targets have been set
   };
   Request parse(int argc, const char* const* argv, const OptionOfWord& option_of);
 

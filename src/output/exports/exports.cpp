@@ -14,7 +14,7 @@
 namespace mssim {
 namespace {
 
-/// A blank and the shortest text that reads back as the same number.
+/// Appends a blank and the shortest text that reads back as the same number.
 void append_number(std::string& text, double value, bool in_double) {
   std::array<char, 32> digits{};
   char* const begin = digits.data();
@@ -44,7 +44,7 @@ std::string header(const ExportMesh& mesh, double time_s) {
          std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-/// What HDF5 itself adds to a file at a time, at most.
+/// Upper bound of what HDF5 adds to a file at a time.
 constexpr std::size_t room_for_metadata = 65536;
 
 void write_integers(hid_t file, const std::string& path, const std::vector<std::int64_t>& numbers,
@@ -54,7 +54,7 @@ void write_integers(hid_t file, const std::string& path, const std::vector<std::
   write_array(file, path, H5T_STD_I64LE, H5T_NATIVE_INT64, shape, numbers.data());
 }
 
-/// Cells with so many corners each; `type` is VTK's number of their kind.
+/// Cells with `corners` corners each; `type` is VTK's number of their kind.
 template <std::size_t corners>
 void write_cells(hid_t file, const std::vector<std::array<std::uint32_t, corners>>& cells,
                  std::uint8_t type) {
@@ -219,7 +219,7 @@ void VtkhdfExport::add(const ExportFrame& frame) {
   times_s_.push_back(frame.time_s);
 }
 
-/// Where each frame begins in the datasets; what is there once begins at 0 for all.
+/// Writes the offsets of each frame in the datasets; data that is stored once has offset 0 in all frames.
 void VtkhdfExport::write_steps() const {
   const hid_t file = file_.get();
   const std::size_t frames = times_s_.size();

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A provenance has four; printing a value recurses.
+/// A provenance has four levels; printing a value recurses.
 constexpr int deepest_level = 32;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
@@ -32,7 +32,7 @@ json caches_json(const std::vector<Cache>& caches) {
   return list;
 }
 
-/// A value of the document and where it stands: the root is the file, a member is reached by its key.
+/// A value of the document and its place: the root is the file, a member is reached by its key.
 class Place {
  public:
   Place(const std::filesystem::path& file, const json& root) : file_(file), value_(root) {}
@@ -42,7 +42,7 @@ class Place {
     if (!member) fail(file_, pointer_ + '/' + key + " is missing: give a provenance.json that mssim wrote");
     return *member;
   }
-  /// None where there is no such member: an older mssim did not write it.
+  /// None if there is no such member, as in files of older versions.
   std::optional<Place> find(const std::string& key) const {
     require(value_.is_object(), "an object");
     const auto member = value_.find(key);
@@ -76,7 +76,7 @@ class Place {
     require(number.has_value(), "16 hexadecimal digits");
     return *number;
   }
-  /// What `read` makes of each element of a list.
+  /// The results of `read` for each element of a list.
   template <class Read>
   auto list(Read read) const {
     require(value_.is_array(), "a list");
@@ -85,7 +85,7 @@ class Place {
       elements.push_back(read(Place(file_, value_[i], fmt::format("{}/{}", pointer_, i))));
     return elements;
   }
-  /// What `read` makes of each name and value of an object.
+  /// The results of `read` for each name and value of an object.
   template <class Read>
   auto members(Read read) const {
     require(value_.is_object(), "an object");
@@ -250,7 +250,7 @@ json to_json(const Provenance& provenance) {
 }  // namespace
 
 std::string provenance_text(const Provenance& provenance) {
-  // A folder's name may hold bytes that are no UTF-8; they are replaced.
+  // A folder's name may contain bytes that are not UTF-8; they are replaced.
   return to_json(provenance).dump(2, ' ', false, json::error_handler_t::replace);
 }
 
@@ -272,7 +272,7 @@ Provenance parse_provenance(const std::filesystem::path& file, std::string_view 
       return true;
     });
   } catch (const json::exception& error) {
-    // The library's sentence names line and column, behind its own name in brackets.
+    // The library's message has line and column after its own name in brackets.
     const std::string_view message = error.what();
     const std::size_t start = message.find("] ");
     const std::string problem =

@@ -22,19 +22,19 @@ namespace fs = std::filesystem;
 constexpr const char* provenance_name = "provenance.json";
 constexpr const char* github_name = "github.json";
 
-/// A file that is made of rows.
+/// A file that is made from rows.
 struct RowFile {
   const char* name;
-  /// Empty where none of the rows belongs into it.
+  /// Empty if none of the rows belongs in the file.
   std::string (*text)(std::span<const ResultRow> rows, const Provenance& provenance);
 };
 
-/// The TABLE of files that are made of the rows of a run, all but tables of results.
+/// The TABLE of files made from the rows of a run, except for tables of results.
 constexpr auto row_files = std::to_array<RowFile>({
     {samples_name, [](std::span<const ResultRow> rows, const Provenance&) { return samples_csv(rows); }},
     {garment_name, [](std::span<const ResultRow> rows, const Provenance&) { return garment_csv(rows); }},
     {"benchmark.json", benchmark_json},
-    // Written last: what stands there has its samples.
+    // Written last, so that its rows have their samples.
     {timings_name, [](std::span<const ResultRow> rows, const Provenance&) { return timings_csv(rows); }},
 });
 
@@ -51,7 +51,7 @@ std::string output_of(const std::string& stem) {
   return (fs::path(programs_name) / (stem + ".txt")).string();
 }
 
-/// The first bytes of a text, without a part of a letter.
+/// At most the first `bytes` bytes of a text, without a partial character.
 std::string beginning_of(std::string text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   constexpr unsigned letter_goes_on = 0x80, its_bits = 0xc0;
@@ -100,7 +100,7 @@ void ResultFolder::clear() const {
       for (const std::string& stem : file_stems(read_timings(CsvTable(folder_ / timings_name))))
         names.push_back(output_of(stem));
   } catch (const CsvError&) {
-    // Rows that cannot be read name no outputs.
+    // Rows that cannot be read do not name outputs.
   }
   for (const RowFile& file : row_files) names.emplace_back(file.name);
   names.emplace_back(github_name);
@@ -111,7 +111,7 @@ void ResultFolder::clear() const {
   for (const std::string& name : names)
     if (::unlink((folder_ / name).c_str()) != 0 && errno != ENOENT && errno != ENOTDIR)
       throw WriteError(write_failure(folder_ / name, "removing it", errno));
-  // What else lies among the outputs of programs is the user's.
+  // Other files among the outputs of programs belong to the user.
   ::rmdir((folder_ / programs_name).c_str());
 }
 

@@ -7,7 +7,7 @@
 namespace mssim {
 namespace {
 
-/// What stands before and behind the last `mark`; the whole and nothing where there is none.
+/// The text before and after the last `mark`; the whole text and nothing if there is none.
 std::pair<std::string_view, std::string_view> split_at_last(std::string_view text, std::string_view mark) {
   const std::size_t place = text.rfind(mark);
   if (place == std::string_view::npos) return {text, ""};
@@ -19,7 +19,7 @@ int ranks_of(std::string_view backend, const Provenance& provenance) {
   return program == provenance.backend_programs.end() ? 0 : program->ranks;
 }
 
-/// Steps between two messages of a cloth in ranks, which say so in their note: "2 steps an exchange".
+/// Steps between two messages of a cloth in ranks, from the row's note: "2 steps an exchange".
 std::optional<int> steps_an_exchange(const ResultRow& row) {
   const std::size_t end = row.note.find(" an exchange");
   if (end == std::string::npos) return std::nullopt;
@@ -27,7 +27,7 @@ std::optional<int> steps_an_exchange(const ResultRow& row) {
   return number_in<int>(steps.substr(0, steps.find(' ')));
 }
 
-/// Nodes a second.
+/// Nodes per millisecond.
 double rate(const ResultRow& row) { return static_cast<double>(row.nodes) / *row.ms_per_step; }
 
 /// A measured row of one scene in several processes.
@@ -35,10 +35,10 @@ struct ClusterRow {
   const ResultRow* row = nullptr;
   WideScene scene;
   std::string_view program;  ///< the backend without its number of ranks
-  int ranks = 0;             ///< 0: one process that knows of no others
+  int ranks = 0;             ///< 0: one process without ranks
 };
 
-/// The rows of a run, and what follows from several of them.
+/// The rows of a run, and numbers derived from several of them.
 class ClusterRows {
  public:
   /// `rows` and `provenance` must outlive this.
@@ -51,17 +51,17 @@ class ClusterRows {
 
   const std::vector<ClusterRow>& all() const { return rows_; }
 
-  /// Nodes a second over those of one rank of the same program, times the ranks, on the same scene or on the
-  /// one that it is a multiple of. None where either does not count.
+  /// Nodes per second relative to one rank of the same program times the number of ranks, on the same scene
+  /// or on the base of a wide scene. None if either row does not count.
   std::optional<double> efficiency(const ClusterRow& row) const { return efficiency(row, row.program, 1); }
-  /// Nodes a second over those of as many copies that send nothing.
+  /// Nodes per second relative to as many copies without messages.
   std::optional<double> efficiency_of_copies(const ClusterRow& row) const {
     return efficiency(row, copies_backend, row.ranks);
   }
-  /// Milliseconds of a step of a cloth in several ranks, if it takes what computing takes copies, and what
-  /// messages take with the latency and bandwidth of the row: the processor brings them across and computes
-  /// nothing meanwhile. Each rank has some of the columns. None where a number for that is missing, or where
-  /// a rank has fewer columns than its neighbours repeat.
+  /// Modelled ms per step of a cloth in several ranks: computing takes as long as in copies, and messages
+  /// take the row's latency and bandwidth. The processor transfers them and computes nothing meanwhile. Each
+  /// rank has some of the columns. None if a number is missing, or if a rank has fewer columns than its
+  /// neighbours repeat.
   std::optional<double> modelled_ms(const ClusterRow& row) const {
     const ResultRow& measured = *row.row;
     const ResultRow* copies = counted_row(row, copies_backend, row.ranks);
@@ -69,8 +69,8 @@ class ClusterRows {
     if (!copies || row.program == copies_backend || row.ranks < 2 || !steps || !measured.latency_us ||
         !measured.link_gigabytes_per_second || measured.bytes_per_step.value_or(0) <= 0)
       return std::nullopt;
-    constexpr double reach = 2;        // of a spring, nodes (BandLayout::halo)
-    constexpr double node_bytes = 24;  // of a message: position and velocity in single precision
+    constexpr double reach = 2;        // nodes that a spring reaches (BandLayout::halo)
+    constexpr double node_bytes = 24;  // of a node in a message: position and velocity
     const double stages = stages_.at(measured.integrator) * *steps;
     const double ghosts = reach * stages;  // columns on each side that repeat a neighbour's
     const double neighbours = std::min(row.ranks - 1, 2);
@@ -78,7 +78,7 @@ class ClusterRows {
     const double rows = std::round(bytes / (neighbours * ghosts * node_bytes));
     const double columns = static_cast<double>(measured.nodes) / rows / row.ranks;
     if (columns < ghosts) return std::nullopt;
-    // The first stage needs all ghosts but those that a spring reaches, the last one none: half of that on
+    // The first stage needs all ghosts except those within a spring's reach, the last one none: half on
     // average.
     const double computed = std::ceil(columns) + neighbours * (ghosts - reach) / 2;
     const double stages_of_copies = static_cast<double>(copies->nodes) * stages_.at(measured.integrator);
@@ -89,7 +89,8 @@ class ClusterRows {
   }
 
  private:
-  /// The row that has a time, of that program and so many ranks on the base of the scene; null: none.
+  /// The row with a time for that program and number of ranks, on the base of the scene; null if there is
+  /// none.
   const ResultRow* counted_row(const ClusterRow& like, std::string_view program, int ranks) const {
     const auto found = std::ranges::find_if(rows_, [&](const ClusterRow& other) {
       return other.row->scene == like.scene.base && other.row->integrator == like.row->integrator &&
@@ -110,20 +111,21 @@ class ClusterRows {
 };
 
 constexpr std::string_view how_to_read_clusters =
-    "Times are medians. *Computing*, *packing* and *waiting*: how the processes share the time of a step, on "
-    "average; packing is all that the processor does for messages but wait for them. *Bytes* and *messages*: "
-    "what the process with most sends in a step. *Efficiency*: nodes a second over those of one process, and "
-    "over the number of processes. *Against copies*: nodes a second over those of as many processes that "
-    "each step the whole scene for themselves (`mpi-copies`), which share the memory as well and send "
-    "nothing. *Model*: what computing as fast as these copies, and the latency and bandwidth of messages as "
-    "measured before the first step, add up to; in brackets over the measured time.";
+    "Times are medians. *Computing*, *packing* and *waiting*: shares of the time per step, averaged over the "
+    "processes; packing is all work on messages except waiting. *Bytes* and *messages*: sent per step by the "
+    "process that sends most. *Efficiency*: nodes per second, divided by those of one process and by the "
+    "number of processes. *Against copies*: nodes per second, divided by those of as many processes that "
+    "each "
+    "step the whole scene (`mpi-copies`); these share the memory too, but send nothing. *Model*: the time of "
+    "computing as fast as these copies plus that of messages, from the latency and bandwidth measured before "
+    "the first step; in brackets, divided by the measured time.";
 
 std::optional<double> computing_share(const ResultRow& row) {
   if (!row.waiting_share || !row.packing_share) return std::nullopt;
   return std::max(0.0, 1 - *row.waiting_share - *row.packing_share);
 }
 
-/// Of which study a row is part.
+/// The study that a row belongs to.
 std::string_view scaling_of(const ClusterRow& row) {
   if (row.ranks == 0) return "one process";
   if (row.program == copies_backend) return "copies";
@@ -210,7 +212,7 @@ std::vector<Cell> cells_of(const ClusterRows& rows, const ClusterRow& cluster_ro
           model};
 }
 
-/// How far the model is from what was measured at most, in how many rows; nothing where it says nothing.
+/// Largest deviation of the model from the measurements, and the number of rows; empty without modelled rows.
 std::string verdict_on_model(const ClusterRows& rows) {
   double worst = 0;
   std::uint64_t count = 0;
@@ -221,11 +223,11 @@ std::string verdict_on_model(const ClusterRows& rows) {
     ++count;
   }
   if (count == 0) return "";
-  return fmt::format("The model is within {} % of the measured time in {} that it is made for",
+  return fmt::format("The model is within {} % of the measured time in {} that it covers",
                      two_digits(100 * worst), count == 1 ? "the row" : fmt::format("all {} rows", count));
 }
 
-/// The latency and bandwidth that rows were measured with.
+/// Latency and bandwidth of the rows.
 std::string links_of(const ClusterRows& rows) {
   std::vector<double> latencies, bandwidths;
   for (const ClusterRow& row : rows.all()) {
@@ -239,13 +241,13 @@ std::string links_of(const ClusterRows& rows) {
     const std::string first = three_digits(low), last = three_digits(high);
     return first == last ? first : fmt::format("{} to {}", first, last);
   };
-  return "A message of 8 bytes to a neighbour took " + range(latencies) + " µs, one of 64 KiB went with " +
-         range(bandwidths) + " GB/s while another one came";
+  return "A message of 8 bytes to a neighbour took " + range(latencies) + " µs; one of 64 KiB reached " +
+         range(bandwidths) + " GB/s while another one arrived";
 }
 
 bool is_weak(const ClusterRow& row) { return row.scene.times > 1; }
 
-/// Does it belong beside weak scaling: one process of the base, or copies of it?
+/// Whether it belongs to weak scaling: one process of the base scene, or copies of it.
 bool is_beside_weak(const ClusterRow& row) {
   return is_weak(row) || row.program == copies_backend || row.ranks == 1;
 }
@@ -277,7 +279,7 @@ Document page_of(const ClusterRows& rows, RowPointers pointers, const Provenance
                 [](const ClusterRow& row) { return !is_weak(row); });
     const bool has_weak = std::ranges::any_of(
         rows.all(), [&](const ClusterRow& row) { return row.scene.base == family.first && is_weak(row); });
-    if (has_weak) add_section(family, name + nodes + " a process (weak scaling)", is_beside_weak);
+    if (has_weak) add_section(family, name + nodes + " per process (weak scaling)", is_beside_weak);
   }
   add_rows_without_a_time(page, pointers);
   return page;

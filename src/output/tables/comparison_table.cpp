@@ -6,11 +6,11 @@
 namespace mssim {
 namespace {
 
-/// The samples that an undecided row would need, why a row is lost; nothing for others.
+/// The samples that an undecided row needs, or why a row is lost; empty for others.
 Cell remark(const ComparedRow& row) {
   if (row.verdict == Verdict::lost) return row.reason;
   if (row.verdict != Verdict::undecided) return {};
-  return row.samples_needed ? fmt::format("{} samples a side would decide", *row.samples_needed)
+  return row.samples_needed ? fmt::format("{} samples per side would decide", *row.samples_needed)
                             : "many samples would be needed";
 }
 

@@ -56,7 +56,7 @@ CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(na
     }
     if (record.fields.size() != header_.size())
       throw CsvError(
-          "{}, line {}: has {} fields where the header has {}; write the missing ones, or remove the line",
+          "{}, line {}: has {} fields, but the header has {}; add the missing ones, or remove the line",
           name_, record.line, record.fields.size(), header_.size());
     records_.push_back(std::move(record));
   }
@@ -73,7 +73,7 @@ void CsvTable::require_columns(const std::vector<std::string_view>& columns) con
 std::size_t CsvTable::column(std::string_view name) const {
   const auto found = std::ranges::find(header_, name);
   if (found == header_.end())
-    throw CsvError("{}, line 1: there is no column {}; use a program that writes it", name_, name);
+    throw CsvError("{}, line 1: there is no column {}; use a version of mssim that writes it", name_, name);
   return static_cast<std::size_t>(found - header_.begin());
 }
 

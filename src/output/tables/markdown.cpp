@@ -7,14 +7,14 @@
 namespace mssim {
 namespace {
 
-/// Text that begins no HTML: names of scenes and devices are anybody's.
+/// Escapes text that could begin HTML: names of scenes and devices are arbitrary.
 std::string prose(std::string_view text) {
   std::string result;
   for (const char character : text) character == '<' ? result += "&lt;" : result += character;
   return result;
 }
 
-/// The text as one that cannot end a cell or a line.
+/// Escapes text that could end a cell or a line.
 std::string one_cell(std::string_view text) {
   std::string cell;
   for (const char character : prose(text)) {
@@ -56,14 +56,14 @@ std::string text_of(const Table& table) {
   return text;
 }
 
-/// Without the blanks around it.
+/// The text without surrounding blanks.
 std::string_view without_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// Takes the text up to `end`, and `end` itself, off the front.
+/// Removes the text up to `end`, and `end` itself, from the front and returns it.
 std::string_view take_to(std::string_view& text, std::string_view end) {
   const std::size_t length = std::min(text.find(end), text.size());
   const std::string_view part = text.substr(0, length);
@@ -71,7 +71,7 @@ std::string_view take_to(std::string_view& text, std::string_view end) {
   return part;
 }
 
-/// As it was before the writer replaced what means something in Markdown.
+/// Reverses the writer's escaping of characters with a meaning in Markdown.
 std::string plain(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, char>, 3> replaced{
       {{"<br>", '\n'}, {"\\|", '|'}, {"&lt;", '<'}}};
@@ -101,7 +101,7 @@ bool is_rule(std::string_view line) {
   return line.starts_with('|') && line.find_first_not_of("|-: ") == std::string_view::npos;
 }
 
-/// The lines of a block that begins as a table does.
+/// The lines of a block whose start looks like a table.
 Table table_of(std::string_view head, std::string_view rule, std::string_view rows) {
   Table table;
   for (const std::string& name : cells_of(head)) table.columns.push_back({name, Align::left});

@@ -12,7 +12,7 @@ PublishedTable::PublishedTable(const PublishedTableInfo& table_info)
 
 PublishedTable::PublishedTable(const PublishedTableInfo& table_info, const CsvTable& table)
     : info_(table_info) {
-  // Table 3 calls its fourth column springs_published, because there the count is not the springs themselves.
+  // Table 3 calls its fourth column springs_published, because its counts are not numbers of springs.
   const bool counts_apart = table.header().size() > 3 && table.header()[3] == "springs_published";
   table.require_columns({"integrator", "configuration", "nodes",
                          counts_apart ? "springs_published" : "springs", "ms_per_step"});
@@ -100,7 +100,7 @@ constexpr std::string_view why_frozen =
     "`semi-euler`, `midpoint` and `rk4` evaluate the forces anew in every stage; `midpoint-frozen` and "
     "`rk4-frozen`";
 
-/// A time, and how many times as fast as one thread that is.
+/// A time, and its speed-up over one thread.
 struct Timing {
   std::optional<double> ms, speedup;
 };
@@ -115,7 +115,7 @@ Timing measured_timing(const ResultRow* row) {
   return row && counts(*row) ? Timing{row->ms_per_step, row->speedup_vs_serial} : Timing{};
 }
 
-/// One of the published tables, and what was measured of it.
+/// One of the published tables, with its measurements.
 class PaperTable {
  public:
   PaperTable(std::span<const ResultRow> rows, const PaperLegend& legend, const PublishedTable& published,
@@ -203,7 +203,7 @@ class PaperTable {
     });
   }
 
-  /// In the order of the tables.
+  /// The rows that are shown, in the order of the tables.
   std::vector<const ResultRow*> shown_rows() const {
     std::vector<const ResultRow*> shown;
     for (const auto& integrator : legend_.integrators)
@@ -260,7 +260,7 @@ class PaperTable {
     return cells;
   }
 
-  std::vector<const ResultRow*> rows_;  ///< those that belong into the table
+  std::vector<const ResultRow*> rows_;  ///< those that belong in the table
   std::vector<PaperScene> scenes_;
   const PaperLegend& legend_;
   const PublishedTable& published_;
@@ -276,7 +276,7 @@ constexpr std::string_view how_to_read_structure =
 
 struct Match {
   const StructureRow* row;
-  const PublishedBody* body;  ///< null where the paper has no such body
+  const PublishedBody* body;  ///< null if the paper has no such body
 
   bool same() const { return row->nodes == body->nodes && row->springs_published == body->springs; }
 };

@@ -10,11 +10,10 @@
 namespace mssim {
 namespace {
 
-/// What a row says of the host where its backend chose an instruction set, which stands behind it.
+/// Start of a row's device if its backend chose an instruction set, whose name follows.
 constexpr std::string_view host_with_vectors = "cpu ";
 
-/// What the row's backend computed with on the host, where it chose among instruction sets ("AVX3"); else
-/// empty.
+/// Instruction set that the row's backend chose on the host ("AVX3"); otherwise empty.
 std::string_view instruction_set(const ResultRow& row) {
   const std::string_view device = row.device;
   return device.starts_with(host_with_vectors) ? device.substr(host_with_vectors.size()) : std::string_view();
@@ -22,7 +21,7 @@ std::string_view instruction_set(const ResultRow& row) {
 
 constexpr std::string_view ratio_mark = "†";
 
-/// The number that three digits show.
+/// The number as shown with three digits.
 double rounded(double value) { return number_in<double>(three_digits(value)).value_or(value); }
 
 bool has_mark(const Table& table) {
@@ -32,7 +31,7 @@ bool has_mark(const Table& table) {
   });
 }
 
-/// What `mark` means; empty where there is none.
+/// The meaning of `mark`; empty without a mark.
 std::string legend(std::string_view mark) {
   if (mark.empty()) return {};
   return std::string(mark) +
@@ -88,7 +87,7 @@ std::string_view opencl_device(const ResultRow& row) {
 bool is_this_processor(const ResultRow& row, const Provenance& provenance) {
   const std::string_view device = opencl_device(row);
   if (device.empty()) return false;
-  // CPU drivers put the model of the processor into the name of their device; some models have no name.
+  // CPU drivers name their device after the processor's model; some models have no name.
   const std::string& processor = provenance.machine.cpu_model;
   if (!processor.empty() && device.find(processor) != std::string_view::npos) return true;
   return std::ranges::any_of(provenance.opencl_devices, [&](const std::string& known) {
@@ -147,7 +146,7 @@ std::string legend_of_excess(RowPointers rows, const Provenance& provenance) {
     if (const int asked = asked_processors(provenance, row->backend).count; exceeds(*row, asked))
       backends.insert(fmt::format("{} ({} instead of {})", row->backend, row->threads, asked));
   if (backends.empty()) return {};
-  return fmt::format("(!) on more processors than asked for: {}", fmt::join(backends, ", "));
+  return fmt::format("(!) on more processors than requested: {}", fmt::join(backends, ", "));
 }
 
 std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than) {
@@ -169,7 +168,7 @@ std::string reason_without_speedups(std::span<const std::string_view> backends) 
   if (backends.empty() || std::ranges::find(backends, baseline_name) != backends.end()) return {};
   std::string all(baseline_name);
   for (const std::string_view backend : backends) {
-    const std::size_t colon = backend.rfind(':');  // of a list of threads, which is asked for anyway
+    const std::size_t colon = backend.rfind(':');  // before a number of threads
     if (colon == std::string_view::npos ||
         std::ranges::find(backends, backend.substr(0, colon)) == backends.end())
       all.append(",").append(backend);

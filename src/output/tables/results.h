@@ -18,18 +18,20 @@
 
 namespace mssim {
 
-// The files of measured rows.
+// Files of measured rows.
 
+/// Rows of a table, by address.
 using RowPointers = std::span<const ResultRow* const>;
 
+/// The addresses of the rows, which must outlive them.
 std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows);
 
-/// A column of a table of rows: its head, and how its cells are made.
+/// A column of a table of rows: its heading and the function that makes its cells.
 struct RowColumn {
   Column head;
   std::function<Cell(const ResultRow&)> value;
 
-  /// A column of timings.csv, under another name too. Throws std::invalid_argument where it has no such
+  /// A column of timings.csv, optionally under another name. Throws std::invalid_argument if there is no such
   /// column.
   RowColumn(const char* name) : RowColumn(name, name) {}
   RowColumn(const char* name, std::string_view column);
@@ -37,85 +39,86 @@ struct RowColumn {
       : head(std::move(column)), value(std::move(cell)) {}
 };
 
+/// The headings of these columns.
 std::vector<Column> heads_of(const std::vector<RowColumn>& columns);
+/// The cells of the row in these columns.
 std::vector<Cell> cells_of(const ResultRow& row, const std::vector<RowColumn>& columns);
 
-/// A line for each row; without rows there are no columns either.
+/// A line for each row; without rows, no columns.
 Table table_of(RowPointers rows, const std::vector<RowColumn>& columns);
 
-/// The columns of timings.csv and a row for each, absent values empty.
+/// The columns of timings.csv and a line for each row; missing values are empty.
 Table timings_table(std::span<const ResultRow> rows);
 
-/// timings.csv: numbers read back as they were. Throws std::invalid_argument for a number that is not finite.
+/// timings.csv; numbers read back unchanged. Throws std::invalid_argument for a number that is not finite.
 std::string timings_csv(std::span<const ResultRow> rows);
 
-/// samples.csv: scene, backend, integrator, round (from 1), steps in the sample and its ms per step, for
+/// samples.csv: scene, backend, integrator, round (from 1), steps of the sample and its ms per step, for
 /// every sample of every row. Throws like timings_csv().
 std::string samples_csv(std::span<const ResultRow> rows);
 
-/// The rows of a timings.csv, without their samples. Further columns behind the known ones are allowed and
-/// ignored. Throws CsvError.
+/// The rows of a timings.csv, without samples. Additional columns after the known ones are ignored. Throws
+/// CsvError.
 std::vector<ResultRow> read_timings(const CsvTable& table);
 
-/// Reads a samples.csv into those of `rows` that it has samples of; others stay as they are.
-/// Throws CsvError, also when the rounds of a row do not count up from 1.
+/// Reads the samples in a samples.csv into `rows`; rows without samples there stay unchanged. Throws
+/// CsvError, also if the rounds of a row do not count up from 1.
 void read_samples(const CsvTable& table, std::span<ResultRow> rows);
 
-/// What every version of mssim has written about a combination.
+/// The part of a result that every version of mssim has written.
 struct CombinationTime {
   std::string scene, backend, integrator;
-  /// The least sample's time a step, of what was verified: what else a machine does only ever adds to a
-  /// sample, and seldom to all of them.
+  /// Time per step of the least sample, if verified. Disturbances only make a sample longer, and seldom
+  /// affect all.
   std::optional<double> least_ms;
-  std::string status;  ///< why there is no time, where there is none
+  std::string status;  ///< why there is no time, if there is none
 };
 
-/// The rows of a timings.csv that another version of mssim may have written: columns are found by name.
-/// Throws CsvError.
+/// The rows of a timings.csv from any version of mssim: columns are found by name. Throws CsvError.
 std::vector<CombinationTime> read_combination_times(const std::filesystem::path& file);
 
 /// The rows with status "ok" in the schema of Google Benchmark's JSON output (json_schema_version 1), which
-/// its tools/compare.py and many services read: a benchmark named SCENE/BACKEND/INTEGRATOR for each row, with
-/// one entry a sample and, from two samples on, the aggregates mean, median, stddev and cv.
+/// its tools/compare.py and many services read: for each row a benchmark named SCENE/BACKEND/INTEGRATOR, with
+/// one entry per sample and, from two samples on, the aggregates mean, median, stddev and cv.
 ///
-/// real_time is nanoseconds per step and iterations the steps of a sample. The schema demands a cpu_time;
-/// the harness measures wall-clock time only, so it is given as real_time again, and `context` says so. The
-/// host has no name here. Throws std::invalid_argument for a time that is not finite.
+/// real_time is nanoseconds per step and iterations the steps of a sample. The schema requires a cpu_time;
+/// the harness measures only wall-clock time, so it repeats real_time, and `context` says so. The host is not
+/// named. Throws std::invalid_argument for a time that is not finite.
 std::string benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance);
 
-/// The rows that are ok as github-action-benchmark reads them from JSON ("customSmallerIsBetter"): name
+/// The rows that are ok in github-action-benchmark's JSON ("customSmallerIsBetter"): name
 /// (scene/backend/integrator), unit, value (median) and range (the 95 % interval of the median), with device
 /// and threads as `extra`.
 Table github_table(std::span<const ResultRow> rows);
 
 // Rows for people.
 
-/// The rows of a bench for a reader, a block for each scene: times with their intervals, whether they are
-/// verified, and the speed-up against `serial` as a number and a bar, all bars in one scale. Columns that do
-/// not fit the terminal are left out, first what the result folder tells more of, then the bars, then the
-/// intervals. Below a block stands why rows have no time. `provenance` tells what was asked
-/// for.
+/// The rows of a bench for a reader, one block per scene: times with intervals, verification, and the
+/// speed-up against `serial` as a number and a bar; all bars have one scale. Columns that do not fit the
+/// terminal are left out: first those that the result folder shows in more detail, then the bars, then the
+/// intervals. Reasons for missing times follow each block. `provenance` has the requested threads.
 std::string row_table(RowPointers rows, const Provenance& provenance, const Terminal& terminal);
 
 /// The rows of a comparison and the geometric means of their ratios.
 Document comparison_page(const RunComparison& comparison);
 
+/// Format of a printed comparison.
 enum class ComparisonFormat { table, markdown, json };
 
 /// A comparison as columns for a terminal, as its page in Markdown, or as one JSON object {threshold,
-/// regression, rows, geometric_means}, whose numbers are finite. Ends with a newline. `utf8`: whether columns
-/// may hold other characters than those of ASCII.
+/// regression, rows, geometric_means} with finite numbers. Ends with a newline. `utf8`: whether columns may
+/// have characters outside ASCII.
 std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8 = true);
 
-// Tables of results, and what those of measured rows have in common.
+// Tables of results, and helpers of tables of measured rows.
 
-/// The TABLE of tables of results, those of guides too: nothing makes another one (TableName), and a result
-/// folder that is emptied loses these.
+/// The TABLE of tables of results, including those of guides. Every table has one of these names (TableName),
+/// and they are removed when a result folder is emptied.
 inline constexpr auto table_names = std::to_array<std::string_view>(
     {"table1", "table2", "table3", "races", "scaling", "threads", "peers", "cluster", "figure6", "guide",
      "guide-steps", "guide-errors", "guide-sizes", "guide-frames", "guide-crossovers"});
 
-/// One of these names; another one does not compile.
+/// One of these names; any other name does not compile.
 class TableName {
  public:
   consteval TableName(const char* name) : text_(name) {
@@ -135,71 +138,71 @@ struct ResultTable {
   Document page;  ///< for people: the file NAME.md
 };
 
-/// Makes tables of the rows that a run has so far; none where no row belongs into one.
+/// Makes tables from a run's rows so far; none if no row belongs in one.
 using TableMaker =
     std::function<std::vector<ResultTable>(std::span<const ResultRow> rows, const Provenance& provenance)>;
 
-/// The row of a combination; null where there is none.
+/// The row of a combination; null if there is none.
 const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_view backend,
                           std::string_view integrator);
 
 /// Version, commit and time, without a full stop.
 std::string made_by(const Provenance& provenance);
 
-/// One sentence for the top of a page: machine, threads, instruction sets and devices of the rows, program,
-/// time.
+/// One sentence for the top of a page: machine, threads, instruction sets and devices of the rows, program
+/// and time.
 Paragraph measured_on(RowPointers rows, const Provenance& provenance);
 
-/// The name of a backend for a cell; with the OpenCL device that its rows ran on, and whether that is the
-/// processor of the machine.
+/// The name of a backend in a cell. Adds the OpenCL device of its rows, if any, and whether that is the
+/// machine's processor.
 std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance);
 
-/// A device that is not what the backends of the host run on; empty for those.
+/// The row's OpenCL device; empty for backends of the host.
 std::string_view opencl_device(const ResultRow& row);
 
-/// Is the row's device of OpenCL the processor of the machine?
+/// Whether the row's OpenCL device is the machine's processor.
 bool is_this_processor(const ResultRow& row, const Provenance& provenance);
 
-/// Median milliseconds a step of a row that counts, else none.
+/// Median ms per step of a row that counts, otherwise none.
 std::optional<double> counted_ms(const ResultRow& row);
 
-/// `value`, which was measured; where there is none, the first word of why. Nothing without a row.
+/// `value`, which was measured, or the first word of the reason for its absence. Empty without a row.
 Cell measured_cell(const ResultRow* row, const std::optional<double>& value);
 
 /// "0.115 to 0.121"
 std::string interval_text(double low, double high);
 
-/// Nanoseconds a node and step of `ms`, which is a time of the row; none where the row does not count.
+/// ns per node and step for `ms`, a time of the row; none if the row does not count.
 std::optional<double> ns_per_node(const ResultRow& row, const std::optional<double>& ms);
 
-/// The row's scene with its number of nodes, at the head of numbers.
+/// A column with the row's scene and number of nodes as heading.
 Column scene_column(const ResultRow& row);
 
 /// " (2.95×)"
 std::string in_brackets(double ratio);
 
-/// "†" for a ratio which the times shown beside it contradict: as they are shown, their quotient differs from
-/// it by more than a quarter, or says otherwise which of the two is the longer. Else empty. `ratio`: of
-/// `time` to `other`, all above zero; the unit of the times does not matter. Tables show medians of times
-/// and, beside them, a ratio that was estimated from the single samples: on a machine whose speed changes,
-/// the quotient of the medians is another number.
+/// "†" if the times shown next to a ratio contradict it: their quotient, as shown, differs from it by more
+/// than a quarter, or names the other one as the longer. Otherwise empty. `ratio`: of `time` to `other`, all
+/// above zero; the unit of the times does not matter. Tables show medians of times next to a ratio that was
+/// estimated from single samples; on a machine whose speed changes, the quotient of the medians differs from
+/// it.
 std::string_view mark_of_ratio(double ratio, double time, double other);
-/// What stands for it where only ASCII is shown.
+/// The mark if only ASCII is shown.
 inline constexpr std::string_view ascii_ratio_mark = "(?)";
 
-/// That mark of the row's speed-up, its time and that of `serial`.
+/// That mark for the row's speed-up, its time and the time of `serial`.
 std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row);
 
-/// What that mark means; empty where no cell has it, and no letter of a table that is text already.
+/// The meaning of that mark; empty if no cell has it or, for a text, if it does not occur.
 std::string legend_of_ratios(const Table& table);
 std::string legend_of_ratios(const Document& page);
 std::string legend_of_ratios(std::string_view table);
 
-/// What stands behind the number of threads, or the time, of a row that took more processors than
-/// it was asked to; nothing of others.
+/// A mark after the number of threads, or the time, of a row that used more processors than requested;
+/// otherwise empty.
 std::string_view mark_of_excess(const ResultRow& row, const Provenance& provenance);
 
-/// What that mark means, and which backends have it; empty where none has.
+/// The meaning of that mark, and the backends that have it; empty if none has.
 std::string legend_of_excess(RowPointers rows, const Provenance& provenance);
 
 /// A ratio and its interval.
@@ -207,21 +210,21 @@ struct RatioInterval {
   double ratio = 1;
   double low = 1, high = 1;
 
-  /// 1 where it lies above 1, -1 where it lies below, and 0 where it holds 1.
+  /// 1 if the interval lies above 1, -1 if below, and 0 if it includes 1.
   int side_of_one() const { return low > 1 ? 1 : high < 1 ? -1 : 0; }
 };
 
-/// How many times as fast as `than` a row is: the median of the ratios within each round, with its 95 %
-/// interval (statistics.h). Where their samples are no pairs: the quotient of the times, and of the ends of
-/// their intervals, which is wider. None where one of them does not count, or is null.
+/// Speed-up of a row over `than`: the median of the ratios within each round, with its 95 % interval
+/// (statistics.h). If their samples are not pairs: the quotient of the times and of the ends of their
+/// intervals, which is wider. None if one of them does not count or is null.
 std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than);
 
-/// Why a table shows no speed-ups, and what to do, where serial is not one of the backends; else empty.
+/// Why a table has no speed-ups, and the remedy, if serial is not one of the backends; otherwise empty.
 std::string reason_without_speedups(std::span<const std::string_view> backends);
 std::string reason_without_speedups(RowPointers rows);
 
-/// Adds the last section of a page: what became of those of the rows that do not count, one item for each
-/// reason with the scenes that it holds for. Nothing where all count.
+/// Adds the last section of a page: the rows that do not count, one item per reason with its scenes. Nothing
+/// if all count.
 void add_rows_without_a_time(Document& page, RowPointers rows);
 
 }  // namespace mssim

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// "scene/backend/integrator", as other programs name a benchmark.
+/// "scene/backend/integrator", the usual form of a benchmark's name.
 std::string benchmark_name(const ResultRow& row) {
   return fmt::format("{}/{}/{}", row.scene, row.backend, row.integrator);
 }
@@ -25,7 +25,7 @@ Cell cell_of(const ResultRow& row, const ResultColumn& column) {
   return std::visit([&](auto value) { return Cell(row.*value); }, column.value);
 }
 
-/// Where a value stands in a file.
+/// Place of a value in a file.
 struct Place {
   const CsvTable& table;
   std::size_t record, column;
@@ -55,7 +55,7 @@ struct Place {
   }
 };
 
-/// Files of older programs, which end after one of so many columns or more, are read too.
+/// Files of older programs, which end after this number of columns or more, are read too.
 constexpr std::size_t oldest_columns = 24;
 
 const std::vector<std::string_view> sample_columns{"scene", "backend",     "integrator", "round",
@@ -79,7 +79,7 @@ ordered_json context_of(const Provenance& provenance) {
           {"executable", provenance.command_line.empty() ? "" : provenance.command_line.front()},
           {"num_cpus", machine.logical_cpus},
           {"mhz_per_cpu", std::lround(machine.cpu_mhz)},
-          // As Google Benchmark has it: any governor but "performance" may change the frequency.
+          // As in Google Benchmark: any governor other than "performance" may change the frequency.
           {"cpu_scaling_enabled", machine.governor.has_value() && *machine.governor != "performance"},
           {"caches", caches},
           {"load_avg", machine.load_average},
@@ -88,7 +88,7 @@ ordered_json context_of(const Provenance& provenance) {
           {"cpu_time_note", "not measured; equal to real_time"}};
 }
 
-/// What every entry of a row begins with.
+/// The first members of every entry of a row.
 ordered_json entry_of(const ResultRow& row, std::size_t family, const std::string& suffix,
                       const std::string& run_type) {
   const std::string name = benchmark_name(row);
@@ -106,7 +106,7 @@ void add_time(ordered_json& entry, double time_ns) {
 
 struct Aggregate {
   std::string name, unit;
-  double value;  ///< ns, or a ratio where the unit is "percentage"
+  double value;  ///< ns, or a ratio if the unit is "percentage"
 };
 
 std::vector<Aggregate> aggregates_of(std::span<const double> samples_ms) {
@@ -197,7 +197,7 @@ void read_samples(const CsvTable& table, std::span<ResultRow> rows) {
     if (found == row_of.end()) continue;
     ResultRow& row = *found->second;
     if (table.count(record, 3) != row.samples_ms.size() + 1)
-      throw table.complaint(record, 3, "is not the next round of its row; measure anew without --resume");
+      throw table.complaint(record, 3, "is not the next round of its row; measure again without --resume");
     Place{table, record, 4}.read(row.sample_steps.emplace_back());
     row.samples_ms.push_back(table.number(record, 5));
   }

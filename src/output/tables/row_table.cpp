@@ -7,16 +7,16 @@
 namespace mssim {
 namespace {
 
-/// How characters look, as codes of ECMA-48; each colour repeats what a sign says.
+/// Text styles as codes of ECMA-48; each colour only repeats a sign.
 constexpr std::string_view bold = "1", dim = "2", red = "31", green = "32";
 
 struct RowCell {
   std::string text;
   std::string_view style = {};
-  std::string_view mark = {};  ///< behind the text, which does not move for it
+  std::string_view mark = {};  ///< after the text, whose position it does not change
 };
 
-/// The columns, in the order in which they stand.
+/// The columns, in their order.
 struct Shown {
   enum : std::size_t {
     integrator,
@@ -49,7 +49,7 @@ RowCell verified_cell(const ResultRow& row, bool utf8) {
   return {utf8 ? "✗" : "NO", red};
 }
 
-/// Where there is no speed-up because the row does not count, the first word of why.
+/// The first word of the reason if the row has no speed-up because it does not count.
 RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
   const std::string status = status_of(row);
   if (!counts(row)) return {status.substr(0, status.find(':')), status.starts_with("failed") ? red : dim};
@@ -82,7 +82,7 @@ RowCells cells_of(RowPointers rows, const ResultRow& row, const Provenance& prov
   return cells;
 }
 
-/// Adds the marks of a column to its texts, and as much space to those without.
+/// Adds the marks of a column to its texts, and as much space to texts without marks.
 void add_marks(std::vector<RowCells>& lines, std::size_t column) {
   std::size_t widest = 0;
   for (const RowCells& line : lines) widest = std::max(widest, width_of(line[column].mark));
@@ -92,7 +92,7 @@ void add_marks(std::vector<RowCells>& lines, std::size_t column) {
   }
 }
 
-/// How wide the columns are, 0 for those that are not shown, and how long the longest bar is.
+/// Widths of the columns, 0 for hidden ones, and the length of the longest bar.
 struct RowLayout {
   std::array<std::size_t, Shown::count> width{};
   std::size_t bar = 0;
@@ -117,7 +117,7 @@ RowLayout layout_of(RowPointers rows, const std::vector<RowCells>& lines, std::o
   for (std::size_t column = 0; column < Shown::count; ++column)
     if (layout.width[column] > 0)
       layout.width[column] = std::max(layout.width[column], width_of(row_headers[column]));
-  // Beside a bar neither the header nor the word for a row without one needs a wider column.
+  // Next to a bar, neither the header nor the word for a row without a bar needs a wider column.
   RowLayout with_bars = layout;
   with_bars.width[Shown::speedup] = ratio_width;
   const std::size_t fit = columns ? static_cast<std::size_t>(*columns) : SIZE_MAX;
@@ -126,7 +126,7 @@ RowLayout layout_of(RowPointers rows, const std::vector<RowCells>& lines, std::o
   };
   for (const std::size_t column : {Shown::error, Shown::roofline, Shown::published, Shown::threads})
     if (!has_room()) layout.width[column] = with_bars.width[column] = 0;
-  // Bars go before the intervals, and come back where those leave room.
+  // Bars are dropped before intervals, and restored if these leave room.
   if (!has_room() && layout.total() > fit)
     layout.width[Shown::interval] = with_bars.width[Shown::interval] = 0;
   if (ratio_width == 0 || !has_room()) return layout;
@@ -139,7 +139,7 @@ std::string styled(const std::string& text, std::string_view style, bool colours
   return std::string("\033[").append(style).append("m").append(text).append("\033[0m");
 }
 
-/// The columns of the layout side by side; a line does not end with spaces.
+/// The columns of the layout next to each other; a line does not end with spaces.
 std::string line_of(const RowCells& cells, const RowLayout& layout, bool colours) {
   std::string line, spaces;
   for (std::size_t column = 0; column < Shown::count; ++column) {
@@ -157,7 +157,7 @@ std::string line_of(const RowCells& cells, const RowLayout& layout, bool colours
   return line + '\n';
 }
 
-/// "cloth2500: 2,500 nodes, 14,502 springs (29,004 as published)", the last of it where it fits.
+/// "cloth2500: 2,500 nodes, 14,502 springs (29,004 as published)", the last part if it fits.
 std::string scene_line(const ResultRow& row, const Terminal& terminal) {
   const std::string name = escaped(row.scene);
   std::string sizes = fmt::format(": {} nodes, {} springs", grouped(row.nodes), grouped(row.springs_unique));
@@ -169,7 +169,7 @@ std::string scene_line(const ResultRow& row, const Terminal& terminal) {
   return styled(name, bold, terminal.colours) + sizes + '\n';
 }
 
-/// Why rows of a block have no time, or a wrong one: each reason once, with the backends that it is said of.
+/// Why rows of a block have no time or a wrong one: each reason once, with its backends.
 std::string reasons_of(RowPointers rows, std::size_t width) {
   std::vector<std::pair<std::string, std::vector<std::string>>> known;
   for (const ResultRow* row : rows) {
@@ -206,7 +206,7 @@ std::string row_table(RowPointers rows, const Provenance& provenance, const Term
     text += scene_line(*rows[first], terminal) + line_of(header, layout, terminal.colours);
     for (; next < rows.size() && rows[next]->scene == rows[first]->scene; ++next) {
       RowCells& line = lines[next];
-      // An integrator is named once.
+      // Repeated integrators are not shown.
       if (next > first && rows[next]->integrator == rows[next - 1]->integrator)
         line[Shown::integrator].text.clear();
       if (const std::optional<double> ratio = rows[next]->speedup_vs_serial; ratio && counts(*rows[next])) {

@@ -8,7 +8,7 @@
 namespace mssim {
 namespace {
 
-/// Adds a table with a heading for every stretch of rows of one scene and integrator.
+/// Adds a table with a heading for each run of rows of one scene and integrator.
 void add_blocks(Document& page, RowPointers rows, const std::vector<RowColumn>& columns) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ResultRow& row = *rows[i];
@@ -24,11 +24,11 @@ constexpr std::string_view how_to_read_races =
     "Springs that threads process at the same time add to the forces of nodes that they share: the data race "
     "of Figure 1 of Hong et al. (2016). Each line is a method to avoid it. All but `gather-vectors` and "
     "`openmp`, which have vectors and layouts of their own, step the list of springs that `serial` steps, "
-    "with the same layout, force and update, and differ in the accumulation alone. Times are medians with "
+    "with the same layout, force and update, and only differ in the accumulation. Times are medians with "
     "their 95 % interval; *ratio* is how many times as fast as `serial` a method is, the median of paired "
     "samples. *Same bits* says whether a run repeated gives the very same numbers.";
 
-/// What the legend says of the row's method; it has it.
+/// A cell from the legend of the row's method, which must be there.
 auto of_legend(const std::vector<RaceLegend>& legend, std::string RaceLegend::*what) {
   return [&legend, what](const ResultRow& row) -> Cell {
     return (*std::ranges::find(legend, row.backend, &RaceLegend::method)).*what;
@@ -86,7 +86,7 @@ Document page_of(RowPointers rows, const std::vector<RaceLegend>& legend, const 
   return page;
 }
 
-/// Cost of a node over that of one of the same backend's on `base`.
+/// Cost per node relative to that of the same backend on `base`.
 std::optional<double> growth(RowPointers rows, const ResultRow& row, const std::string& base) {
   const ResultRow* small = find_row(rows, base, row.backend, row.integrator);
   if (!small) return std::nullopt;
@@ -133,9 +133,8 @@ Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base,
 Document page_of(RowPointers rows, const std::string& base, const Provenance& provenance) {
   Document page{
       Heading{1, "Scaling: cost of a node in ever larger cloths"}, measured_on(rows, provenance),
-      Paragraph{"Nanoseconds a node and step, medians; in brackets how many times as much as the same "
-                "backend takes on `" +
-                base + "`. Where a line stays at 1, the cost grows with the number of nodes and no faster."}};
+      Paragraph{"Nanoseconds per node and step, medians; in brackets relative to the same backend on `" +
+                base + "`. If a line stays at 1, the cost is proportional to the number of nodes."}};
   const std::vector<std::string> scenes = each_of(rows, &ResultRow::scene);
   std::vector<Column> columns{{"backend"}};
   for (const std::string& scene : scenes) {
@@ -167,8 +166,8 @@ constexpr std::string_view how_to_read_peers =
     "interval. *Threads* is how many a backend says it takes, *processors* how many its steps really kept "
     "busy. *Error* is the largest distance to the reference in mean rest lengths.";
 
-/// Its time over that of `openmp`, round by round; none where either does not count, or where the two were
-/// not measured in the same rounds.
+/// Time relative to `openmp`, round by round; none if either does not count or they were not measured in the
+/// same rounds.
 std::optional<MedianInterval> times_yardstick(RowPointers rows, const ResultRow& row) {
   const ResultRow* best = find_row(rows, row.scene, yardstick, row.integrator);
   if (!best || !counts(*best) || !counts(row) || row.samples_ms.empty() ||
@@ -202,12 +201,12 @@ Table data_of(RowPointers rows) {
                          "note"});
 }
 
-/// How many processors the steps kept busy.
+/// Number of processors that the steps kept busy.
 Cell busy_processors(const ResultRow& row) {
   return counted_ms(row) && row.processors_used ? Cell(fmt::format("{:.2f}", *row.processors_used)) : Cell();
 }
 
-/// The columns of the page; none of them has a number of a row that does not count.
+/// The columns of the page; they have no numbers of rows that do not count.
 std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenance) {
   return {{{"peer"},
            [=, &provenance](const ResultRow& row) { return backend_label(rows, row.backend, provenance); }},
@@ -238,7 +237,7 @@ std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenan
            [](const ResultRow& row) { return counted_ms(row) ? Cell(row.position_error) : Cell(); }}};
 }
 
-/// What the backends say of themselves, each thing once.
+/// Notes of the backends, each once.
 BulletList notes_of(RowPointers rows) {
   BulletList notes;
   for (const ResultRow* row : rows) {

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A value as text; what formats spell alike.
+/// A value as text: the parts that all formats spell alike.
 struct Spelling {
   std::string operator()(std::monostate) const { return {}; }
   std::string operator()(bool truth) const { return truth ? "true" : "false"; }
@@ -60,7 +60,7 @@ struct AsJson {
   }
 };
 
-/// With a point or an exponent.
+/// A number with a point or an exponent.
 std::string json_number(double number) { return ordered_json(number).dump(); }
 
 std::string terminal_cell(const Cell& cell, const Column& column) {
@@ -80,7 +80,7 @@ std::string csv_of(const Table& table, std::string (*real)(double)) {
   return text;
 }
 
-/// Columns side by side.
+/// Columns next to each other.
 std::string terminal_text(const Table& table) {
   if (table.columns.empty()) return {};
   std::vector<std::vector<std::string>> lines{{}};
@@ -156,7 +156,7 @@ std::string csv_line(const std::vector<std::string>& fields) {
   std::string line;
   for (const std::string& field : fields) {
     if (&field != &fields.front()) line += ',';
-    // A byte-order mark at the start of a file would be taken for the file's, unless it is quoted.
+    // Unless quoted, a byte-order mark at the start would be taken for the file's.
     if (field.find_first_of(",\"\r\n") == std::string::npos && without_byte_order_mark(field) == field) {
       line += field;
       continue;

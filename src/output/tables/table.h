@@ -18,21 +18,21 @@
 
 namespace mssim {
 
-/// What stands in a table: a value (nothing, truth, whole number, real, text), and how people see it. Writers
-/// for programs (CSV, JSON) take the value alone. Text for people may have `code`, *emphasis* and **strong**
-/// as Markdown has them, and line feeds.
+/// A cell: a value (nothing, truth, whole number, real, text) and how people see it. Writers for programs
+/// (CSV, JSON) only use the value. Text for people may have Markdown's `code`, *emphasis* and **strong**, and
+/// line feeds.
 struct Cell {
   std::variant<std::monostate, bool, std::int64_t, double, std::string> value;
-  bool exact = false;   ///< a real is shown with all its digits, as published; else rounded
+  bool exact = false;   ///< a real is shown with all its digits, as published; otherwise rounded
   bool strong = false;  ///< the value is emphasised
-  std::string suffix;   ///< for people, behind the value
+  std::string suffix;   ///< for people, after the value
 
   Cell() = default;
   Cell(double number) : value(number) {}
   Cell(std::string text) : value(std::move(text)) {}
   Cell(std::string_view text) : value(std::string(text)) {}
   Cell(const char* text) : value(std::string(text)) {}
-  /// Truth of a bool, else a whole number below 2^63.
+  /// A bool, or a whole number below 2^63.
   template <std::integral Number>
   Cell(Number number) {
     if constexpr (std::same_as<Number, bool>)
@@ -40,23 +40,24 @@ struct Cell {
     else
       value = static_cast<std::int64_t>(number);
   }
-  /// Nothing where there is none.
+  /// The value of an optional, or nothing.
   template <class Value>
   Cell(const std::optional<Value>& optional) {
     if (optional) *this = Cell(*optional);
   }
 };
 
-/// `by_content`: to the right where all cells of the column are numbers or nothing.
+/// `by_content`: right-aligned if all cells of the column are numbers or nothing.
 enum class Align : std::uint8_t { by_content, left, right };
 
+/// A column's heading and how its cells are shown.
 struct Column {
   std::string name;
   Align align = Align::by_content;
-  std::string unit = {};  ///< for people, behind each number; programs read it in the name
+  std::string unit = {};  ///< for people, after each number; programs find it in the name
 };
 
-/// Columns, and rows of a cell for each.
+/// Columns, and rows with a cell for each.
 struct Table {
   struct NamedCell {
     std::string_view column;
@@ -66,98 +67,101 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
 
-  /// Adds a row. The first one names the columns; later ones have the same.
+  /// Adds a row. The first one names the columns; later ones must have the same.
   void add(std::initializer_list<NamedCell> row);
 };
 
-/// Are the cells of this column to be flush right?
+/// Whether the cells of this column are right-aligned.
 bool is_right_aligned(const Table& table, std::size_t column);
 
-/// A cell as people read it, with its unit, its suffix and the marks of Markdown: whole numbers are grouped,
-/// reals have three digits unless they are exact, nothing is a dash.
+/// A cell as people read it, with its unit, its suffix and the marks of Markdown. Whole numbers are grouped,
+/// reals have three digits unless they are exact, and nothing is a dash.
 std::string cell_text(const Cell& cell, const Column& column);
 
-/// How a command prints a table: columns for a terminal, CSV whose numbers are JSON's, or a JSON array of an
-/// object a row, whose keys are the columns.
+/// Format of a printed table: columns for a terminal, CSV with the numbers of JSON, or a JSON array with an
+/// object per row, whose keys are the columns.
 enum class ListingFormat : std::uint8_t { table, csv, json };
 
-/// Ends with a newline; a table without columns is empty text, or an empty array. For a terminal numbers have
-/// at most four significant digits and no groups; nothing is "-" there, empty in CSV and null in JSON.
+/// The table as text, ending with a newline; a table without columns is an empty text, or an empty array. On
+/// a terminal, numbers have at most four significant digits and no groups. Nothing is "-" there, empty in CSV
+/// and null in JSON.
 std::string to_text(const Table& table, ListingFormat format = ListingFormat::table);
 
-/// A table of one row for a terminal. Where it is wider than `width` columns, a line for each value that
-/// there is.
+/// A table of one row for a terminal. If it is wider than `width` columns, one line per value that is not
+/// empty.
 std::string record_text(const Table& table, std::optional<int> width);
 
-/// The table as a result file has it: RFC 4180 CSV with line feeds alone as line ends, reals by csv_number().
+/// The table as in a result file: RFC 4180 CSV, but with line feeds as line ends, and reals by csv_number().
 /// Throws std::invalid_argument for a number that is not finite.
 std::string table_csv(const Table& table);
 
-/// One line of such a file, each field quoted where it has to be, with its line feed.
+/// One line of such a file with its line feed; fields are quoted if necessary.
 std::string csv_line(const std::vector<std::string>& fields);
 
 /// The shortest decimal that reads back as the same number. Throws std::invalid_argument unless it is finite.
 std::string csv_number(double value);
 
+/// The table as a JSON array with an object per row, whose keys are the columns.
 nlohmann::ordered_json table_json(const Table& table);
 
-/// JSON as mssim writes it: indented by two, with a line feed at the end. Bytes that are no UTF-8 (a file's
-/// name may hold any) are replaced.
+/// JSON as mssim writes it: indented by two, with a final line feed. Bytes that are not UTF-8 are replaced (a
+/// file name may have any).
 std::string json_text(const nlohmann::ordered_json& json);
 
-/// A text as JSON spells it, in quotes. Bytes that are no UTF-8 are replaced.
+/// A text as a JSON string, in quotes. Bytes that are not UTF-8 are replaced.
 std::string json_string(const std::string& text);
 
-/// A page for people, as blocks one below the other. Text may have `code`, *emphasis* and **strong** as
-/// Markdown has them.
+/// A page for people: a sequence of blocks. Text may have Markdown's `code`, *emphasis* and **strong**.
 struct Heading {
   int level = 1;
   std::string text;
 };
+/// Running text.
 struct Paragraph {
   std::string text;
 };
+/// A list with one bullet per item.
 struct BulletList {
   std::vector<std::string> items;
 };
+/// A page: its blocks from top to bottom.
 using Document = std::vector<std::variant<Heading, Paragraph, BulletList, Table>>;
 
-/// Adds a paragraph with this sentence, which lacks its full stop; nothing for an empty one.
+/// Adds a paragraph with the sentence and a full stop; nothing for an empty one.
 void add_sentence(Document& page, const std::string& sentence);
 
-/// The page as Markdown (with the tables of GitHub's), a blank line between blocks; cells as cell_text() has
-/// them. What would end a cell or a line is escaped in cells and items, nowhere else.
+/// The page as Markdown (with GitHub's tables), a blank line between blocks; cells as in cell_text().
+/// Characters that would end a cell or a line are escaped only in cells and items.
 std::string markdown(const Document& document);
 
-/// The page that markdown() wrote, whose cells are all texts. Any other text is a page, too: what is no
-/// heading, list or table is a paragraph, cells that a row lacks are empty, and those beyond the head are
-/// left out.
+/// Parses the output of markdown(); all cells are texts. Any other text is accepted: what is not a heading,
+/// list or table is a paragraph; cells that a row lacks are empty, and those beyond the head are dropped.
 Document document_in(std::string_view markdown);
 
-/// A CSV file is refused beyond this size, a million samples: its fields take many times that in memory.
+/// Largest CSV file, about a million samples: its fields take many times that in memory.
 inline constexpr std::size_t largest_csv_bytes = std::size_t{64} << 20;
 
-/// Thrown when a CSV file cannot be read; what() is one sentence that names file, line and column, the value
-/// and what to do.
+/// Thrown if a CSV file cannot be read. what() is one sentence with file, line and column, the value and the
+/// remedy.
 struct CsvError : ErrorWith<exit_bad_input> {
   using ErrorWith::ErrorWith;
 };
 
-/// A table read from a CSV file: a header and records of as many fields.
+/// A table read from a CSV file: a header, and records with as many fields.
 class CsvTable {
  public:
-  /// Parses a text, which may begin with a byte-order mark; `name`, of the file it came from, stands in
-  /// messages. Throws CsvError when a quote is left open or a record has not the header's length.
+  /// Parses a text, which may begin with a byte-order mark; messages name `name`, its file. Throws CsvError
+  /// if a quote is not closed or a record does not have the header's length.
   CsvTable(std::string name, std::string_view text);
 
-  /// Reads the table from a file. Throws CsvError when it cannot be read, too.
+  /// Reads the table from a file. Throws CsvError, also if the file cannot be read.
   explicit CsvTable(const std::filesystem::path& file);
 
   const std::vector<std::string>& header() const { return header_; }
   std::size_t size() const { return records_.size(); }
-  /// Throws CsvError when the header does not begin with these columns.
+  /// Throws CsvError if the header does not begin with these columns.
   void require_columns(const std::vector<std::string_view>& columns) const;
-  /// Where the column of that name stands. Throws CsvError where there is none.
+  /// Index of the column with that name. Throws CsvError if there is none.
   std::size_t column(std::string_view name) const;
 
   const std::string& text(std::size_t record, std::size_t column) const {
@@ -165,13 +169,13 @@ class CsvTable {
   }
   /// Throws CsvError unless the whole field is a finite number.
   double number(std::size_t record, std::size_t column) const;
-  /// Reads a number; none for an empty field.
+  /// Reads a number; none for an empty field. Throws CsvError like number().
   std::optional<double> optional_number(std::size_t record, std::size_t column) const;
   /// Throws CsvError unless the whole field is a whole number from 0 to 2^53.
   std::uint64_t count(std::size_t record, std::size_t column) const;
   /// Throws CsvError unless the field is "true" or "false".
   bool truth(std::size_t record, std::size_t column) const;
-  /// The CsvError for a field: "FILE, line L, column NAME: "VALUE" COMPLAINT".
+  /// The CsvError for a field: "FILE, line L, column NAME: "VALUE" WHAT".
   CsvError complaint(std::size_t record, std::size_t column, const std::string& what) const;
 
  private:

@@ -14,8 +14,8 @@ struct UnitInfo {
   const char* quantity;
   const char* unit;
 };
-/// In the notation of H5MD's units module. They stand apart, under /parameters/units, because MDAnalysis
-/// refuses a `unit` attribute that is a fixed-length string and knows no metres; without any it must be told
+/// In the notation of H5MD's units module. They are separate, in /parameters/units, because MDAnalysis
+/// refuses a `unit` attribute that is a fixed-length string and does not know metres; without any it needs
 /// convert_units=False.
 constexpr auto units = std::to_array<UnitInfo>({
     {"position", "m"},
@@ -66,7 +66,7 @@ void create_particles(hid_t file, const std::string& particles) {
   write_attribute(box.get(), "boundary", boundary);
 }
 
-/// What a strain or a force is computed from, in the order of /connectivity/springs.
+/// Writes the data from which strains and forces are computed, in the order of /connectivity/springs.
 void write_springs(hid_t file, const System& system) {
   if (system.springs.empty()) return;
   const auto write = [&](std::string_view name, const auto& number_of) {
@@ -95,8 +95,8 @@ void write_connectivity(hid_t file, const std::string& particles, const System& 
   if (shape.in_panels) write_joints(file, particles, std::get<Garment>(system.topology));
 }
 
-/// Writes what a trace holds beside its frames: /h5md, /parameters, the group of particles (for example
-/// /particles/cloth) with its box and masses, and /connectivity. Throws Hdf5Error.
+/// Writes everything but frames: /h5md, /parameters, the group of particles (for example /particles/cloth)
+/// with its box and masses, and /connectivity. Throws Hdf5Error.
 void write_h5md_head(hid_t file, const std::string& particles, const System& system, const NodeShape& shape,
                      const TraceHeader& header) {
   write_metadata(file, header);
@@ -107,7 +107,7 @@ void write_h5md_head(hid_t file, const std::string& particles, const System& sys
   write_springs(file, system);
 }
 
-/// Writes the body, an empty one not at all. Throws Hdf5Error.
+/// Writes the body, unless it is empty. Throws Hdf5Error.
 void write_static_body(hid_t file, const Surface& body) {
   if (body.triangles.empty()) return;
   create_group(file, "/body");
@@ -122,7 +122,7 @@ void write_static_body(hid_t file, const Surface& body) {
 }
 
 constexpr std::size_t dimensions = 3;
-/// What HDF5 itself adds to a file at a time, at most: a few index nodes and chunks of numbers.
+/// Upper bound of what HDF5 adds to a file at a time: a few index nodes and chunks of numbers.
 constexpr std::size_t room_for_metadata = 65536;
 
 struct ObservableInfo {
@@ -144,7 +144,7 @@ constexpr auto observable_kinds = std::to_array<ObservableInfo>({
 });
 
 /// Series of single numbers. Their chunks hold many frames and are rewritten in place at every flush, which
-/// needs chunks whose stored size never changes: no deflation.
+/// requires chunks of constant stored size: no deflation.
 Hdf5Dataset create_number_series(hid_t file, const std::string& path, hid_t type) {
   constexpr std::array<hsize_t, 1> none{0}, frames_per_chunk{256};
   return create_dataset(file, path, type, none, true, chunked(frames_per_chunk, Packing::plain));
@@ -162,7 +162,7 @@ void link_step_and_time(hid_t file, const std::string& from, const std::string& 
             "linking " + to + name);
 }
 
-/// Frames that can be found in a trace, 0 when it cannot be opened.
+/// Number of frames in a trace, 0 if it cannot be opened.
 std::size_t count_frames(const std::filesystem::path& trace) {
   try {
     const Hdf5File file(H5Fopen(trace.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening");
@@ -208,7 +208,7 @@ H5mdTrace::~H5mdTrace() { give_up(); }
 void H5mdTrace::create(const System& system, const NodeShape& shape, const TraceHeader& header,
                        const Surface& body) {
   const std::string temporary = temporary_of(name()).string();
-  // The default, oldest format: the newer ones leave a file that only h5clear can open after a crash.
+  // The default, oldest format: newer ones leave a file that only h5clear can open after a crash.
   file_ = Hdf5File(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                    "creating " + temporary);
   write_h5md_head(file_.get(), particles(), system, shape, header);
@@ -260,7 +260,7 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
   const hsize_t frame = times_s_.size();
   reserve_room(file_.get(), name(),
                2 * dimensions * mesh_.nodes * mesh_.bytes_per_number() + room_for_metadata);
-  // HDF5 rounds to single precision where that is what the dataset holds.
+  // HDF5 rounds to single precision if the dataset holds it.
   static_assert(sizeof(Vec3d) == dimensions * sizeof(double));
   write_row(position_, "positions", frame, H5T_NATIVE_DOUBLE, state.position.data());
   write_row(velocity_, "velocities", frame, H5T_NATIVE_DOUBLE, state.velocity.data());
@@ -270,7 +270,7 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
   }
   write_row(time_, "times", frame, H5T_NATIVE_DOUBLE, &time_s);
   write_row(step_, "steps", frame, H5T_NATIVE_INT64, &step);
-  // Only here does a full disk show, and only what is flushed survives a kill.
+  // A full disk only shows here, and only flushed data survives a kill.
   checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing frame " + std::to_string(frame));
 }
 
@@ -296,7 +296,7 @@ void H5mdTrace::guard(const std::function<void()>& write) {
     if (kept == 0 && !times_s_.empty()) return message + "; the frames written before could not be saved";
     return message + kept_in_part(name(), "frames", kept);
   };
-  prepare_hdf5();  // a frame may be written in another thread than the head
+  prepare_hdf5();  // another thread than the head's may write a frame
   try {
     write();
   } catch (const Hdf5Error& error) {
@@ -306,7 +306,7 @@ void H5mdTrace::guard(const std::function<void()>& write) {
   }
 }
 
-/// Closes everything without complaint. Frames that cannot be read don't count.
+/// Closes everything without reporting errors. Frames that cannot be read do not count.
 std::size_t H5mdTrace::give_up() {
   if (!output_.is_under_way()) return 0;
   for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) *dataset = {};

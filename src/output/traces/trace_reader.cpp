@@ -21,8 +21,8 @@ std::string_view read_kind(hid_t file) {
   throw Hdf5ContentError("there is none of /particles/cloth, /particles/bodies and /particles/garment");
 }
 
-/// Steps and times, of which the shorter list counts: a run may have been ended between the two. So may a
-/// frame's positions be there and its step not.
+/// Reads steps and times. The shortest series counts: a run may have ended between writing two of them, or
+/// between a frame's positions and its step.
 void read_series(hid_t file, TraceContent& content) {
   const std::string position = particles_group(content) + "/position",
                     velocity = particles_group(content) + "/velocity";
@@ -33,7 +33,7 @@ void read_series(hid_t file, TraceContent& content) {
   const auto [fewest, most] = std::minmax({step.rows(), time.rows(), positions.rows(), velocities.rows()});
   if (most - fewest > 1)
     throw Hdf5ContentError(fmt::format(
-        "steps, times, positions and velocities are of unlike numbers of frames, {} to {}", fewest, most));
+        "steps, times, positions and velocities have different numbers of frames, {} to {}", fewest, most));
   if (fewest == 0) throw Hdf5ContentError("it has no frames");
   if (positions.extent(1) > std::numeric_limits<std::uint32_t>::max())
     throw Hdf5ContentError(position + "/value has more nodes than mssim can number");
@@ -103,13 +103,13 @@ Surface read_static_body(hid_t file) {
 
 namespace fs = std::filesystem;
 
-constexpr const char* remedy = "give a whole trace that mssim run --trace wrote";
+constexpr const char* remedy = "give a complete trace that mssim run --trace wrote";
 
 std::string sentence(const fs::path& file, const std::string& problem, const std::string& what_to_do) {
   return fmt::format("{}: {}: {}", printable(file.string(), 1000), printable(problem, 500), what_to_do);
 }
 
-/// Runs what reads, and says of every failure which file it is and what to do.
+/// Runs `read`, and adds the file and the remedy to every failure.
 template <class Read>
 auto explained(const fs::path& file, const Read& read) {
   try {
@@ -126,11 +126,11 @@ auto explained(const fs::path& file, const Read& read) {
   }
 }
 
-/// Throws unless there is such a file, and it is not the XDMF beside a trace.
+/// Throws unless the file exists and is not the XDMF of a trace.
 void require_file(const fs::path& file) {
   if (file.extension() == ".xdmf") {
     const fs::path trace = fs::path(file).replace_extension(".h5");
-    throw TraceError(sentence(file, "this describes a trace to viewers",
+    throw TraceError(sentence(file, "this is the XDMF of a trace, for viewers",
                               "give the trace, " + printable(trace.string(), 1000)),
                      false);
   }
@@ -204,7 +204,7 @@ std::vector<double> node_strain(const TraceContent& content, const std::vector<V
 
 TraceReader::TraceReader(fs::path file) : name_(std::move(file)) {
   require_file(name_);
-  // Some damage makes HDF5 1.10 crash where it opens a dataset, before anything of it can be checked.
+  // Some damage makes HDF5 1.10 crash when it opens a dataset, before anything of it can be checked.
   constexpr unsigned most_seconds = 60;
   if (!ends_in_trial([this] { open(); }, most_seconds))
     throw TraceError(sentence(name_, "the HDF5 library crashes on it", remedy), false);

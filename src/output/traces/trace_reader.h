@@ -21,44 +21,44 @@
 
 namespace mssim {
 
-/// What a trace says beside its frames (h5md_trace.h).
+/// Content of a trace except its frames (h5md_trace.h).
 struct TraceContent {
   NodeShape shape;
   std::vector<std::array<std::uint32_t, 2>> springs;  ///< may be empty; two nodes that differ
   std::vector<double> rest_length;              ///< [springs] m, above 0; empty in traces of earlier versions
-  Surface body;                                 ///< that does not move; may be empty
+  Surface body;                                 ///< the fixed body; may be empty
   std::string scene_json, backend, integrator;  ///< as written
   double dt_s = 0;
-  bool in_double = false;          ///< the positions, and not in single precision
-  std::size_t nodes = 0;           ///< one at least
-  std::vector<std::int64_t> step;  ///< [frames] increasing; one frame at least
+  bool in_double = false;          ///< whether positions are in double precision
+  std::size_t nodes = 0;           ///< at least one
+  std::vector<std::int64_t> step;  ///< [frames] increasing; at least one frame
   std::vector<double> time_s;      ///< [frames] increasing
 };
 
-/// Reads and checks all of it; indices lie below the number of nodes, and the shape fits these. Throws
-/// Hdf5Error, Hdf5ContentError, and std::invalid_argument with the rule that a trace breaks.
+/// Reads and checks the content; indices are below the number of nodes, and the shape fits the nodes. Throws
+/// Hdf5Error, Hdf5ContentError, and std::invalid_argument with the rule that a trace violates.
 TraceContent read_trace_content(hid_t file);
 
-/// What a trace of the system says, without frames. `body` as in H5mdTrace.
+/// The content of a trace of the system, without frames. `body` as in H5mdTrace.
 TraceContent trace_content_of(const System& system, const TraceHeader& header, const Surface& body);
 
-/// Where the particles of a trace are, for example /particles/cloth.
+/// The group of the particles of a trace, for example /particles/cloth.
 std::string particles_group(const TraceContent& content);
 
-/// [nodes] The mean strain of the springs at each node, at these positions ([nodes] m); 0 where there are
-/// none. `content` has rest lengths.
+/// [nodes] The mean strain of the springs at each node for these positions ([nodes] m); 0 for nodes without
+/// springs. `content` must have rest lengths.
 std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions);
 
-/// Thrown for a trace that cannot be read. what() is one sentence that names the file, what is wrong with it
-/// and what to do about it. Commands end with exit code 2, and with 4 where the system refused to read.
+/// Thrown for a trace that cannot be read. what() is one sentence with the file, the error and the remedy.
+/// Commands end with exit code 2, or with 4 if the system refused to read.
 struct TraceError : Error {
   TraceError(const std::string& sentence, bool refused_by_system)
       : Error(refused_by_system ? exit_file_error : exit_bad_input, sentence) {}
 };
 
-/// Reads a trace that H5mdTrace wrote, or the NAME.part of a run that did not end, which has frames as well.
-/// Nothing of the file is trusted: what does not fit gives a TraceError. Checksums are compared. Not for use
-/// from several threads at a time, even on different traces: the HDF5 library is not.
+/// Reads a trace of H5mdTrace, or the NAME.part of an unfinished run, which also has frames. The file is not
+/// trusted: an inconsistency throws TraceError. Checksums are verified. Not thread-safe, even for different
+/// traces, because the HDF5 library is not.
 class TraceReader {
  public:
   /// Reads everything but the frames. Throws TraceError.
@@ -68,12 +68,12 @@ class TraceReader {
   const TraceContent& content() const { return content_; }
   std::size_t frames() const { return content_.step.size(); }
 
-  /// [nodes] m, of one of the frames. Throws TraceError, also for numbers that are not finite.
+  /// [nodes] Positions of a frame, m. Throws TraceError, also for numbers that are not finite.
   std::vector<Vec3d> positions(std::size_t frame) const { return vectors(*position_, "position", frame); }
-  /// [nodes] m/s. Throws TraceError, also for numbers that are not finite.
+  /// [nodes] Velocities of a frame, m/s. Throws TraceError, also for numbers that are not finite.
   std::vector<Vec3d> velocities(std::size_t frame) const { return vectors(*velocity_, "velocity", frame); }
-  /// [frames] J: an energy or a loss by its name in /observables, for example "total_energy"; none where the
-  /// trace has none of that name. Throws TraceError, also for numbers that are not finite.
+  /// [frames] An energy or a loss, J, by its name in /observables, for example "total_energy"; none if the
+  /// trace does not have it. Throws TraceError, also for numbers that are not finite.
   std::optional<std::vector<double>> observable(std::string_view name) const;
 
  private:

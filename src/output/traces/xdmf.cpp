@@ -15,7 +15,7 @@ namespace {
 /// The extents, separated by blanks.
 std::string dimensions_of(std::span<const hsize_t> shape) { return fmt::format("{}", fmt::join(shape, " ")); }
 
-/// A dataset of the trace as XDMF names it; `number` is its type's name, of so many bytes.
+/// A dataset of the trace in XDMF; `number` is the name of its type, of `bytes` bytes.
 std::string data_item(const std::string& trace, const std::string& dataset, const std::string& shape,
                       std::string_view number, std::size_t bytes = sizeof(float)) {
   return fmt::format(
@@ -23,7 +23,7 @@ std::string data_item(const std::string& trace, const std::string& dataset, cons
       number, bytes, trace, dataset);
 }
 
-/// Cells between the nodes, as `dataset` lists their corners.
+/// Cells between the nodes; `dataset` lists their corners.
 std::string cells(const std::string& trace, std::string_view type, hsize_t count, const char* dataset,
                   int corners) {
   return fmt::format("<Topology TopologyType=\"{}\" NumberOfElements=\"{}\">{}</Topology>", type, count,
@@ -39,13 +39,13 @@ std::string geometry(const std::string& points) {
   return fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>", points);
 }
 
-/// Values of the nodes; `type` is Scalar or Vector.
+/// Values at the nodes; `type` is Scalar or Vector.
 std::string attribute(const std::string& name, const std::string& type, const std::string& values) {
   return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>", name, type,
                      values);
 }
 
-/// One mesh of the elements given.
+/// One mesh of these elements.
 std::string uniform_grid(const std::string& indent, const std::string& name,
                          const std::vector<std::string>& elements) {
   std::string text = indent + "<Grid Name=\"" + xml_text(printable(name)) + "\" GridType=\"Uniform\">\n";
@@ -75,7 +75,7 @@ std::vector<std::string> body_elements(const std::string& trace, const XdmfMesh&
           attribute("panel", "Scalar", data_item(trace, xdmf_panel_dataset_of_body, points, "Int"))};
 }
 
-/// Everything that a frame shows: one grid, or a collection of them by name.
+/// Everything that a frame shows: one grid, or a collection of named grids.
 std::string frame_grids(const std::string& trace, const XdmfMesh& mesh, double time_s, std::size_t frame) {
   const std::string outer(6, ' '), inner(8, ' ');
   const std::string time = "<Time Value=\"" + decimal(time_s) + "\"/>";
@@ -99,7 +99,7 @@ std::string folder_of(std::string_view vector, const XdmfPart& part) {
   return part.panel ? fmt::format("{}/{}", folder, *part.panel) : folder;
 }
 
-/// A dataset that holds one number everywhere.
+/// Writes a dataset with one number everywhere.
 void write_constant(hid_t file, const std::string& path, std::span<const hsize_t> shape,
                     std::int32_t number) {
   const std::string action = "writing " + path;
@@ -131,7 +131,7 @@ XdmfMesh xdmf_mesh_of(const NodeShape& shape, std::size_t nodes, const Surface& 
 }
 
 std::string xdmf_dataset(std::string_view vector, const XdmfPart& part, std::size_t frame) {
-  constexpr std::size_t digits = 6;  // so that viewers list the frames in order
+  constexpr std::size_t digits = 6;  // so that viewers sort the frames
   return fmt::format("{}/{:0{}}", folder_of(vector, part), frame, digits);
 }
 
@@ -163,7 +163,7 @@ void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) 
         checked(
             H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
             action);
-        // "." is the very file, whatever its name.
+        // "." is this file, whatever its name.
         checked(H5Pset_virtual(properties.get(), target.get(), ".", values.c_str(), source.get()), action);
         create_dataset(trace, xdmf_dataset(vector, part, frame), type, shape, false, properties)
             .close(action);
@@ -178,7 +178,7 @@ std::filesystem::path xdmf_of(const std::filesystem::path& trace) {
 
 void write_xdmf(const std::filesystem::path& trace, const XdmfMesh& mesh, std::span<const double> times_s) {
   std::string name = xml_text(trace.filename().string());
-  // VTK drops bytes beyond ASCII before a name as it does blanks, and then finds no file.
+  // VTK drops bytes outside ASCII before a name, like blanks, and then finds no file.
   constexpr unsigned char last_ascii = 0x7f;
   if (static_cast<unsigned char>(name.front()) > last_ascii) name.insert(0, "./");
   std::string text =

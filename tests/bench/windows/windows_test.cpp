@@ -136,7 +136,7 @@ TEST(WindowVerification, NoticesOneNodeAndOneThatIsNotFinite) {
   whole.wrong = 1e-5;
   const Verification off = verify_windows(whole, cloth, integrator, reference, 1e-4);
   ASSERT_TRUE(off.failure);
-  EXPECT_NE(off.failure->find("in the window from row 20 and column 30 on"), std::string::npos)
+  EXPECT_NE(off.failure->find("in the window that starts at row 20 and column 30"), std::string::npos)
       << *off.failure;
   whole.wrong = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(first_bad_node(whole, cloth), whole.wrong_node);

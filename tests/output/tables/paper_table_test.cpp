@@ -137,7 +137,7 @@ TEST(PaperTable, MarksTimesOnMoreProcessorsThanWereAskedFor) {
   provenance.threads = 1;
   EXPECT_THAT(text(), HasSubstr("| `hybrid` on Some device, **measured** | **0.0500** (!) (2.00×) | – |\n"));
   EXPECT_THAT(text(), HasSubstr("| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"));
-  EXPECT_THAT(text(), HasSubstr("\n(!) on more processors than asked for: hybrid (2 instead of 1).\n"));
+  EXPECT_THAT(text(), HasSubstr("\n(!) on more processors than requested: hybrid (2 instead of 1).\n"));
 }
 
 TEST(PaperTable, NamesTheDeviceThatIsTheProcessor) {

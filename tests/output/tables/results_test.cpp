@@ -241,12 +241,12 @@ TEST(ComparisonTable, HoldsEveryRowInEveryFormat) {
   const RunComparison comparison = made_up_comparison();
   const std::string table = to_text(comparison, ComparisonFormat::table);
   EXPECT_THAT(table, ContainsRegex("cloth2500  openmp   semi-euler +1 +2 +2 +1.75 +2.25 +1e-06  slower"));
-  EXPECT_THAT(table, ContainsRegex("hybrid .*undecided  40 samples a side would decide"));
+  EXPECT_THAT(table, ContainsRegex("hybrid .*undecided  40 samples per side would decide"));
   EXPECT_THAT(table, ContainsRegex("\n\nbackend  rows  geometric_mean_ratio\nall +3 +1.25\nopenmp +1 +2\n$"));
   EXPECT_THAT(to_text(comparison, ComparisonFormat::markdown),
               AllOf(HasSubstr("| 1.00 | 2.00 | 2.00 | 1.75 to 2.25 | **slower** |\n"),
                     HasSubstr("| `opencl` | semi-euler | 1.00 | – | – | – | **lost**: failed: a \\| b |\n"),
-                    HasSubstr("| undecided: 40 samples a side would decide |\n"),
+                    HasSubstr("| undecided: 40 samples per side would decide |\n"),
                     HasSubstr("| all | 3 | 1.25 |\n| `openmp` | 1 | 2.00 |\n")));
   const nlohmann::json json = nlohmann::json::parse(to_text(comparison, ComparisonFormat::json));
   EXPECT_EQ(json["regression"], true);

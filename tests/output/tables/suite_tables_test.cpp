@@ -361,7 +361,7 @@ TEST(ClusterTable, AsCsvHasSharesEfficienciesAndTheModel) {
 TEST(ClusterTable, AsAPageHasBothScalingsAndSaysHowGoodTheModelIs) {
   const std::string page = markdown(tables_of_two(cluster_of_two()).front().page);
   EXPECT_THAT(page, HasSubstr("10,000 nodes for all processes (strong scaling)"));
-  EXPECT_THAT(page, HasSubstr("10,000 nodes a process (weak scaling)"));
+  EXPECT_THAT(page, HasSubstr("10,000 nodes per process (weak scaling)"));
   EXPECT_THAT(page, HasSubstr("within 12 % of the measured time in all 2 rows"));
   EXPECT_THAT(page,
               HasSubstr("| `mpi:2` on `square-x2` | **2.50** | 2.50 to 2.50 | 93.8 | 0.0 | 6.2 | 4,800 | "

@@ -179,7 +179,7 @@ TEST_F(TraceDamage, IsSaidOfOtherTypesAndExtents) {
   EXPECT_THAT(other(position, H5T_IEEE_F32LE, {3, 20, 2}),
               HasSubstr("has the extents 3 x 20 x 2 instead of"));
   EXPECT_THAT(other(position, H5T_IEEE_F32LE, {60, 3}), HasSubstr("has the extents 60 x 3 instead of"));
-  EXPECT_THAT(other(position, H5T_IEEE_F32LE, {1, 20, 3}), HasSubstr("unlike numbers of frames, 1 to 3"));
+  EXPECT_THAT(other(position, H5T_IEEE_F32LE, {1, 20, 3}), HasSubstr("different numbers of frames, 1 to 3"));
   EXPECT_THAT(other(springs, H5T_STD_U32LE, {count, 3}), HasSubstr("instead of any x 2"));
   EXPECT_THAT(other(springs, H5T_IEEE_F64LE, {count, 2}), HasSubstr("numbers of a type that"));
   EXPECT_THAT(other(springs, H5T_STD_U32LE, {count, 2}),
@@ -269,7 +269,7 @@ TEST_F(TraceDamage, IsSaidOfMoreThanAFileCanHold) {
   const std::string position = "/particles/cloth/position";
   // One more is what a run that was ended in the middle of a frame leaves.
   EXPECT_EQ(grown(position + "/value", {4, 20, 3}), "");
-  EXPECT_THAT(grown(position + "/value", {absurd, 20, 3}), HasSubstr("unlike numbers of frames"));
+  EXPECT_THAT(grown(position + "/value", {absurd, 20, 3}), HasSubstr("different numbers of frames"));
   EXPECT_THAT(after(system_,
                     [&](hid_t h5) {
                       remove(h5, "/connectivity/springs");
