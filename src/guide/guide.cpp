@@ -224,17 +224,25 @@ bool ends_short(const SceneGuide& guide, const GuidedMethod& method) {
   });
 }
 
-/// Integrators by backends: "rk4 and verlet on serial; rk4 on opencl".
+/// Integrators by backends: "rk4 and verlet on serial and openmp; rk4 on opencl".
 std::string names_of(std::span<const GuidedMethod* const> methods) {
-  std::vector<std::string> groups;
-  for (std::size_t i = 0; i < methods.size(); ++i) {
-    const auto is_its = [&](const GuidedMethod* method) { return method->backend == methods[i]->backend; };
-    if (std::ranges::any_of(methods.first(i), is_its)) continue;
-    std::vector<std::string_view> names;
-    for (const GuidedMethod* method : methods)
-      if (is_its(method)) names.push_back(method->integrator->name);
-    groups.push_back(fmt::format("{} on {}", listed(names), methods[i]->backend->name));
+  using Names = std::vector<std::string_view>;
+  std::vector<std::pair<std::string_view, Names>> integrators;  // by backend
+  for (const GuidedMethod* method : methods) {
+    const std::string_view backend = method->backend->name;
+    auto its = std::ranges::find(integrators, backend, &std::pair<std::string_view, Names>::first);
+    if (its == integrators.end()) its = integrators.insert(its, {backend, {}});
+    its->second.push_back(method->integrator->name);
   }
+  std::vector<std::pair<Names, Names>> backends;  // by integrators
+  for (const auto& [backend, names] : integrators) {
+    auto its = std::ranges::find(backends, names, &std::pair<Names, Names>::first);
+    if (its == backends.end()) its = backends.insert(its, {names, {}});
+    its->second.push_back(backend);
+  }
+  std::vector<std::string> groups;
+  for (const auto& [names, where] : backends)
+    groups.push_back(fmt::format("{} on {}", listed(names), listed(where)));
   return join(groups, "; ");
 }
 
@@ -553,16 +561,17 @@ std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide) {
   const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
   const double cheapest =
       ranked.empty() ? std::numeric_limits<double>::infinity() : ranked.front().cost.seconds_a_second;
-  const bool any_counts = std::ranges::any_of(guide.points, &WorkPoint::counts);
-  std::vector<const GuidedMethod*> missed;
+  std::vector<const GuidedMethod*> missed, implicit;
   for (const GuidedMethod& method : guide.methods) {
-    if (any_counts && is_implicit(*method.integrator)) continue;
     if (!lacks_time(guide, method) || ends_short(guide, method)) continue;
     const auto step = expected_step(guide, *method.integrator);
-    if (!step || method.step_seconds == 0 || method.step_seconds / *step < cheapest)
+    if (is_implicit(*method.integrator))
+      implicit.push_back(&method);
+    else if (!step || method.step_seconds == 0 || method.step_seconds / *step < cheapest)
       missed.push_back(&method);
   }
-  return missed;
+  const bool any_counts = std::ranges::any_of(guide.points, &WorkPoint::counts);
+  return missed.empty() && !any_counts ? implicit : missed;
 }
 
 double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed) {

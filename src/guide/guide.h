@@ -158,7 +158,8 @@ std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& met
 /// any backend, and its order; it is no longer than the longest usable one. With it and the measured time per
 /// step the method is cheaper than all that were measured. Where no step or no time is known, it could be;
 /// where its integrator came to the end of a curve short of the error, on another backend, it could not.
-/// Implicit methods, whose steps have no cost that is known before, are among them where no point counts.
+/// Implicit methods, whose steps have no cost that is known before, are missed where there are no such
+/// explicit ones and no point counts.
 std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide);
 
 /// Wall time, s, with which the curves of these methods would have reached the wished error, and those of the

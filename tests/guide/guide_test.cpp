@@ -309,6 +309,8 @@ TEST(MissedMethods, AreThoseThatCouldBeTheCheapest) {
   EXPECT_EQ(missed(guide), 0U) << "it is implicit";
   guide.points.clear();
   EXPECT_EQ(missed(guide), 1U) << "nothing else was measured";
+  guide.methods.front().lack = Lack::time;
+  EXPECT_EQ(missed_methods(guide), std::vector<const GuidedMethod*>{&guide.methods.front()});
 }
 
 TEST(MissedMethods, MayLackTheReferencesTime) {
@@ -370,12 +372,13 @@ TEST(WhatWasMeasured, SaysWhichMethodsWereNotAndWhy) {
   };
   add("rk4", "serial", Lack::time);
   add("verlet", "serial", Lack::time);
+  add("xpbd", "serial", Lack::backend);
   add("xpbd", "opencl", Lack::backend);
   add("explicit-euler", "serial", Lack::stable_step);
   EXPECT_THAT(what_was_measured(guide),
-              ElementsAre(HasSubstr("2 of 6 methods"),
+              ElementsAre(HasSubstr("2 of 7 methods"),
                           AllOf(HasSubstr("time"), EndsWith(": rk4 and verlet on serial.")),
-                          EndsWith(": xpbd on opencl."), EndsWith(": explicit-euler on serial."),
+                          EndsWith(": xpbd on serial and opencl."), EndsWith(": explicit-euler on serial."),
                           AllOf(HasSubstr("0.001"), EndsWith(": rk4 on openmp."))));
   guide.methods[1].lack = Lack::time;
   EXPECT_THAT(what_was_measured(guide).back(), AllOf(HasSubstr("time"), EndsWith(": rk4 on openmp.")));
