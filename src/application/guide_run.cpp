@@ -104,11 +104,11 @@ void require_available(const GuideOptions& options, const std::vector<const Back
 
 void print(const SceneGuide& guide) {
   std::cout << guide.scene << '\n';
-  if (!guide.trusted.failure.empty()) {
-    std::cout << "No errors were measured: " << guide.trusted.failure << ".\n";
-    return;
-  }
+  const bool has_errors = guide.trusted.failure.empty();
+  if (!has_errors) std::cout << "No errors were measured: " << guide.trusted.failure << ".\n";
   for (const std::string& sentence : guide.recommendation.sentences) std::cout << sentence << '\n';
+  if (!has_errors) return;
+  for (const std::string& sentence : what_was_measured(guide)) std::cout << sentence << '\n';
   std::cout << '\n' << to_text(guide_summary(guide)) << '\n';
   for (const std::string& sentence : about_trusted_state(guide.trusted)) std::cout << sentence << '\n';
 }
@@ -153,16 +153,16 @@ SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::siz
                                .stop = [&] { return stop.requested(); }});
 }
 
-/// What programs have failed with, and scenes for which the time, `share_s` for each, was too short.
-std::vector<std::string> failures(const std::vector<SceneGuide>& guides, double share_s) {
+/// Scenes for which the time was too short, and what programs have failed with. `scenes`: how many share the
+/// time.
+std::vector<std::string> failures(const std::vector<SceneGuide>& guides, std::size_t scenes) {
   std::vector<std::string> sentences;
   for (const SceneGuide& guide : guides) {
-    const auto ran_out = [](const std::string& status) { return status.starts_with("no time"); };
-    if (ran_out(guide.trusted.failure) ||
-        (guide.points.empty() && std::ranges::any_of(guide.methods, ran_out, &GuidedMethod::status)))
+    if (const auto& needed_s = guide.recommendation.needed_s)
       sentences.push_back(
-          fmt::format("{}: nothing was measured in {} s: give --time-budget {} or more for each scene",
-                      guide.scene, two_digits(share_s), two_digits(std::max(usual_guide_s, 2 * share_s))));
+          fmt::format("{}: nothing is recommended, because the time is not enough: give --time-budget {} or "
+                      "more",
+                      guide.scene, decimal(*needed_s * static_cast<double>(scenes))));
     for (const GuidedMethod& method : guide.methods)
       if (method.status.starts_with("failed"))
         sentences.push_back(fmt::format("{}, {}, {}: {}", guide.scene, method.backend->name,
@@ -238,8 +238,7 @@ int run_guide(const GuideOptions& options) {
   if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
   if (folder && !written) std::cerr << "mssim: nothing was measured yet, and nothing written\n";
   stop.throw_if_requested();
-  const std::vector<std::string> failed =
-      failures(guides, plan.seconds / static_cast<double>(plan.scenes.size()));
+  const std::vector<std::string> failed = failures(guides, plan.scenes.size());
   tell_first(failed);
   return failed.empty() ? exit_ok : exit_not_verified;
 }

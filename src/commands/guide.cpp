@@ -12,12 +12,9 @@ std::function<int()> declare_guide(Arguments& arguments) {
              "Scenes to measure: names (see mssim list scenes) or files")
       .required();
   arguments.add_number("--fps N", options->wish.frames_per_second,
-                       "Frames a second that the simulation shall keep up with (default: 60)",
-                       number_between(1, 10'000));
-  arguments.add_number(
-      "--error E", options->wish.error,
-      "Largest distance of a node from where it should be, in mean rest lengths (default: 1e-3)",
-      positive_number());
+                       "Target frame rate, in frames per second (default: 60)", number_between(1, 10'000));
+  arguments.add_number("--error E", options->wish.error,
+                       "Maximum position error, in mean rest lengths (default: 1e-3)", positive_number());
   arguments.add_number("--horizon SECONDS", options->horizon_s,
                        "Simulated time after which errors are measured, at most (default: 0.1)",
                        number_between(1e-6, 10));
@@ -33,7 +30,7 @@ std::function<int()> declare_guide(Arguments& arguments) {
   declare_execution(arguments, options->execution);
   arguments.add_number(
       "--time-budget SECONDS", options->time_budget_s,
-      "Time for all scenes, about; what it does not suffice for is left out (default: 90 for each)",
+      "Time for all scenes, about; too little for a recommendation: exit code 1 (default: 90 for each)",
       positive_number());
   arguments.add("--out FOLDER", options->folder,
                 "Folder for the results: guide.md, tables as CSV, provenance");

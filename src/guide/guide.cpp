@@ -30,6 +30,46 @@ std::string named(const WorkPoint& point) {
   return fmt::format("{} on {}", point.integrator->name, point.backend);
 }
 
+/// The points of the method that count, from the longest step on.
+std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const GuidedMethod& method) {
+  std::vector<const WorkPoint*> curve;
+  for (const WorkPoint& point : points)
+    if (point.counts() && is_of(point, method)) curve.push_back(&point);
+  std::ranges::stable_sort(curve, std::ranges::greater(), &WorkPoint::dt_s);
+  return curve;
+}
+
+/// Null where it was not looked for.
+const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator) {
+  const auto limit = std::ranges::find(guide.limits, integrator, &StepLimit::integrator);
+  return limit == guide.limits.end() ? nullptr : &*limit;
+}
+
+/// A method that keeps an error, and what it costs then.
+struct Ranked {
+  const GuidedMethod* method;
+  CostAtError cost;
+};
+
+/// The cheapest first.
+std::vector<Ranked> by_cost(const SceneGuide& guide, double error) {
+  std::vector<Ranked> ranked;
+  for (const GuidedMethod& method : guide.methods)
+    if (const auto cost = cost_at_error(guide.points, method, error)) ranked.push_back({&method, *cost});
+  std::ranges::stable_sort(ranked, {}, [](const Ranked& one) { return one.cost.seconds_a_second; });
+  return ranked;
+}
+
+/// The cheapest method after the first, of another integrator, else on another backend.
+const Ranked* second_of(std::span<const Ranked> ranked) {
+  const auto is_other = [&](const Ranked& one) {
+    return one.method->integrator != ranked.front().method->integrator;
+  };
+  const auto other = std::ranges::find_if(ranked, is_other);
+  if (other != ranked.end()) return &*other;
+  return ranked.size() > 1 ? &ranked[1] : nullptr;
+}
+
 /// Wall time of a frame, s.
 double frame_seconds(const WorkPoint& point, double frames_per_second) {
   return steps_a_frame(point.dt_s, frames_per_second) * point.seconds_a_step;
@@ -39,32 +79,40 @@ std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
   const double seconds = frame_seconds(point, wish.frames_per_second), rate = 1 / seconds;
   const std::string asked = decimal(wish.frames_per_second);
   return seconds * wish.frames_per_second <= 1
-             ? fmt::format("and {} frames a second hold ({} would)", asked, three_digits(rate))
-             : fmt::format("so that {} frames a second do not hold ({} would)", asked, three_digits(rate));
+             ? fmt::format("and {} frames per second hold ({} would)", asked, three_digits(rate))
+             : fmt::format("so that {} frames per second do not hold ({} would)", asked, three_digits(rate));
 }
 
-std::string what_to_take(std::span<const WorkPoint> points, const Recommendation& chosen, const Wish& wish) {
-  if (points.empty()) return "Nothing was measured: the remark of each method says why.";
-  if (!chosen.best) {
-    if (!chosen.nearest)
-      return "Nothing that was measured can be recommended: no point is both stable and far enough from the "
-             "reference's error.";
-    const WorkPoint& point = points[*chosen.nearest];
-    return "Nothing that was measured keeps the error within " + two_digits(wish.error) +
-           " of a mean rest length: the most accurate is " + named(point) + " with a step of " +
-           two_digits(point.dt_s) + " s.";
-  }
-  const WorkPoint& point = points[*chosen.best];
-  const int steps = steps_a_frame(point.dt_s, wish.frames_per_second);
-  return fmt::format("Take {} with a step of {} s, which is {} a frame at {} frames a second.", named(point),
-                     two_digits(point.dt_s), pluralize(steps, "step"), decimal(wish.frames_per_second));
+std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const CostAtError& cost) {
+  const double rate = guide.wish.frames_per_second;
+  const StepLimit* limit = limit_of(guide, point.integrator);
+  const bool is_limited =
+      cost.at_longest_step && limit != nullptr && limit->measured.unstable_s > 0 && limit->measured.finished;
+  std::string text =
+      fmt::format("Take {} with a step of {} s{}, which is {} per frame at {} frames per second.",
+                  named(point), two_digits(point.dt_s), is_limited ? ", the longest that is stable" : "",
+                  pluralize(steps_a_frame(point.dt_s, rate), "step"), decimal(rate));
+  const auto method = std::ranges::find_if(
+      guide.methods, [&](const GuidedMethod& candidate) { return is_of(point, candidate); });
+  if (const auto steps = steps_to_try(guide, *method))
+    text += fmt::format(" A step of about {} s should do, too, but was not measured.",
+                        two_digits(guide.trusted.horizon_s / *steps));
+  return text;
 }
 
-std::string what_it_costs(const WorkPoint& point, const Wish& wish, double horizon_s) {
-  return "A simulated second takes " + three_digits(cost_of(point)) + " s, " + frames_sentence(point, wish) +
-         "; " + two_digits(horizon_s) + " s after the start no node is off by more than " +
-         two_digits(error_of(point)) + " of a mean rest length, and the energy by " +
-         two_digits(std::abs(point.energy_error.value_or(0))) + " of what is kinetic and elastic.";
+std::string what_is_nearest(const WorkPoint& point, const Wish& wish) {
+  return fmt::format(
+      "Nothing that was measured keeps the error within {} of a mean rest length: the most accurate is {} "
+      "with a step of {} s.",
+      two_digits(wish.error), named(point), two_digits(point.dt_s));
+}
+
+std::string what_it_costs(const WorkPoint& point, const SceneGuide& guide) {
+  return fmt::format(
+      "A simulated second takes {} s, {}; {} s after the start no node is off by more than {} of a mean rest "
+      "length, and the energy by {} of what is kinetic and elastic.",
+      three_digits(cost_of(point)), frames_sentence(point, guide.wish), two_digits(guide.trusted.horizon_s),
+      two_digits(error_of(point)), two_digits(std::abs(point.energy_error.value_or(0))));
 }
 
 /// Errors that a user can bear, from one on up to another, which is not one of them; or without an end.
@@ -73,28 +121,40 @@ struct ErrorRange {
   std::optional<double> to;
 };
 
-/// For which errors `other` is cheaper than `winner`, in order. What a method costs for an error is what its
-/// cheapest point within it does.
-std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const WorkPoint& winner,
-                                      const WorkPoint& other) {
-  const auto cheapest = [&](const WorkPoint& method, double error) {
-    return least(
-        points, [&](const WorkPoint& p) { return same_method(p, method) && error_of(p) <= error; }, cost_of);
-  };
-  const auto is_cheaper = [&](double error) {
-    const auto mine = cheapest(other, error), its = cheapest(winner, error);
-    return mine && (!its || cost_of(points[*mine]) < cost_of(points[*its]));
-  };
-  std::vector<double> errors;  // from one of these to the next nothing changes
-  for (const WorkPoint& point : points)
-    if (point.counts()) errors.push_back(error_of(point));
+/// How much cheaper `other` is than `winner` at an error, as the logarithm of the ratio: infinite where
+/// only one of them keeps it, and negative where neither does.
+double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winner, const GuidedMethod& other,
+                    double error) {
+  const auto mine = cost_at_error(points, other, error), its = cost_at_error(points, winner, error);
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  if (!mine) return -endless;
+  return its ? std::log(its->seconds_a_second / mine->seconds_a_second) : endless;
+}
+
+/// For which errors `other` is cheaper than `winner`, in order. Between the errors of their points the
+/// advantage is linear in the logarithm of the error.
+std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const GuidedMethod& winner,
+                                      const GuidedMethod& other) {
+  std::vector<double> errors;
+  for (const GuidedMethod* method : {&winner, &other})
+    for (const WorkPoint* point : counting(points, *method)) errors.push_back(error_of(*point));
   std::ranges::sort(errors);
   std::vector<ErrorRange> ranges;
   bool cheaper = false;
-  for (const double error : errors) {
-    const bool was_cheaper = std::exchange(cheaper, is_cheaper(error));
-    if (cheaper && !was_cheaper) ranges.push_back({error, std::nullopt});
-    if (!cheaper && was_cheaper) ranges.back().to = error;
+  const auto turn_at = [&](double error) {
+    cheaper = !cheaper;
+    if (cheaper)
+      ranges.push_back({error, std::nullopt});
+    else
+      ranges.back().to = error;
+  };
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double here = advantage_at(points, winner, other, errors[i]);
+    if ((here > 0) != cheaper) turn_at(errors[i]);
+    if (i + 1 == errors.size()) break;
+    const double below_next = advantage_at(points, winner, other, errors[i + 1] * (1 - 1e-9));
+    if ((below_next > 0) != cheaper && std::isfinite(here))
+      turn_at(errors[i] * std::pow(errors[i + 1] / errors[i], here / (here - below_next)));
   }
   return ranges;
 }
@@ -116,22 +176,99 @@ std::string in_words(std::span<const ErrorRange> ranges) {
   return listed(texts);
 }
 
-std::string who_comes_second(std::span<const WorkPoint> points, const Recommendation& chosen) {
-  const WorkPoint& winner = points[chosen.best ? *chosen.best : *chosen.nearest];
-  if (!chosen.runner_up) return "No other method that was measured is accurate enough.";
-  const WorkPoint& second = points[*chosen.runner_up];
-  const std::vector<ErrorRange> wins = ranges_to_win(points, winner, second);
-  const double ratio = cost_of(second) / cost_of(winner);
-  return fmt::format("The runner-up is {} with a step of {} s, which takes {} times as long{}", named(second),
-                     two_digits(second.dt_s), three_digits(ratio),
-                     wins.empty() ? "; it is cheaper at no error."
-                                  : fmt::format("; it would win at errors of {}.", in_words(wins)));
+std::string who_comes_second(const SceneGuide& guide, const Ranked& winner, const Ranked* second,
+                             const WorkPoint* point) {
+  if (second == nullptr) return "No other method that was measured is accurate enough.";
+  const std::vector<ErrorRange> wins = ranges_to_win(guide.points, *winner.method, *second->method);
+  const double ratio = second->cost.seconds_a_second / winner.cost.seconds_a_second;
+  return fmt::format(
+      "The runner-up is {} with a step of {} s, which takes {} times as long at an error of {}{}",
+      named(*point), two_digits(point->dt_s), three_digits(ratio), decimal(guide.wish.error),
+      wins.empty() ? "; it is cheaper at no error."
+                   : fmt::format("; it would win at errors of {}.", in_words(wins)));
+}
+
+/// The longest step with which the integrator may be expected to keep the wished error; none where nothing
+/// that was measured says.
+std::optional<double> expected_step(const SceneGuide& guide, const Integrator& integrator) {
+  const double error = guide.wish.error;
+  std::optional<double> longest;
+  const auto take = [&](double dt_s) { longest = std::max(longest.value_or(dt_s), dt_s); };
+  for (const GuidedMethod& method : guide.methods) {
+    if (method.integrator != &integrator) continue;
+    if (const auto cost = cost_at_error(guide.points, method, error))
+      take(cost->dt_s);
+    else if (const auto curve = counting(guide.points, method); !curve.empty())
+      take(curve.back()->dt_s * std::pow(error / error_of(*curve.back()), 1.0 / integrator.order));
+  }
+  const StepLimit* limit = limit_of(guide, &integrator);
+  if (limit == nullptr || limit->measured.stable_s <= 0) return longest;
+  return std::min(longest.value_or(limit->usable_s()), limit->usable_s());
+}
+
+/// Whether more time would have given the method a cost at the wished error.
+bool lacks_time(const SceneGuide& guide, const GuidedMethod& method) {
+  if (cost_at_error(guide.points, method, guide.wish.error)) return false;
+  // Errors grow with the horizon, and a better reference lets smaller ones count.
+  const auto is_beyond = [&](const WorkPoint& point) { return is_of(point, method) && point.beyond_trust; };
+  return method.lack == Lack::time ||
+         (guide.trusted.short_of_s > 0 && std::ranges::any_of(guide.points, is_beyond));
+}
+
+/// Whether its integrator has come to the end of a curve, on another backend, short of the wished error.
+bool ends_short(const SceneGuide& guide, const GuidedMethod& method) {
+  return std::ranges::any_of(guide.methods, [&](const GuidedMethod& other) {
+    return other.integrator == method.integrator && other.lack == Lack::nothing &&
+           !lacks_time(guide, other) && !counting(guide.points, other).empty() &&
+           !cost_at_error(guide.points, other, guide.wish.error);
+  });
+}
+
+/// Integrators by backends: "rk4 and verlet on serial and openmp; rk4 on opencl".
+std::string names_of(std::span<const GuidedMethod* const> methods) {
+  using Names = std::vector<std::string_view>;
+  std::vector<std::pair<std::string_view, Names>> integrators;  // by backend
+  for (const GuidedMethod* method : methods) {
+    const std::string_view backend = method->backend->name;
+    auto its = std::ranges::find(integrators, backend, &std::pair<std::string_view, Names>::first);
+    if (its == integrators.end()) its = integrators.insert(its, {backend, {}});
+    its->second.push_back(method->integrator->name);
+  }
+  std::vector<std::pair<Names, Names>> backends;  // by integrators
+  for (const auto& [backend, names] : integrators) {
+    auto its = std::ranges::find(backends, names, &std::pair<Names, Names>::first);
+    if (its == backends.end()) its = backends.insert(its, {names, {}});
+    its->second.push_back(backend);
+  }
+  std::vector<std::string> groups;
+  for (const auto& [names, where] : backends)
+    groups.push_back(fmt::format("{} on {}", listed(names), listed(where)));
+  return join(groups, "; ");
+}
+
+/// Seconds, rounded up to two digits.
+double rounded_up(double seconds) {
+  const double places = 1 - std::floor(std::log10(seconds)), scale = std::pow(10, std::abs(places));
+  return places > 0 ? std::ceil(seconds * scale - 1e-9) / scale : std::ceil(seconds / scale - 1e-9) * scale;
+}
+
+std::string seconds_of(const SceneGuide& guide) { return decimal(std::round(10 * guide.seconds) / 10); }
+
+std::string why_nothing(const SceneGuide& guide, double needed_s,
+                        std::span<const GuidedMethod* const> missed) {
+  std::string text = guide.stopped
+                         ? "Nothing is recommended: the guide was stopped"
+                         : fmt::format("Nothing is recommended: {} s are not enough", seconds_of(guide));
+  if (!missed.empty())
+    text += fmt::format(", and any of these methods could be the cheapest at an error of {}: {}",
+                        decimal(guide.wish.error), names_of(missed));
+  return text + fmt::format(". About {} s for this scene would do (--time-budget).", decimal(needed_s));
 }
 
 /// Shares of the wall time. A part that ends early leaves its time to the next, and one that takes longer
 /// takes none of theirs: on a busy machine the whole then takes longer.
-constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.45, share_of_points = 0.35,
-                 share_of_sizes = 0.2, share_of_exact_steps = 0.1;
+constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.45, share_of_points = 0.3,
+                 share_of_longest_steps = 0.05, share_of_sizes = 0.2, share_of_exact_steps = 0.1;
 
 /// How much of a guide's time is over.
 class GuideClock {
@@ -194,12 +331,40 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
   }
 }
 
+/// Measures the longest steps with which the two cheapest methods should keep the error. What they turn out
+/// to be off by says more of the curves, and may change which two these are.
+void measure_longest_steps(SceneGuide& guide, std::span<WorkCurve> curves, const GuideWatch& watch,
+                           GuideClock& clock, double end) {
+  constexpr int most = 10;
+  for (int taken = 0; taken < most; ++taken) {
+    const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
+    if (ranked.empty()) return;
+    const Ranked* second = second_of(ranked);
+    const GuidedMethod* method = ranked.front().method;
+    auto steps = steps_to_try(guide, *method);
+    if (!steps && second != nullptr) {
+      method = second->method;
+      steps = steps_to_try(guide, *method);
+    }
+    if (!steps) return;
+    WorkCurve& curve = curves[static_cast<std::size_t>(method - guide.methods.data())];
+    if (watch.stop() || clock.spent() + curve.seconds_of(*steps) > end) return;
+    watch.progress(fmt::format("longest step: {} {}", method->integrator->name, method->backend->name),
+                   clock.fraction());
+    auto measured = curve.measure(*steps);
+    if (!measured) return clock.forgive(method->late);
+    guide.points.push_back(std::move(measured->point));
+  }
+}
+
 /// The point that takes the least time goes first: fast methods reach the wished error whatever the slow ones
 /// take, and all curves have begun before one goes on.
 void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
                     GuideClock& clock) {
   const double later = request.make_cloth ? share_of_sizes : 0;
-  const double end = clock.end_of_part(share_of_points, later + share_of_exact_steps);
+  const double begin = clock.spent();
+  const double end =
+      clock.end_of_part(share_of_points, later + share_of_exact_steps + share_of_longest_steps);
   std::vector<ImplicitEnd> ends;
   std::vector<WorkCurve> curves;
   guide.methods.reserve(request.integrators.size() * request.backends.size());
@@ -212,7 +377,7 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
   const auto give_up = [&](const std::vector<LateProgram>& programs) {
     for (const LateProgram& program : programs)
       for (std::size_t i = 0; i < curves.size(); ++i)
-        if (guide.methods[i].backend == program.backend) curves[i].end(program.status);
+        if (guide.methods[i].backend == program.backend) curves[i].end(Lack::backend, program.status);
   };
   for (const StepLimit& limit : guide.limits) give_up(limit.late);
   while (true) {
@@ -222,7 +387,13 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
     if (next == curves.end() || !next->has_next()) break;
     GuidedMethod& method = guide.methods[static_cast<std::size_t>(next - curves.begin())];
     if (watch.stop() || clock.spent() + next->next_seconds() > end) {
-      next->end("no time was left for smaller steps");
+      next->end_without_time();
+      continue;
+    }
+    if (!next->is_timed() && !is_implicit(*method.integrator)) {
+      next->time_step();
+      clock.forgive(method.late);
+      give_up(method.late);
       continue;
     }
     watch.progress(fmt::format("work and precision: {} {}", method.integrator->name, method.backend->name),
@@ -235,27 +406,37 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
       ends.push_back({guide.points.size(), std::move(measured->state)});
     guide.points.push_back(std::move(measured->point));
   }
+  guide.seconds_on_points = clock.spent() - begin;
+  const double end_of_steps = clock.end_of_part(share_of_longest_steps, later + share_of_exact_steps);
+  measure_longest_steps(guide, curves, watch, clock, end_of_steps);
+  // A step takes far less than a point, and says what the method would have cost.
+  for (WorkCurve& curve : curves) {
+    GuidedMethod& method = guide.methods[static_cast<std::size_t>(&curve - curves.data())];
+    if (!method.next || curve.is_timed() || is_implicit(*method.integrator)) continue;
+    if (watch.stop() || clock.spent() > end_of_steps) break;
+    curve.time_step();
+    clock.forgive(method.late);
+    if (!method.late.empty()) break;
+  }
   watch.progress("errors of steps and solvers", clock.fraction());
   const double last = clock.end_of_part(share_of_exact_steps, later);
   tell_errors_apart(guide.points, ends, *request.system, guide.trusted,
                     [&] { return watch.stop() || clock.spent() > last; });
   const auto place = [&](const WorkPoint& point) {
-    return std::ranges::find_if(guide.methods,
-                                [&](const GuidedMethod& method) { return is_of(point, method); });
+    const auto method = std::ranges::find_if(
+        guide.methods, [&](const GuidedMethod& candidate) { return is_of(point, candidate); });
+    return std::pair(method - guide.methods.begin(), point.steps);
   };
   std::ranges::stable_sort(guide.points, {}, [&](const WorkPoint& point) { return place(point); });
 }
 
-/// The method's cheapest point that is accurate enough, else its cheapest stable one; null without any.
-const WorkPoint* cheapest_point(const SceneGuide& guide, const GuidedMethod& method) {
-  const auto rank = [&](const WorkPoint& point) {
-    const bool accurate = point.counts() && *point.position_error <= guide.wish.error;
-    return std::pair(!accurate, point.seconds_a_second());
-  };
+/// The method's longest step that keeps the error, else its cheapest stable point; null without any.
+const WorkPoint* point_for_sizes(const SceneGuide& guide, const GuidedMethod& method) {
+  if (const auto place = point_at_error(guide.points, method, guide.wish.error)) return &guide.points[*place];
   const WorkPoint* cheapest = nullptr;
   for (const WorkPoint& point : guide.points)
     if (is_of(point, method) && !point.diverged && point.within_limit &&
-        (cheapest == nullptr || rank(point) < rank(*cheapest)))
+        (cheapest == nullptr || cost_of(point) < cost_of(*cheapest)))
       cheapest = &point;
   return cheapest;
 }
@@ -264,7 +445,7 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
                     const GuideClock& clock) {
   for (const GuidedMethod& method : guide.methods) {
     SizeCurve curve{.integrator = method.integrator, .backend = method.backend, .samples = {}, .status = {}};
-    if (const WorkPoint* point = cheapest_point(guide, method)) {
+    if (const WorkPoint* point = point_for_sizes(guide, method)) {
       curve.dt_s = point->dt_s;
       curve.keeps_error = point->counts() && *point->position_error <= request.wish.error;
     } else {
@@ -288,13 +469,6 @@ struct Compared {
   double seconds_a_step = 0;
   std::optional<CostAtError> cost;
 };
-
-std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const GuidedMethod& method) {
-  std::vector<const WorkPoint*> curve;
-  for (const WorkPoint& point : points)
-    if (point.counts() && is_of(point, method)) curve.push_back(&point);
-  return curve;
-}
 
 std::string integrators_of(std::span<const Compared> compared) {
   std::vector<std::string> names;
@@ -337,11 +511,11 @@ std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
 }
 
 std::string explicit_euler_beside(const SceneGuide& guide) {
-  const auto limit_of = [&](std::string_view name) {
-    const auto limit = std::ranges::find(guide.limits, find_integrator(name), &StepLimit::integrator);
-    return limit == guide.limits.end() ? 0 : limit->measured.stable_s;
+  const auto stable = [&](std::string_view name) {
+    const StepLimit* limit = limit_of(guide, find_integrator(name));
+    return limit == nullptr ? 0 : limit->measured.stable_s;
   };
-  const double euler = limit_of("explicit-euler"), semi = limit_of("semi-euler");
+  const double euler = stable("explicit-euler"), semi = stable("semi-euler");
   if (euler <= 0 || semi <= 0) return {};
   std::optional<double> cheapest, its;
   for (const GuidedMethod& method : guide.methods)
@@ -359,35 +533,148 @@ std::string explicit_euler_beside(const SceneGuide& guide) {
 
 }  // namespace
 
-Recommendation recommend(std::span<const WorkPoint> points, const Wish& wish, double horizon_s) {
-  Recommendation chosen;
-  const auto within = [&](const WorkPoint& point) { return error_of(point) <= wish.error; };
-  chosen.best = least(points, within, cost_of);
-  if (!chosen.best)
-    chosen.nearest = least(
-        points, [](const WorkPoint&) { return true; }, error_of);
-  chosen.sentences.push_back(what_to_take(points, chosen, wish));
-  if (!chosen.best && !chosen.nearest) return chosen;
-  const WorkPoint& taken = points[chosen.best ? *chosen.best : *chosen.nearest];
-  if (chosen.best) {
-    chosen.runner_up = least(
-        points, [&](const WorkPoint& p) { return within(p) && p.integrator != taken.integrator; }, cost_of);
-    if (!chosen.runner_up)
-      chosen.runner_up = least(
-          points, [&](const WorkPoint& p) { return within(p) && p.backend != taken.backend; }, cost_of);
-  } else {
-    chosen.runner_up = least(
-        points, [&](const WorkPoint& p) { return p.integrator != taken.integrator; }, error_of);
+std::optional<std::size_t> point_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
+                                          double error) {
+  return least(
+      points, [&](const WorkPoint& point) { return is_of(point, method) && error_of(point) <= error; },
+      [](const WorkPoint& point) { return -point.dt_s; });
+}
+
+std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& method) {
+  const auto cost = cost_at_error(guide.points, method, guide.wish.error);
+  if (!cost) return std::nullopt;
+  double dt_s = cost->dt_s;
+  const StepLimit* limit = limit_of(guide, method.integrator);
+  if (cost->at_longest_step && limit != nullptr) dt_s = std::max(dt_s, limit->usable_s());
+  const double horizon_s = guide.trusted.horizon_s;
+  const int steps = std::max(1, static_cast<int>(std::ceil(horizon_s / dt_s - 1e-6)));
+  const int known = guide.points[*point_at_error(guide.points, method, guide.wish.error)].steps;
+  if (steps * step_resolution > known) return std::nullopt;
+  // One that does not count, or is not accurate enough, whatever the curve says.
+  const bool was_tried = std::ranges::any_of(guide.points, [&](const WorkPoint& point) {
+    return is_of(point, method) && point.steps >= steps && point.steps < known;
+  });
+  return was_tried ? std::nullopt : std::optional(steps);
+}
+
+std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide) {
+  const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
+  const double cheapest =
+      ranked.empty() ? std::numeric_limits<double>::infinity() : ranked.front().cost.seconds_a_second;
+  std::vector<const GuidedMethod*> missed, implicit;
+  for (const GuidedMethod& method : guide.methods) {
+    if (!lacks_time(guide, method) || ends_short(guide, method)) continue;
+    const auto step = expected_step(guide, *method.integrator);
+    if (is_implicit(*method.integrator))
+      implicit.push_back(&method);
+    else if (!step || method.step_seconds == 0 || method.step_seconds / *step < cheapest)
+      missed.push_back(&method);
   }
-  chosen.sentences.push_back(what_it_costs(taken, wish, horizon_s));
-  chosen.sentences.push_back(who_comes_second(points, chosen));
+  const bool any_counts = std::ranges::any_of(guide.points, &WorkPoint::counts);
+  return missed.empty() && !any_counts ? implicit : missed;
+}
+
+double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed) {
+  constexpr double steps_of_a_limit = 80;  // eight runs of ten steps, the least that a search needs
+  const bool asks_reference =
+      !guide.trusted.failure.empty() ||
+      std::ranges::any_of(missed, [](const GuidedMethod* method) { return method->lack != Lack::time; });
+  double needed = 2 * guide.seconds;
+  if (asks_reference) needed = std::max(needed, guide.trusted.short_of_s / share_of_trust);
+  // The points of a curve take twice as long each time.
+  double longest = 0;
+  for (const GuidedMethod* method : missed) {
+    if (method->next) {
+      const double step = expected_step(guide, *method->integrator).value_or(method->next->dt_s);
+      const double halvings = std::max(0.0, std::ceil(std::log2(method->next->dt_s / step) - 1e-9));
+      longest = std::max(longest, method->next->seconds * std::exp2(halvings));
+    }
+    const StepLimit* limit = limit_of(guide, method->integrator);
+    if (limit != nullptr && limit->lack() == Lack::time)
+      needed = std::max(needed, steps_of_a_limit * limit->step_seconds *
+                                    static_cast<double>(guide.limits.size()) / share_of_limits);
+  }
+  double points = guide.seconds_on_points;
+  for (const GuidedMethod& method : guide.methods)
+    if (method.next)
+      for (double seconds = method.next->seconds; seconds <= longest; seconds *= 2) points += seconds;
+  return rounded_up(std::max(needed, points / share_of_points));
+}
+
+Recommendation recommend(const SceneGuide& guide) {
+  Recommendation chosen;
+  const std::vector<const GuidedMethod*> missed = missed_methods(guide);
+  const bool without_reference = !guide.trusted.failure.empty() && guide.trusted.short_of_s > 0;
+  if (!missed.empty() || without_reference) {
+    chosen.needed_s = needed_seconds(guide, missed);
+    chosen.sentences = {why_nothing(guide, *chosen.needed_s, missed)};
+    return chosen;
+  }
+  if (!guide.trusted.failure.empty()) return chosen;
+  if (guide.points.empty()) {
+    chosen.sentences = {"Nothing was measured: the remark of each method says why."};
+    return chosen;
+  }
+  const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
+  if (ranked.empty()) {
+    chosen.nearest = least(
+        guide.points, [](const WorkPoint&) { return true; }, error_of);
+    if (chosen.nearest) {
+      const WorkPoint& point = guide.points[*chosen.nearest];
+      chosen.sentences = {what_is_nearest(point, guide.wish), what_it_costs(point, guide)};
+    } else {
+      chosen.sentences = {
+          "Nothing that was measured can be recommended: no point is both stable and far enough from the "
+          "reference's error."};
+    }
+    return chosen;
+  }
+  const auto place = [&](const Ranked& one) {
+    return point_at_error(guide.points, *one.method, guide.wish.error);
+  };
+  const Ranked *winner = &ranked.front(), *second = second_of(ranked);
+  chosen.best = place(*winner);
+  if (second != nullptr) chosen.runner_up = place(*second);
+  const WorkPoint& best = guide.points[*chosen.best];
+  chosen.sentences = {what_to_take(guide, best, winner->cost), what_it_costs(best, guide),
+                      who_comes_second(guide, *winner, second,
+                                       chosen.runner_up ? &guide.points[*chosen.runner_up] : nullptr)};
   return chosen;
+}
+
+std::vector<std::string> what_was_measured(const SceneGuide& guide) {
+  std::vector<const GuidedMethod*> measured, late, unavailable, unstable, uncompared, late_at_error, others;
+  for (const GuidedMethod& method : guide.methods) {
+    const bool counts = !counting(guide.points, method).empty();
+    if (counts) measured.push_back(&method);
+    if (counts && cost_at_error(guide.points, method, guide.wish.error)) continue;
+    auto& group = counts                             ? method.lack == Lack::time ? late_at_error : others
+                  : method.lack == Lack::time        ? late
+                  : method.lack == Lack::backend     ? unavailable
+                  : method.lack == Lack::stable_step ? unstable
+                                                     : uncompared;
+    group.push_back(&method);
+  }
+  std::vector<std::string> sentences{
+      fmt::format("Measured: {} of {}.", measured.size(), pluralize(guide.methods.size(), "method"))};
+  const auto say = [&](std::string_view what, const std::vector<const GuidedMethod*>& methods) {
+    if (!methods.empty()) sentences.push_back(fmt::format("{}: {}.", what, names_of(methods)));
+  };
+  const std::string error = decimal(guide.wish.error);
+  say("Not measured, for lack of time", late);
+  say("Not measured, because the backend cannot run them here", unavailable);
+  say("Not measured, because no step that was tried is stable", unstable);
+  say("Not compared, because no point is both stable and far enough from the reference's error", uncompared);
+  say("Not measured down to an error of " + error + ", for lack of time", late_at_error);
+  say("Not within an error of " + error + " at any step that was tried", others);
+  return sentences;
 }
 
 SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
   GuideClock clock(request.seconds);
   SceneGuide guide;
   guide.scene = request.scene;
+  guide.seconds = request.seconds;
   guide.nodes = request.system->nodes();
   guide.springs = request.system->springs.size();
   guide.wish = request.wish;
@@ -398,38 +685,38 @@ SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
   if (guide.trusted.failure.empty()) {
     watch.progress("spectrum on the way", clock.fraction());
     guide.on_the_way = spectrum_at(*request.system, guide.trusted.state);
-  } else if (clock.spent() > request.seconds) {
+  }
+  if (guide.trusted.failure.empty() || clock.spent() <= request.seconds)
+    find_limits(guide, request, watch, clock);
+  if (!guide.trusted.failure.empty()) {
+    guide.stopped = watch.stop();
+    guide.recommendation = recommend(guide);
     return guide;
   }
-  find_limits(guide, request, watch, clock);
-  if (!guide.trusted.failure.empty()) return guide;
   measure_points(guide, request, watch, clock);
+  guide.stopped = watch.stop();
   mark_pareto_front(guide.points);
-  guide.recommendation = recommend(guide.points, request.wish, guide.trusted.horizon_s);
+  guide.recommendation = recommend(guide);
   if (request.make_cloth) measure_cloths(guide, request, watch, clock);
   return guide;
 }
 
 std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
                                          double error) {
-  std::optional<CostAtError> least;
-  const auto take = [&](double seconds, bool at_longest_step) {
-    if (!least || seconds < least->seconds_a_second) least = CostAtError{seconds, at_longest_step};
-  };
   const WorkPoint* coarser = nullptr;
   for (const WorkPoint* point : counting(points, method)) {
-    const double here = *point->position_error, cost = point->seconds_a_second();
-    if (here <= error) {
-      take(cost, coarser == nullptr);
-      if (coarser != nullptr && *coarser->position_error > error) {
-        const double share =
-            std::log(*coarser->position_error / error) / std::log(*coarser->position_error / here);
-        take(coarser->seconds_a_second() * std::pow(cost / coarser->seconds_a_second(), share), false);
-      }
+    if (error_of(*point) > error) {
+      coarser = point;
+      continue;
     }
-    coarser = point;
+    if (coarser == nullptr) return CostAtError{cost_of(*point), point->dt_s, true};
+    const double share =
+        std::log(error_of(*coarser) / error) / std::log(error_of(*coarser) / error_of(*point));
+    const auto between = [&](double from, double to) { return from * std::pow(to / from, share); };
+    return CostAtError{between(cost_of(*coarser), cost_of(*point)), between(coarser->dt_s, point->dt_s),
+                       false};
   }
-  return least;
+  return std::nullopt;
 }
 
 std::array<double, 4> errors_around(const Wish& wish) {

@@ -78,16 +78,15 @@ struct Wish {
 
 /// What to take, as places in the points that it was chosen from.
 struct Recommendation {
-  std::optional<std::size_t> best;  ///< the cheapest that is accurate enough
-  std::optional<std::size_t>
-      runner_up;  ///< the cheapest such one of another integrator, else of another backend
+  std::optional<std::size_t> best;  ///< of the cheapest method at the wished error: its point_at_error
+  /// That of the cheapest method with another integrator, else on another backend.
+  std::optional<std::size_t> runner_up;
   std::optional<std::size_t> nearest;  ///< the most accurate, where none is accurate enough
-  std::vector<std::string> sentences;  ///< three, each with its full stop
+  /// Wall time, s, with which the guide of the scene would have recommended something; none: it has the time
+  /// that it needs. With it, none of the above is set.
+  std::optional<double> needed_s;
+  std::vector<std::string> sentences;  ///< three, or one where nothing is recommended, with full stops
 };
-
-/// The cheapest of the points that count and whose error is within the wish; how it stands to real time; and
-/// when another one would be. `horizon_s`: when the errors were measured.
-Recommendation recommend(std::span<const WorkPoint> points, const Wish& wish, double horizon_s);
 
 /// What a scene's guide is asked for. All that it points to must outlive the guide.
 struct GuideRequest {
@@ -111,6 +110,9 @@ struct GuideWatch {
 /// Everything that was measured of a scene, and what follows.
 struct SceneGuide {
   std::string scene;
+  double seconds = 0;            ///< wall time that it was given
+  double seconds_on_points = 0;  ///< wall time that its points took
+  bool stopped = false;          ///< before it had all that it had time for
   std::uint64_t nodes = 0, springs = 0;
   Wish wish;
   Spectrum at_start, on_the_way;
@@ -123,22 +125,54 @@ struct SceneGuide {
 };
 
 /// Measures a scene, which is no garment: the trusted state, the largest stable steps, the work-precision
-/// curves from coarse to fine by turns, and the sizes of cloths. What the time does not suffice for is left
-/// out, and the method's status says so.
+/// curves from coarse to fine by turns, the longest steps of the two cheapest methods that keep the error,
+/// and the sizes of cloths. What the time does not suffice for is left out, and the method's status says so.
 SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch);
 
 /// What a method takes where its error may be this large.
 struct CostAtError {
   double seconds_a_second = 0;  ///< wall time of a simulated second
-  /// It is that of the coarsest point that counts, which is more accurate than asked: a longer step was not
-  /// stable, or not tried.
+  double dt_s = 0;              ///< the longest step
+  /// They are those of the coarsest point that counts, which is more accurate than asked: a longer step was
+  /// not stable, or not tried.
   bool at_longest_step = false;
 };
 
-/// Between two points of the curve the logarithm of the cost is taken as linear in that of the error; none
-/// where no point is accurate enough. Points that do not count are left out.
+/// Where the method's curve, from long steps to short ones, first comes to the error. Between two points the
+/// logarithms of the cost and of the step are taken as linear in that of the error; none where no point is
+/// accurate enough. Points that do not count are left out.
 std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
                                          double error);
+
+/// The place of the method's longest step that was measured, counts and keeps the error.
+std::optional<std::size_t> point_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
+                                          double error);
+
+/// In how many steps over the horizon the method should keep the wished error, where that is with a step
+/// that is longer than its point_at_error by more than step_resolution: as its curve says, or where that is
+/// accurate enough with the longest step, as long a step as is stable. None where no point keeps the error.
+std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& method);
+
+/// Explicit methods that could be the cheapest at the wished error, if there had been time for their curves
+/// to reach it. The step that such a method needs is taken from its integrator's finest point that counts, on
+/// any backend, and its order; it is no longer than the longest usable one. With it and the measured time per
+/// step the method is cheaper than all that were measured. Where no step or no time is known, it could be;
+/// where its integrator came to the end of a curve short of the error, on another backend, it could not.
+/// Implicit methods, whose steps have no cost that is known before, are missed where there are no such
+/// explicit ones and no point counts.
+std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide);
+
+/// Wall time, s, with which the curves of these methods would have reached the wished error, and those of the
+/// others with points that take no longer: rounded up to two digits, twice what there was at least.
+double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed);
+
+/// The cheapest method at the wished error, with the longest step that was measured and keeps it; how it
+/// stands to real time; and when the runner-up would be cheaper. Nothing where missed_methods() says so.
+Recommendation recommend(const SceneGuide& guide);
+
+/// How many methods were measured, and which were not, or not to the wished error, and why: sentences with
+/// their full stops.
+std::vector<std::string> what_was_measured(const SceneGuide& guide);
 
 /// Errors at which costs are shown, from large to small: the wished one and three around it.
 std::array<double, 4> errors_around(const Wish& wish);

@@ -13,6 +13,7 @@ namespace mssim {
 namespace {
 
 constexpr double worth_a_word = 1.1;
+constexpr std::size_t few_runs = 5;  // of which the fastest is taken
 
 std::string percent_more(double ratio) { return three_digits(100 * (ratio - 1)) + " %"; }
 
@@ -38,14 +39,6 @@ StepSearch search_for(const Integrator& integrator, const StepTheory& theory, co
   return search;
 }
 
-/// Wall time of a step.
-double step_seconds(Backend& backend, const System& system) {
-  constexpr int trial_steps = 5;
-  constexpr double enough_s = 0.01;
-  const double one = time_steps(backend, system, 1, enough_s / 10).seconds;
-  return one > enough_s ? one : time_steps(backend, system, trial_steps, enough_s).seconds;
-}
-
 /// Shortens runs to what there is time for: some eight of them find a limit. False if not even one run ends
 /// in it.
 bool fit(StepSearch& search, double seconds_a_step, double seconds) {
@@ -66,7 +59,7 @@ void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& r
   const auto backend = make(search.first_s);
   limit.backend = info.name;
   limit.first_seconds = watch.seconds();
-  limit.step_seconds = step_seconds(*backend, *request.system);
+  limit.step_seconds = seconds_of_step(*backend, *request.system);
   if (!fit(search, limit.step_seconds, request.seconds)) {
     limit.measured.finished = false;
     return;
@@ -198,7 +191,7 @@ std::string why_they_differ(const Integrator& integrator, const StableStep& meas
 }
 
 StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s) {
-  constexpr std::size_t few = 5, many = 100;
+  constexpr std::size_t many = 100;
   const auto run = [&](int count) {
     backend.set_state(system.start);
     const Stopwatch watch;
@@ -213,8 +206,19 @@ StepTime time_steps(Backend& backend, const System& system, int steps, double en
   do {
     seconds.push_back(run(steps));
     sum += seconds.back();
-  } while (seconds.size() < many && (sum < enough_s || (seconds.size() < few && sum < 10 * enough_s)));
+  } while (seconds.size() < many && (sum < enough_s || (seconds.size() < few_runs && sum < 10 * enough_s)));
   return {std::ranges::min(seconds) / steps, static_cast<int>(seconds.size())};
+}
+
+double seconds_of_runs(double run_s, double enough_s) {
+  return std::max(run_s, std::clamp(few_runs * run_s, enough_s, 10 * enough_s));
+}
+
+double seconds_of_step(Backend& backend, const System& system) {
+  constexpr int trial_steps = 5;
+  constexpr double enough_s = 0.01;
+  const double one = time_steps(backend, system, 1, enough_s / 10).seconds;
+  return one > enough_s ? one : time_steps(backend, system, trial_steps, enough_s).seconds;
 }
 
 StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& request) {

@@ -138,6 +138,18 @@ struct LateProgram {
   std::string status;
 };
 
+/// What a method lacks that has no point, or no more.
+enum class Lack {
+  nothing,      ///< all that there is to measure is
+  time,         ///< wall time
+  stable_step,  ///< no step that was tried is stable
+  backend       ///< the backend cannot run here, or not this, or fails
+};
+
+/// Steps are taken no longer than this share of the largest stable one, which was found to a fiftieth, by
+/// other runs than that over the horizon.
+inline constexpr double usable_share = 0.95;
+
 /// An integrator, and the limit of its step.
 struct StepLimit {
   const Integrator* integrator = nullptr;
@@ -150,6 +162,20 @@ struct StepLimit {
   std::string why;                ///< why the two differ, or nothing
   std::string status;             ///< why nothing was measured; empty where it was
   std::vector<LateProgram> late;  ///< that were tried
+
+  Lack lack() const {
+    if (!status.empty()) return Lack::backend;
+    if (measured.stable_s > 0) return Lack::nothing;
+    return measured.finished ? Lack::stable_step : Lack::time;
+  }
+  /// The longest step to take, s; 0: none is known to be stable.
+  double usable_s() const { return usable_share * measured.stable_s; }
+};
+
+/// A point of a method's curve that there was no time for.
+struct NextPoint {
+  double seconds = 0;  ///< wall time to measure it, about
+  double dt_s = 0;     ///< its step
 };
 
 /// An integrator on a backend.
@@ -158,6 +184,9 @@ struct GuidedMethod {
   const BackendInfo* backend = nullptr;
   std::string status;  ///< why there is no point, or why there are no more; empty: all there is to measure is
   std::vector<LateProgram> late = {};  ///< the backend's program, where it is
+  Lack lack = Lack::nothing;
+  double step_seconds = 0;  ///< wall time of a step of the shortest size that was timed; 0: none was
+  std::optional<NextPoint> next = {};
 };
 
 /// Is the point of the method?
@@ -195,6 +224,12 @@ struct StepTime {
 /// they have taken `enough_s` and are five, or have taken ten times that; one at least. Where the first run
 /// alone takes that long with all the steps, it is the only one. Only step() is timed.
 StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s);
+
+/// Wall time that time_steps takes, about, where a run takes `run_s`.
+double seconds_of_runs(double run_s, double enough_s);
+
+/// Wall time of a step, from a few.
+double seconds_of_step(Backend& backend, const System& system);
 
 /// What the limits of steps are looked for with.
 struct LimitRequest {

@@ -130,6 +130,8 @@ class HorizonWalk {
   std::string why_;
 };
 
+constexpr double enough_s = 0.03;  // for the runs of a point
+
 /// Wall seconds of a step of the double-precision rk4.
 double seconds_a_step(const System& system, double dt_s) {
   constexpr int steps = 3;
@@ -239,7 +241,12 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   const Stopwatch watch;
   const double step_seconds = seconds_a_step(system, request.first_dt_s);
   const double affordable_steps = request.seconds / runs / step_seconds;
+  const double all_steps = request.longest_s / request.first_dt_s;
+  // With fewer steps than looks a horizon is too short for errors to grow.
+  const double short_of_s =
+      runs * step_seconds * (affordable_steps < most_looks ? std::min(most_looks, all_steps) : all_steps);
   if (affordable_steps < 1) {
+    trusted.short_of_s = short_of_s;
     trusted.failure = fmt::format("no time is left for a reference, of which a step takes {} s",
                                   three_digits(step_seconds));
     return trusted;
@@ -260,9 +267,11 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   }
   trusted.horizon_s = walk.span_s();
   trusted.parting = walk.parting();
-  trusted.why_there = !walk.why().empty()             ? walk.why()
-                      : longest_s < request.longest_s ? "the time for a longer reference does not suffice"
-                                                      : "no longer horizon is asked for";
+  const bool is_cut = walk.why().empty() && longest_s < request.longest_s;
+  trusted.why_there = !walk.why().empty() ? walk.why()
+                      : is_cut            ? "the time for a longer reference does not suffice"
+                                          : "no longer horizon is asked for";
+  if (is_cut) trusted.short_of_s = short_of_s;
 
   const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
   const auto out_of_time = [&] { return request.stop() || watch.seconds() > 2 * request.seconds; };
@@ -282,6 +291,10 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
     coarse = trusted.state;
     if (watch.seconds() + 2 * run_watch.seconds() > request.seconds) break;
   } while (trusted.own_error > request.wanted_error && !request.stop());
+  if (trusted.own_error >
+      request.wanted_error)  // a halving takes twice the time and a sixteenth of the error
+    trusted.short_of_s = std::max(
+        trusted.short_of_s, 2 * watch.seconds() * std::pow(trusted.own_error / request.wanted_error, 0.25));
   trusted.dt_s = dt_s;
   trusted.energy = energy_of(system, trusted.state);
   if (const std::optional<State> found = other.get())
@@ -314,8 +327,7 @@ void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd>
 int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s) {
   const int fewest = std::max(1, static_cast<int>(std::ceil(horizon_s / longest_useful_step_s - 1e-9)));
   if (is_implicit(integrator) || limit.stable_s <= 0) return fewest;
-  // A twentieth below the limit: it was found to a fiftieth, by other runs than that over the horizon.
-  const int stable = std::max(1, static_cast<int>(std::ceil(horizon_s / (0.95 * limit.stable_s))));
+  const int stable = std::max(1, static_cast<int>(std::ceil(horizon_s / (usable_share * limit.stable_s))));
   return std::max(fewest, (stable + 1) / 2);
 }
 
@@ -328,21 +340,56 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
       wanted_error_(wanted_error),
       stable_s_(limit.measured.stable_s),
       steps_(first_steps(*method.integrator, limit.measured, trusted.horizon_s)),
-      next_seconds_(limit.first_seconds + steps_ * limit.step_seconds) {
+      setup_seconds_(limit.first_seconds) {
+  const bool is_explicit = !is_implicit(*method.integrator);
+  if (is_explicit && limit.backend == method.backend->name) method_.step_seconds = limit.step_seconds;
+  next_seconds_ = setup_seconds_ + seconds_of_runs(steps_ * limit.step_seconds, enough_s);
   if (!limit.status.empty())
-    end(limit.status);
-  else if (stable_s_ == 0 && !is_implicit(*method.integrator))
-    end(limit.measured.finished ? "no step that was tried is stable"
-                                : "no time was left to find a step that is stable");
-  else if (stable_s_ == 0)
+    end(Lack::backend, limit.status);
+  else if (stable_s_ == 0 && is_explicit)
+    end(limit.lack(), limit.measured.finished ? "no step that was tried is stable"
+                                              : "no time was left to find a step that is stable");
+  else if (stable_s_ == 0) {
+    method_.lack = limit.lack();
     method_.status = limit.measured.finished
                          ? "no step that was tried is stable beyond the horizon"
                          : "no time was left to find a step that is stable beyond the horizon";
+  }
 }
 
-void WorkCurve::end(std::string_view why) {
+void WorkCurve::end(Lack lack, std::string_view why) {
   has_next_ = false;
-  if (method_.status.empty()) method_.status = why;
+  if (!method_.status.empty()) return;
+  method_.status = why;
+  method_.lack = lack;
+}
+
+void WorkCurve::end_without_time() {
+  method_.next = NextPoint{next_seconds_, trusted_.horizon_s / steps_};
+  end(Lack::time, points_ == 0 ? "no time was left for any step"
+                  : counted_   ? "no time was left for smaller steps"
+                               : "no time was left for a step that is stable");
+}
+
+double WorkCurve::seconds_of(int steps) const {
+  return setup_seconds_ + seconds_of_runs(steps * method_.step_seconds, enough_s);
+}
+
+void WorkCurve::time_step() {
+  const auto run = [&] {
+    const Stopwatch watch;
+    const auto backend = make_backend(*method_.backend, system_, *method_.integrator,
+                                      trusted_.horizon_s / (2 * steps_), execution_);
+    setup_seconds_ = watch.seconds();
+    method_.step_seconds = seconds_of_step(*backend, system_);
+  };
+  if (succeeds(*method_.backend, method_.status, method_.late, run)) {
+    next_seconds_ = seconds_of(steps_);
+    if (method_.next) method_.next->seconds = next_seconds_;
+  } else {
+    has_next_ = false;
+    method_.lack = Lack::backend;
+  }
 }
 
 bool WorkCurve::goes_on_after(const WorkPoint& point) {
@@ -353,40 +400,51 @@ bool WorkCurve::goes_on_after(const WorkPoint& point) {
   if (*point.position_error <= wanted_error_ / 4) return false;
   if (last_error_ && *point.position_error >= 0.9 * *last_error_ &&
       *point.position_error < largest_rounding) {
-    end("smaller steps are no more accurate: single precision rounds");
+    end(Lack::nothing, "smaller steps are no more accurate: single precision rounds");
     return false;
   }
   return true;
 }
 
-std::optional<MeasuredPoint> WorkCurve::next() {
-  constexpr double enough_s = 0.03;
-  const Stopwatch watch;
+std::optional<MeasuredPoint> WorkCurve::measure(int steps) {
   WorkPoint point;
   point.integrator = method_.integrator;
   point.backend = method_.backend->name;
-  point.steps = steps_;
-  point.dt_s = trusted_.horizon_s / steps_;
-  has_next_ = false;
+  point.steps = steps;
+  point.dt_s = trusted_.horizon_s / steps;
   State state;
-  const auto measure = [&] {
+  const auto run = [&] {
     const auto backend = make_backend(*method_.backend, system_, *method_.integrator, point.dt_s, execution_);
-    const StepTime time = time_steps(*backend, system_, steps_, enough_s);
+    const StepTime time = time_steps(*backend, system_, steps, enough_s);
     point.seconds_a_step = time.seconds;
     point.samples = time.runs;
     state = backend->state();
     point.note = backend->note();
   };
-  if (!succeeds(*method_.backend, method_.status, method_.late, measure)) return std::nullopt;
+  if (!succeeds(*method_.backend, method_.status, method_.late, run)) {
+    method_.lack = Lack::backend;
+    return std::nullopt;
+  }
+  method_.step_seconds = point.seconds_a_step;
   point.evaluations = evaluations_of(*method_.integrator, system_);
   take_state(point, system_, trusted_, state);
   point.within_limit = point.dt_s <= stable_s_ * (1 + 1e-9);
+  return MeasuredPoint{std::move(point), std::move(state)};
+}
+
+std::optional<MeasuredPoint> WorkCurve::next() {
+  const Stopwatch watch;
+  has_next_ = false;
+  auto measured = measure(steps_);
+  if (!measured) return std::nullopt;
+  const WorkPoint& point = measured->point;
   ++points_;
+  counted_ = counted_ || point.counts();
   has_next_ = goes_on_after(point);
   last_error_ = point.counts() ? point.position_error : std::nullopt;
   next_seconds_ = 2 * watch.seconds();
   steps_ *= 2;
-  return MeasuredPoint{std::move(point), std::move(state)};
+  return measured;
 }
 
 }  // namespace mssim

@@ -50,7 +50,9 @@ struct TrustedState {
   double own_error = 0;  ///< in mean rest lengths, from the last halving
   std::optional<double>
       confirmed;        ///< largest distance from what the independent solver found; none: no time
-  std::string failure;  ///< why there is none; then all else is empty
+  std::string failure;  ///< why there is none; then all else but short_of_s is empty
+  /// Wall seconds that a longer or better reference would have taken, where there was no time for it.
+  double short_of_s = 0;
 
   /// The larger of the two, which errors that are shown exceed trusted_margin times.
   double error() const { return confirmed && *confirmed > own_error ? *confirmed : own_error; }
@@ -95,14 +97,25 @@ class WorkCurve {
   WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit, GuidedMethod& method,
             const ExecutionOptions& execution, double wanted_error);
 
-  /// Wall seconds that the next point takes, about: the first as if it ran on the backend of the limit.
+  /// Wall seconds that the next point takes, about: the first of an implicit method, and of one whose step
+  /// was not timed, as if it ran on the backend of the limit.
   double next_seconds() const { return next_seconds_; }
   bool has_next() const { return has_next_; }
   /// Takes no more points, for this reason.
-  void end(std::string_view why);
+  void end(Lack lack, std::string_view why);
+  /// Takes no more points, because there is no time for the next one.
+  void end_without_time();
+  /// Whether the next point takes what a step on this backend says.
+  bool is_timed() const { return method_.step_seconds > 0; }
+  /// Times a step of an explicit method. Where the backend does not run, or fails, the curve ends.
+  void time_step();
   /// Measures the next point, with half the step of the one before. None where the backend does not run, or
   /// fails; method.status says why.
   std::optional<MeasuredPoint> next();
+  /// Measures the point of so many steps over the horizon, beside the others. None as above.
+  std::optional<MeasuredPoint> measure(int steps);
+  /// Wall seconds that measure() takes, about, once the step is timed.
+  double seconds_of(int steps) const;
 
  private:
   /// Says in the method's status why not, where that is not for the points that there are.
@@ -115,8 +128,8 @@ class WorkCurve {
   double wanted_error_, stable_s_;
   int steps_;
   int points_ = 0;
-  bool has_next_ = true;
-  double next_seconds_;
+  bool has_next_ = true, counted_ = false;
+  double setup_seconds_, next_seconds_ = 0;
   std::optional<double> last_error_;
 };
 

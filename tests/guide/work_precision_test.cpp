@@ -73,6 +73,62 @@ TEST(WorkCurve, CountsErrorsOfFiftyTimesTheTrustedStatesOrMore) {
 
 TEST(WorkCurve, HasNothingWhereNoStepIsStable) { EXPECT_TRUE(curve_of("explicit-euler", 0, 1e-3).empty()); }
 
+TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
+  const System system = cloth_system(8, 8);
+  const TrustedState trusted =
+      trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-9});
+  StepLimit limit;
+  limit.integrator = find_integrator("semi-euler");
+  limit.measured = {.stable_s = 2.2e-4, .unstable_s = 2.21e-4};
+  std::vector<std::string> statuses;
+  for (const int points : {0, 1, 2}) {  // none, one that diverges, and one that counts
+    GuidedMethod method{limit.integrator, find_backend("serial"), {}};
+    WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-6);
+    int steps = first_steps(*limit.integrator, limit.measured, trusted.horizon_s);
+    for (int taken = 0; taken < points; ++taken, steps *= 2) curve.next();
+    curve.end_without_time();
+    EXPECT_FALSE(curve.has_next());
+    EXPECT_EQ(method.lack, Lack::time);
+    ASSERT_TRUE(method.next);
+    EXPECT_DOUBLE_EQ(method.next->dt_s, trusted.horizon_s / steps);
+    EXPECT_GT(method.next->seconds, 0);
+    statuses.push_back(method.status);
+  }
+  for (const std::size_t without_any : {0U, 1U})
+    EXPECT_THAT(statuses[without_any], testing::Not(testing::HasSubstr("smaller")));
+  EXPECT_THAT(statuses[2], testing::HasSubstr("smaller"));
+  EXPECT_NE(statuses[0], statuses[1]);
+}
+
+TEST(WorkCurve, TimesAStepOnABackendThatIsNotTheLimits) {
+  const System system = cloth_system(8, 8);
+  const TrustedState trusted =
+      trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-9});
+  StepLimit limit;
+  limit.integrator = find_integrator("rk4");
+  limit.backend = "openmp";
+  limit.step_seconds = 10;
+  limit.measured = {.stable_s = 2.2e-4, .unstable_s = 2.21e-4};
+  GuidedMethod method{limit.integrator, find_backend("openmp"), {}};
+  EXPECT_TRUE(WorkCurve(system, trusted, limit, method, {.threads = 1}, 1e-3).is_timed());
+  EXPECT_EQ(method.step_seconds, 10);
+  method = {limit.integrator, find_backend("serial"), {}};
+  WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-3);
+  EXPECT_FALSE(curve.is_timed());
+  EXPECT_GT(curve.next_seconds(), 100) << "as on openmp";
+  curve.time_step();
+  EXPECT_TRUE(curve.is_timed());
+  EXPECT_GT(method.step_seconds, 0);
+  EXPECT_LT(curve.next_seconds(), 100);
+}
+
+TEST(TimedRuns, TakeWhatTheirNumberAndLengthSay) {
+  EXPECT_DOUBLE_EQ(seconds_of_runs(0.001, 0.03), 0.03);  // thirty runs
+  EXPECT_DOUBLE_EQ(seconds_of_runs(0.02, 0.03), 0.1);    // five
+  EXPECT_DOUBLE_EQ(seconds_of_runs(0.2, 0.03), 0.3);     // two
+  EXPECT_DOUBLE_EQ(seconds_of_runs(2, 0.03), 2);         // one
+}
+
 TEST(WorkCurve, CountsNoStepBeyondTheLargestStableOne) {
   const double limit = 0.003;
   const std::vector<WorkPoint> points = curve_of("implicit-euler", limit, 1e-3);
@@ -139,6 +195,7 @@ TEST(TrustedState, IsConfirmedByAnotherSolver) {
   ASSERT_EQ(trusted.failure, "");
   EXPECT_NEAR(trusted.horizon_s, 0.02, 1e-9);
   EXPECT_LE(trusted.own_error, 1e-7);
+  EXPECT_EQ(trusted.short_of_s, 0);
   ASSERT_TRUE(trusted.confirmed);
   EXPECT_LE(*trusted.confirmed, 2e-7);
   EXPECT_LT(trusted.dt_s, 1e-4);
@@ -163,6 +220,7 @@ TEST(TrustedState, IsNotBegunWithoutTimeForAStep) {
   const TrustedState trusted =
       trusted_state(cloth_system(9, 9), {.longest_s = 0.02, .first_dt_s = 1e-4, .seconds = 1e-9});
   EXPECT_THAT(trusted.failure, testing::HasSubstr("no time"));
+  EXPECT_GT(trusted.short_of_s, 1e-9);
 }
 
 TEST(TrustedState, EndsItsHorizonWhereNeighboursPart) {

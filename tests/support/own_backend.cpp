@@ -308,7 +308,10 @@ void serve(const std::string& mistake) {
       words >> count;
       if (mistakes.at_step()) continue;
       if (mistakes.is("lazy")) count = std::min(count, 105);
-      for (int i = 0; i < count && !mistakes.is("idle"); ++i) simulation.step();
+      for (int i = 0; i < count && !mistakes.is("idle"); ++i) {
+        if (mistakes.is("slow")) ::usleep(30'000);
+        simulation.step();
+      }
     }
     if (word == "costs")
       for (int times = mistakes.is("many-costs") ? 101 : 1; times > 0; --times)

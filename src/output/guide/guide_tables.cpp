@@ -65,7 +65,8 @@ Cell worded(const std::string& text) { return text.empty() ? Cell() : Cell(text)
 Table cloths_at_rates(const SceneGuide& guide) {
   Table table;
   table.columns = {{"integrator"}, {"backend"}, {"dt_s", Align::right}, {"keeps_error"}};
-  for (const double rate : frame_rates) table.columns.push_back({decimal(rate) + " a second", Align::right});
+  for (const double rate : frame_rates)
+    table.columns.push_back({decimal(rate) + " per second", Align::right});
   table.columns.push_back({"remark"});
   for (const SizeCurve& curve : guide.sizes) {
     if (curve.samples.empty()) continue;  // the summary says why
@@ -88,10 +89,9 @@ Table cloths_at_rates(const SceneGuide& guide) {
 void add_cloths(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
   add_table(
       page, "Largest cloths of the family",
-      "In nodes, as squares with springs, masses and spacing of this scene, at frames a second; the step is "
-      "that of the cheapest point above that keeps the error, or where none does of the cheapest stable one. "
-      "Between two sizes that were measured the logarithm of the time is taken as linear in that of the "
-      "nodes.",
+      "In nodes, as squares with springs, masses and spacing of this scene, at frames per second. The step "
+      "is the longest above that keeps the error, or, if none does, that of the cheapest stable point. "
+      "Between two measured sizes the logarithm of the time is taken as linear in that of the nodes.",
       cloths_at_rates(guide));
   Table crossovers = of_scene(table_named(tables, "guide-crossovers"), guide.scene);
   std::erase_if(crossovers.rows, [](const std::vector<Cell>& row) {
@@ -153,22 +153,28 @@ Table costs_at_errors(const SceneGuide& guide) {
 void add_costs(Document& page, const SceneGuide& guide) {
   add_table(
       page, "At equal error",
-      "Seconds that a simulated second takes where the error may be as large as the column says, by a line "
-      "through the logarithms of two points. ‡: the longest step that was stable is more accurate than that.",
+      "Seconds that a simulated second takes if the error may be as large as the column says, by a line "
+      "through the logarithms of two points. ‡: the longest stable step is more accurate than that.",
       costs_at_errors(guide));
   const std::vector<std::string> sentences = beside_the_paper(guide);
   if (sentences.empty()) return;
-  page.emplace_back(Paragraph{"Beside milliseconds a step, which Hong et al. compare:"});
+  page.emplace_back(Paragraph{"Beside milliseconds per step, which Hong et al. compare:"});
   for (const std::string& sentence : sentences) page.emplace_back(Paragraph{sentence});
+}
+
+/// The recommendation, or why there is none.
+void add_advice(Document& page, const SceneGuide& guide) {
+  if (!guide.trusted.failure.empty()) add_sentence(page, "No errors were measured: " + guide.trusted.failure);
+  if (const auto& sentences = guide.recommendation.sentences; !sentences.empty())
+    page.emplace_back(Paragraph{join(sentences, " ")});
 }
 
 void add_scene(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
   page.emplace_back(Heading{
       2, guide.scene + ": " + pluralize(guide.nodes, "node") + ", " + pluralize(guide.springs, "spring")});
-  if (!guide.trusted.failure.empty()) {
-    add_sentence(page, "No errors were measured: " + guide.trusted.failure);
-  } else {
-    page.emplace_back(Paragraph{join(guide.recommendation.sentences, " ")});
+  add_advice(page, guide);
+  if (guide.trusted.failure.empty()) {
+    page.emplace_back(Paragraph{join(what_was_measured(guide), " ")});
     Table summary = guide_summary(guide);
     show_small_numbers(summary);
     page.emplace_back(std::move(summary));
@@ -198,6 +204,11 @@ std::string_view state_of(const WorkPoint& point) {
   return point.beyond_trust ? "within the reference's error" : "ok";
 }
 
+bool is_recommended(const SceneGuide& guide, const WorkPoint& point) {
+  const auto& best = guide.recommendation.best;
+  return best && &point == &guide.points[*best];
+}
+
 /// A point of the method, or where it has none (null) why.
 void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method, const WorkPoint* point) {
   const auto of_point = [&](const auto& value) { return point ? Cell(std::invoke(value, *point)) : Cell(); };
@@ -222,7 +233,8 @@ void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method
              {"diverged", of_point(&WorkPoint::diverged)},
              {"on_front", of_point(&WorkPoint::on_front)},
              {"status", point ? Cell(state_of(*point)) : Cell(method.status)},
-             {"note", of_point(&WorkPoint::note)}});
+             {"note", of_point(&WorkPoint::note)},
+             {"recommended", point ? Cell(is_recommended(guide, *point)) : Cell()}});
 }
 
 Table points_table(std::span<const SceneGuide> guides) {
@@ -272,7 +284,8 @@ Table errors_table(std::span<const SceneGuide> guides) {
                      {"backend", method.backend->name},
                      {"position_error", error},
                      {"wall_s_per_s", cost->seconds_a_second},
-                     {"at_longest_step", cost->at_longest_step}});
+                     {"at_longest_step", cost->at_longest_step},
+                     {"dt_s", cost->dt_s}});
   return table;
 }
 
@@ -328,17 +341,15 @@ Table crossovers_table(std::span<const SceneGuide> guides) {
   return table;
 }
 
-/// The cheapest point that keeps the error, else the most accurate one; null where none counts.
+/// The longest step that keeps the error, else the most accurate point; null where none counts.
 const WorkPoint* point_to_show(const SceneGuide& guide, const GuidedMethod& method) {
-  const WorkPoint *cheapest = nullptr, *nearest = nullptr;
-  for (const WorkPoint& point : guide.points) {
-    if (!is_of(point, method) || !point.counts()) continue;
-    if (*point.position_error <= guide.wish.error &&
-        (cheapest == nullptr || point.seconds_a_second() < cheapest->seconds_a_second()))
-      cheapest = &point;
-    if (nearest == nullptr || *point.position_error < *nearest->position_error) nearest = &point;
-  }
-  return cheapest ? cheapest : nearest;
+  if (const auto place = point_at_error(guide.points, method, guide.wish.error)) return &guide.points[*place];
+  const WorkPoint* nearest = nullptr;
+  for (const WorkPoint& point : guide.points)
+    if (is_of(point, method) && point.counts() &&
+        (nearest == nullptr || *point.position_error < *nearest->position_error))
+      nearest = &point;
+  return nearest;
 }
 
 /// Scene by scene: the recommendation, the methods, the trusted state, the front, the largest stable steps
@@ -347,9 +358,11 @@ Document guide_page(std::span<const SceneGuide> guides, const std::vector<Result
                     const Provenance& provenance) {
   Document page{
       Heading{1, "Which integrator, which backend, which step"}, measured_on({}, provenance),
-      Paragraph{"*wall_s_per_s* is what a simulated second takes. *position_error* is the largest distance "
-                "of a node from where it should be, in mean rest lengths, and *energy_error* that of the "
-                "total energy over what is kinetic and elastic. How each number is found: docs/guide.md."}};
+      Paragraph{
+          "*wall_s_per_s* is what a simulated second takes at the measured step, and *at_error_s_per_s* "
+          "what it takes at the wished error. *position_error* is the largest distance "
+          "of a node from where it should be, in mean rest lengths, and *energy_error* that of the "
+          "total energy over what is kinetic and elastic. How each number is found: docs/guide.md."}};
   for (const SceneGuide& guide : guides) add_scene(page, guide, tables);
   return page;
 }
@@ -381,25 +394,29 @@ Table guide_summary(const SceneGuide& guide) {
   };
   std::vector<Line> lines;
   for (const GuidedMethod& method : guide.methods) lines.push_back({&method, point_to_show(guide, method)});
-  // Those that keep the error by their cost, then the others by their error.
+  const auto cost_of = [&](const Line& line) {
+    return cost_at_error(guide.points, *line.method, guide.wish.error);
+  };
+  // Those that keep the error by their cost there, then the others by their error.
   std::ranges::stable_sort(lines, {}, [&](const Line& line) {
     if (line.point == nullptr) return std::pair(2, 0.0);
-    return *line.point->position_error <= guide.wish.error ? std::pair(0, line.point->seconds_a_second())
-                                                           : std::pair(1, *line.point->position_error);
+    const auto cost = cost_of(line);
+    return cost ? std::pair(0, cost->seconds_a_second) : std::pair(1, *line.point->position_error);
   });
   Table table;
   for (const Line& line : lines) {
     const auto limit = std::ranges::find(guide.limits, line.method->integrator, &StepLimit::integrator);
     const WorkPoint* point = line.point;
     const double rate = guide.wish.frames_per_second;
-    std::string_view accurate;
-    if (point != nullptr) accurate = *point->position_error <= guide.wish.error ? "yes" : "no";
+    const auto cost = cost_of(line);
+    const std::string_view accurate = cost ? "yes" : "no";
     table.add({{"integrator", line.method->integrator->name},
                {"backend", line.method->backend->name},
                {"stable_dt_s", found(limit->measured.stable_s)},
                {"dt_s", point ? Cell(point->dt_s) : Cell()},
                {"steps_per_frame", point ? Cell(steps_a_frame(point->dt_s, rate)) : Cell()},
                {"wall_s_per_s", point ? Cell(point->seconds_a_second()) : Cell()},
+               {"at_error_s_per_s", cost ? Cell(cost->seconds_a_second) : Cell()},
                {"position_error", point ? Cell(point->position_error) : Cell()},
                {"energy_error", point ? Cell(point->energy_error) : Cell()},
                {"accurate", point ? Cell(accurate) : Cell()},

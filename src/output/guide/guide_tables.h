@@ -8,8 +8,8 @@
 
 namespace mssim {
 
-/// For the terminal: of every method the cheapest step that keeps the wished error, or else the most accurate
-/// one; the cheapest methods first. A method without points has its reason.
+/// For the terminal: of every method the longest step that keeps the wished error, or else the most accurate
+/// one, and its cost at that error; the cheapest methods first. A method without points has its reason.
 Table guide_summary(const SceneGuide& guide);
 
 /// The tables of a guide's folder. "guide" has all points and the page; these have no page of their own:
