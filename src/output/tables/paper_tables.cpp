@@ -86,11 +86,9 @@ constexpr std::string_view how_to_read_paper_table =
     "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are the "
     "paper's numbers, from its authors' mobile device, compared with its *CPU only*; **measured** lines are "
     "ours, medians, compared with `serial`. Springs are counted as in the paper: ";
-constexpr std::string_view why_frozen =
-    "The published midpoint and Runge-Kutta steps cost hardly more than an Euler step. *Inferred from those "
-    "times, not stated in the paper:* they evaluated the forces once and reused them in the trial steps. "
-    "`semi-euler`, `midpoint` and `rk4` evaluate the forces anew in every stage; `midpoint-frozen` and "
-    "`rk4-frozen`";
+constexpr std::string_view which_methods =
+    "`semi-euler`, `midpoint` and `rk4` are the textbook methods that Eqs. (2) to (4) of the paper name, and "
+    "evaluate the forces anew in every stage; `midpoint-frozen` and `rk4-frozen`";
 
 /// A time, and how many times as fast as one thread that is.
 struct Timing {
@@ -158,8 +156,8 @@ class PaperTable {
                   measured_on(rows_, provenance_),
                   Paragraph{std::string(how_to_read_paper_table).append(published_.info().springs_counted) +
                             " the unique ones, by inference from its numbers."},
-                  Paragraph{std::string(why_frozen) + (has_frozen() ? "" : " (`--integrator all`)") +
-                            " hold them, as the paper seems to."}};
+                  Paragraph{std::string(which_methods) + (has_frozen() ? "" : " (`--integrator all`)") +
+                            ", which the paper does not have, evaluate them once a step."}};
     for (const auto& integrator : legend_.integrators) {
       if (!has(integrator.name)) continue;
       const std::string evaluations = pluralize(integrator.force_evaluations, "force evaluation");
