@@ -91,7 +91,9 @@ std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integ
   return std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, most));
 }
 
-/// A state that the last-level cache holds (the half of it that one may count on) is best left there: more
+/// The model: with T steps per pass, a step takes c + m / T per node, where c is the time of arithmetic and
+/// caches, and m that of memory, which grows with the cores that share its bandwidth. scripts/steps-a-pass
+/// measures both. A state that the last-level cache holds (half of it can be counted on) has no m: more
 /// columns under way than the first-level cache holds cost 4 to 12 % at 350,000 nodes. From memory, as many
 /// as there is room for among the stages under way: semi-euler was 1.9 times as fast with four at a million
 /// nodes and 1.8 times with columns of 4,000 rows. Ghost columns must stay a small share.
