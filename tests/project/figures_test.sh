@@ -122,6 +122,7 @@ pages = {"README.md": [], "docs/papers.md": []}
 readme, papers = pages["README.md"], pages["docs/papers.md"]
 chart = "results/table1/granite-rapids"
 sizes = [int(row["nodes"]) for row in rows(f"{chart}/timings.csv")]
+readme.append(f"The chart is Table {os.path.dirname(chart)[-1]} of Hong et al.")
 readme.append(f"on cloths of {min(sizes):,} to {max(sizes):,} nodes: published")
 readme.append(f"It was measured on {cpus(chart)} logical CPUs of an Intel Xeon (Granite Rapids), {when(chart)}")
 for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies of {:,} nodes", "jeans4k": "jeans of {:,} nodes, draped"}.items():
