@@ -1,6 +1,6 @@
 #!/bin/bash
 # Every relative link of every Markdown file, and every picture in its HTML, leads to a file or folder of the repository, and an
-# anchor to a heading of its file; README.md stays a page to start from. Arguments: mssim (unused), the source folder.
+# anchor to a heading of its file; README.md stays a page to start from, in short sentences. Arguments: mssim (unused), the source folder.
 set -euo pipefail
 cd -- "$2"
 
@@ -34,6 +34,18 @@ done
 
 lines=$(wc -l <README.md)
 ((lines <= most_readme_lines)) || complain "README.md has $lines lines; move what is over $most_readme_lines into docs/"
+# sentences PAGE: those of its paragraphs and lists, one a line, without code blocks, tables and the targets of links.
+sentences() {
+  awk '/^(    |[|<#]|$)/ { print ""; next } /^ *- / { print "" } { printf "%s ", $0 }' "$1" |
+    sed -E 's/\]\([^)]*\)/]/g; s/[.:;?!]\**\)? +/&\n/g'
+}
+most_words=30
+for page in README.md docs/papers.md; do
+  while IFS= read -r sentence; do
+    words=$(wc -w <<<"$sentence")
+    ((words <= most_words)) || complain "$page: $words words, of at most $most_words: $sentence"
+  done < <(sentences "$page")
+done
 for page in docs/*.md; do
   grep -qF "]($page)" README.md || complain "README.md does not name $page"
 done

@@ -16,7 +16,7 @@ for folder in "$2"/results/*/; do
   grep -qF "]($name" "$2/results/README.md" || fail "results/README.md does not name $name"
 done
 
-cp -r "$2/scripts" "$2/results" "$2/scenes" "$2/docs" "$place"
+cp -r "$2/README.md" "$2/scripts" "$2/results" "$2/scenes" "$2/docs" "$place"
 # differs PAGE WHAT: --check says that PAGE differs.
 differs() {
   local status=0

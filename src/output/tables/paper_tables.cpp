@@ -86,19 +86,15 @@ constexpr std::string_view how_to_read_paper_table =
     "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are the "
     "paper's numbers (2016), from the CPU and the mobile GPU of a Nexus 7 tablet; its Figure 5 shows ten "
     "threads. They are compared with its *CPU only*. **Measured** lines are ours, medians from the processor "
-    "and "
-    "devices named above, compared with `serial`. ";
+    "and devices named above, compared with `serial`. ";
 constexpr std::string_view how_springs_count = "Springs are counted as in the paper: ";
-/// Where there are rows of it.
+/// For tables with such rows.
 constexpr std::string_view how_to_read_each =
     "Lines with `:each` step one body after the other, as the paper does; all others step all bodies "
-    "together, "
-    "its further work. ";
-constexpr std::string_view why_frozen =
-    "The published midpoint and Runge-Kutta steps cost hardly more than an Euler step. *Inferred from those "
-    "times, not stated in the paper:* they evaluated the forces once and reused them in the trial steps. "
-    "`semi-euler`, `midpoint` and `rk4` evaluate the forces anew in every stage; `midpoint-frozen` and "
-    "`rk4-frozen`";
+    "together, its further work. ";
+constexpr std::string_view which_methods =
+    "`semi-euler`, `midpoint` and `rk4` are the textbook methods that Eqs. (2) to (4) of the paper name, and "
+    "evaluate the forces again in every stage; `midpoint-frozen` and `rk4-frozen`";
 
 /// A time, and its speed-up over one thread.
 struct Timing {
@@ -167,8 +163,8 @@ class PaperTable {
                   Paragraph{fmt::format("{}{}{}{} the unique ones, by inference from its numbers.",
                                         how_to_read_paper_table, has_each() ? how_to_read_each : "",
                                         how_springs_count, published_.info().springs_counted)},
-                  Paragraph{std::string(why_frozen) + (has_frozen() ? "" : " (`--integrator all`)") +
-                            " hold them, as the paper seems to."}};
+                  Paragraph{std::string(which_methods) + (has_frozen() ? "" : " (`--integrator all`)") +
+                            ", which the paper does not have, evaluate them once per step."}};
     for (const auto& integrator : legend_.integrators) {
       if (!has(integrator.name)) continue;
       const std::string evaluations = pluralize(integrator.force_evaluations, "force evaluation");

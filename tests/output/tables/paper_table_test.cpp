@@ -88,7 +88,7 @@ TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
                               "| `hybrid` on Some device, **measured** | **0.0500** (2.00×) | – |\n"));
   EXPECT_THAT(text,
               HasSubstr("- `opencl`, `semi-euler`: failed: step 3 \\| node 7 is not finite (`cloth2500`)\n"));
-  EXPECT_THAT(text, HasSubstr("Inferred from those times, not stated in the paper"));
+  EXPECT_THAT(text, HasSubstr("`rk4-frozen` (`--integrator all`), which the paper does not have"));
   EXPECT_THAT(text, Not(HasSubstr("my-own")));
 }
 

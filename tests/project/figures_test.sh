@@ -1,0 +1,268 @@
+#!/bin/bash
+# Every figure of README.md and docs/papers.md follows from what is committed in results/: the sentences and tables that it computes must
+# stand there, and no other number may, but those of `allowed`. It prints what should stand there. Arguments: mssim, the source folder.
+set -euo pipefail
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd -- "$2"
+trap 'cat "$work/err" >&2' ERR
+"$1" report results/table1 results/table3 --no-runs --out "$work/report.html" 2>"$work/err"
+for suite in table1 table3; do "$1" bench --suite "$suite" --threads 2 --dry-run >"$work/$suite" 2>"$work/err"; done
+trap - ERR
+
+/usr/bin/python3 - "$work" <<'PYTHON'
+import csv, glob, json, math, os, re, sys
+
+work = sys.argv[1]
+failures = []
+
+
+def rows(file):
+    with open(file, newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+def digits(x):
+    """Three significant digits, as mssim shows times and ratios."""
+    return f"{x:.{max(0, 2 - math.floor(math.log10(abs(x))))}f}"
+
+
+def span(values):
+    return f"{digits(min(values))} to {digits(max(values))}"
+
+
+# A folder's name, and the processor that it was measured on. The provenance of some says less.
+machines = {"zen4": "Zen 4", "zen5": "Zen 5", "granite-rapids": "Granite Rapids", "emerald-rapids-h100": "Emerald Rapids, H100"}
+gpu = "emerald-rapids-h100"
+for folder in glob.glob("results/table[13]/*/"):
+    if not os.path.basename(folder[:-1]).startswith(tuple(machines)):
+        failures.append(f"{folder} is of a machine that no page names")
+
+
+def provenance(folder):
+    with open(f"{folder}/provenance.json") as file:
+        return json.load(file)
+
+
+def cpus(folder):
+    return provenance(folder)["cpu"]["logical_cpus"]
+
+
+def when(folder):
+    found = provenance(folder)
+    assert not found["build"]["dirty"], f"{folder} is of no commit"
+    return f"commit {found['build']['commit'][:7]}, {found['started_utc'][:10]}"
+
+
+# What mssim report says of the claims, by folder.
+with open(f"{work}/report.html") as file:
+    data = json.loads(re.search(r'id="mssim-data"[^>]*>(.*?)</script>', file.read(), re.DOTALL).group(1))
+judged = {folder["name"]: {claim["name"]: claim for claim in folder["claims"]} for folder in data["folders"]}
+with open("results/published/claims.json") as file:
+    claims = json.load(file)["claims"]
+testable = [claim for claim in claims if "test" in claim]
+
+
+def outcome(claim, folder):
+    found = judged[f"results/{claim['test']['scenes']}/{folder}"].get(claim["name"])
+    return found if found and found["outcome"] != "not testable here" else None
+
+
+def held(machine):
+    outcomes = [found["outcome"] for found in (outcome(claim, machine) for claim in testable) if found]
+    return f"{outcomes.count('held')} of {len(outcomes)}"
+
+
+def interval(found):
+    """The measured ratios, or the mean where it is what counts."""
+    return re.search(r"geometric mean ([\d.]+)×", found["measured"]) or re.match(r"([\d.]+)×(?: to ([\d.]+)×)?", found["measured"])
+
+
+def shown(match):
+    mean = "mean " if "mean" in match.group(0) else ""
+    return mean + " to ".join(f"{x}×" for x in match.groups() if x)
+
+
+def cell(claim, machine):
+    found = outcome(claim, machine)
+    if not found:
+        return "–"
+    text = f"{found['outcome']}: {shown(interval(found))}"
+    for folder in sorted(glob.glob(f"results/{claim['test']['scenes']}/{machine}-*/")):
+        other = outcome(claim, os.path.basename(folder[:-1]))
+        if other and other["outcome"] != found["outcome"]:
+            text += f" ({os.path.basename(folder[:-1])[len(machine) + 1:].replace('-', ' ')}: {other['outcome']})"
+    return text
+
+
+def speedups(table, machine, backend):
+    return [float(row["speedup_vs_serial"]) for row in rows(f"results/{table}/{machine}/timings.csv") if row["backend"] == backend]
+
+
+def table(*lines):
+    return "".join("| " + " | ".join(line) + " |\n" if isinstance(line, list) else line + "\n" for line in lines)
+
+
+def times(values):
+    return f"{digits(min(values))}× to {digits(max(values))}×"
+
+
+# The numbers that are no figures, and what they are.
+allowed = {
+    "Tables 2 and 3": "of a paper", "Table 1": "of a paper", "Table 2": "of a paper", "Table 3": "of a paper", "Figure 5": "of a paper",
+    "Figure 6": "of a paper", "Eqs. (2) to (4)": "of a paper", "(2016)": "its year", "6:23": "its volume and article",
+    "2016-11-28": "its day", "SAT-1.405B-1-MIP-05": "its name", "10 parallel threads": "what it says", "4th-order": "a method",
+    "Nexus 7": "a device", "Debian 12 or 13": "systems",
+    "12 neighbours": "in the grid of a cloth", "a factor of 2": "as many threads as CPUs",
+    "on 2 cores": "where CONTRIBUTING.md says what a build takes", "with 2 threads and all backends": "how the dry run is called above",
+}
+
+# README.md
+pages = {"README.md": [], "docs/papers.md": []}
+readme, papers = pages["README.md"], pages["docs/papers.md"]
+chart = "results/table1/granite-rapids"
+sizes = [int(row["nodes"]) for row in rows(f"{chart}/timings.csv")]
+readme.append(f"The chart is Table {os.path.dirname(chart)[-1]} of Hong et al.")
+readme.append(f"on cloths of {min(sizes):,} to {max(sizes):,} nodes: published")
+readme.append(f"It was measured on {cpus(chart)} logical CPUs of an Intel Xeon (Granite Rapids), {when(chart)}")
+for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies of {:,} nodes", "jeans4k": "jeans of {:,} nodes, draped"}.items():
+    folder = "garment" if scene.startswith("jeans") else "table1" if scene.startswith("cloth") else "table3"
+    nodes = {int(row["nodes"]) for row in rows(f"results/{folder}/granite-rapids/timings.csv") if row["scene"] == scene}
+    readme.append(words.format(nodes.pop()))
+
+without_gpu = [machine for machine in machines if machine != gpu]
+assert {cpus(f"results/table1/{machine}") for machine in without_gpu} == {2}
+readme.append(f"Of {len(claims)} claims in both papers, {len(testable)} can be decided by a ratio of times.")
+readme.append("Held without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
+readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
+locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
+slower = [machine for machine in machines if outcome(locks, machine)["outcome"] == "not held"]
+readme.append(f"made some cloth slower on {len(slower)} of {len(machines)} machines")
+readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'granite-rapids', 'openmp'))} times as fast as `serial`")
+peers = {threads: rows(f"results/peers/zen4/{threads}/peers.csv") for threads in ("1-thread", "2-threads")}
+times_of = lambda table: {(row["scene"], row["peer"]): float(row["ms_per_step"]) for row in table if row["status"] == "ok"}
+shares = [ms[scene, "cpp-list"] / ms[scene, "serial"] for ms in map(times_of, peers.values()) for scene, peer in ms if peer == "cpp-list"]
+readme.append(f"The same list with `-O3 -march=native` takes {span(shares)} of the time of `serial` (Zen 4).")
+on_gpu = [row for folder in glob.glob(f"results/table1/{gpu}*") for row in rows(f"{folder}/timings.csv")]
+largest = next(row for row in on_gpu if row["scene"] == "cloth350k" and row["backend"] == "opencl" and row["integrator"] == "semi-euler")
+readme.append(f"On the H100 a step of {int(largest['nodes']):,} nodes takes {digits(float(largest['ms_per_step']))} ms, "
+              f"{digits(float(largest['speedup_vs_serial']))} times as fast as one core beside it.")
+
+
+def gpu_wins(nodes):
+    pairs = {}
+    for folder in glob.glob(f"results/table1/{gpu}*"):
+        for row in rows(f"{folder}/timings.csv"):
+            if int(row["nodes"]) == nodes and row["backend"] in ("openmp", "opencl"):
+                pairs.setdefault((folder, row["integrator"]), {})[row["backend"]] = float(row["ms_per_step"])
+    return all(pair["opencl"] < pair["openmp"] for pair in pairs.values())
+
+
+winning = [nodes for nodes in sorted(set(sizes)) if all(gpu_wins(n) for n in set(sizes) if n >= nodes)]
+readme.append(f"From {winning[0]:,} nodes on it is faster than {cpus(f'results/table1/{gpu}')} CPUs with every integrator ({when(f'results/table1/{gpu}')}).")
+
+# On openmp, which of the paper's integrators has the fastest step, and which is the cheapest at the wished error.
+named = ("semi-euler", "midpoint", "rk4")
+
+
+def best(file, column, wanted):
+    """By scene the integrator whose smallest number is the smallest."""
+    least = {}
+    for row in rows(f"results/guide/zen4/{file}"):
+        if row["backend"] == "openmp" and row["integrator"] in named and row[column] and wanted(row):
+            numbers = least.setdefault(row["scene"], {})
+            numbers[row["integrator"]] = min(float(row[column]), numbers.get(row["integrator"], math.inf))
+    return {scene: min(numbers, key=numbers.get) for scene, numbers in least.items()}
+
+
+fastest = best("guide.csv", "ms_per_step", lambda row: row["status"] == "ok")
+cheapest = best("guide-errors.csv", "wall_s_per_s", lambda row: row["position_error"] == "0.001")
+readme.append("Of " + "`{}`, `{}` and `{}`".format(*named) + ", the one with the fastest step is the cheapest at equal error on "
+              f"{sum(cheapest[scene] == fastest[scene] for scene in cheapest)} of {len(cheapest)} scenes (Zen 4).")
+readme.append(f"On Zen 4, {when('results/guide/zen4')}, it says:")
+with open("results/guide/zen4/guide.md") as file:
+    readme.append(re.search(r"^## cloth10k.*?^(Take [^.]*\.[^.]*\.) ", file.read(), re.DOTALL | re.MULTILINE).group(1))
+
+folder = "results/peers/zen4/2-threads"
+measured = provenance(folder)["cpu"]
+readme.append("same scenes, verified alike, 2 threads.")
+readme.append(f"Measured on {measured['model']} ({measured['generation']}), {when(folder)}")
+
+# docs/papers.md
+with open("results/races/granite-rapids/races.md") as file:
+    papers.append(re.search(r"taken to add (the forces of \d+ springs)", file.read()).group(1))
+papers.append(f"three machines of {cpus(chart)} CPUs without a GPU")
+minutes = {}
+for suite in ("table1", "table3"):
+    with open(f"{work}/{suite}") as file:
+        minutes[suite] = round(int(re.search(r"^about (\d+) s in all", file.read(), re.MULTILINE).group(1)) / 60)
+columns = [*machines]
+papers.append(table(["claim", "published"] + [machines[machine] for machine in columns], "|---|---|" + "---|" * len(columns), *(
+    [f"`{claim['name']}`", shown(interval({"measured": re.sub(r".*\((?=\d+ ratios, geometric mean)", "", found["published"])}))] +
+    [cell(claim, machine) for machine in columns]
+    for claim in testable for found in [outcome(claim, gpu) or outcome(claim, "zen4")])))
+papers.append(table(["claim", "place", "the paper says"], "|---|---|---|", *(
+    [f"`{claim['name']}`", claim["place"], claim["says"]] for claim in testable)))
+papers.append(f"The papers make {len(claims)} claims that a measurement could support or contradict, and {len(testable)} of them")
+
+
+def expected(claim):
+    found = [interval(one) for one in (outcome(claim, machine) for machine in without_gpu) if one]
+    bounds = [float(x) for match in found for x in match.groups() if x]
+    return ("mean " if "mean" in found[0].group(0) else "") + times(bounds) if found else "–"
+
+
+def on_both(table, backend, machine_list):
+    return times([x for machine in machine_list for x in speedups(table, machine, backend)])
+
+
+command = lambda suite: [f"`scripts/mssim bench --suite {suite} --out out/{suite}`", str(minutes[suite])]
+papers.append(table(
+    ["claim", "command", "minutes", "on 2 CPUs", "with an H100"], "|---|---|---:|---|---|",
+    *([f"`{claim['name']}`", *command(claim["test"]["scenes"]), expected(claim), shown(interval(outcome(claim, gpu)))] for claim in testable),
+    *([f"`openmp` over `serial`, {what}", *command(suite), on_both(suite, "openmp", without_gpu), times(speedups(suite, gpu, "openmp"))]
+      for suite, what in (("table1", "cloths"), ("table3", "bodies")))))
+ratios = {}
+for row in rows("results/published/hong2016_table1.csv") + rows("results/published/hong2016_table3.csv"):
+    ratios.setdefault((row["nodes"], row["configuration"]), {})[row["integrator"]] = float(row["ms_per_step"])
+cost = lambda name: span([ms[name] / ms["semi-euler"] for ms in ratios.values()])
+papers.append(f"In the published tables a step of midpoint takes {cost('midpoint')} times as long as one of semi-Euler, and one of "
+              f"Runge-Kutta {cost('rk4')} times.")
+sums = [row for row in rows("results/table2/table2.csv")]
+papers.append(f"All {len(sums)} counts of nodes and of springs agree")
+
+
+used = set()
+for name, wanted in pages.items():
+    before = len(failures)
+    with open(name) as file:
+        text = re.sub(r"^    (?! ).*$", "", file.read(), flags=re.MULTILINE)
+    # tabulate_results_test.sh holds these.
+    text = re.sub(r"<!-- (.+), made by scripts/tabulate-results -->.*?<!-- end of \1 -->", "", text, flags=re.DOTALL)
+    for lines in [lines for lines in wanted if lines.startswith("| ")]:
+        if lines not in text:
+            failures.append(f"{name} should have this table:\n{lines}")
+        text = text.replace(lines, "")
+    text = re.sub(r"\]\([^)]*\)", "]", text)
+    text = re.sub(r'\b(src|srcset|media|width)="[^"]*"', "", text)
+    text = re.sub(r"(^> |\s)+", " ", text, flags=re.MULTILINE)
+    for sentence in [sentence for sentence in wanted if not sentence.startswith("| ")]:
+        if sentence not in text:
+            failures.append(f"{name} should have: {sentence}")
+        text = text.replace(sentence, "")
+    text = re.sub(r"`[^`]*`", "", text)
+    for phrase in sorted(allowed, key=len, reverse=True):
+        if phrase in text:
+            used.add(phrase)
+            text = text.replace(phrase, "")
+    if len(failures) > before:
+        continue  # the numbers of what is missing would follow
+    for number in re.finditer(r"(?<![\w-])\d[\d.,:]*", text):
+        failures.append(f"{name}: {number.group()} follows from nothing: …{text[max(0, number.start() - 60):number.end() + 30]}…")
+if not failures:
+    failures += [f"no page has the allowed {phrase!r} any longer" for phrase in set(allowed) - used]
+
+for failure in failures:
+    print("figures_test:", failure, file=sys.stderr)
+sys.exit(1 if failures else 0)
+PYTHON

@@ -1,0 +1,22 @@
+#!/bin/bash
+# The commands on README.md and docs/*.md run, as far as they are quick, and each is written so that it can be pasted into a fresh clone.
+# Arguments: mssim, the source folder.
+set -euo pipefail
+commands=$2/scripts/page-commands
+"$commands" --quick "$1"
+
+# What it must notice, on pages of its own.
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+# refuses LINE WHAT: a page with that command is refused, and the message names WHAT.
+refuses() {
+  printf '# A page\n\n    %s\n' "$1" >"$place/page.md"
+  ! "$commands" --quick "$mssim" "$place/page.md" 2>"$place/err" || { echo "accepted: $1" && exit 1; }
+  grep -qF -- "$2" "$place/err" || { echo "$1: $(cat "$place/err")" && exit 1; }
+}
+mssim=$1
+refuses 'mssim list scenes' 'mssim list scenes'
+refuses 'scripts/mssim list scene' 'exit code 2'
+refuses 'scripts/mssim bench --scene cloth2501' 'cloth2501'
+refuses 'scripts/mssim bench --suite table1     # 4000 minutes' 'the dry run says'
+refuses 'scripts/mssim list guides' 'guides'
