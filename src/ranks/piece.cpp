@@ -54,7 +54,7 @@ class CopiesPiece final : public Piece {
   }
   void step(int count) override { backend_->step(count); }
   int threads() const override { return backend_->threads(); }
-  std::string note() const override { return backend_->device() + ", a copy of the scene each"; }
+  std::string note() const override { return device_name(backend_->device()) + ", a copy of the scene each"; }
 
  private:
   const Session& session_;

@@ -212,7 +212,7 @@ std::string_view name_of(ClaimOutcome outcome) {
 }
 
 std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& input) {
-  const Provenance provenance = folder.provenance.value_or(Provenance());
+  const Provenance provenance = folder.where_from();
   std::vector<JudgedClaim> all;
   for (const PublishedTable& table : input.published) {
     const PaperScenes scenes(folder.rows, input.legend, table);

@@ -150,6 +150,9 @@ std::string made_by(const Provenance& provenance);
 /// time.
 Paragraph measured_on(RowPointers rows, const Provenance& provenance);
 
+/// The first row of the backend that ran on a device of OpenCL; null where there is none.
+const ResultRow* row_with_device(RowPointers rows, std::string_view backend);
+
 /// The name of a backend for a cell; with the OpenCL device that its rows ran on, and whether that is the
 /// processor of the machine.
 std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance);
@@ -159,6 +162,8 @@ std::string_view opencl_device(const ResultRow& row);
 
 /// Is the row's device of OpenCL the processor of the machine?
 bool is_this_processor(const ResultRow& row, const Provenance& provenance);
+/// Is a device of OpenCL?
+bool is_this_processor(std::string_view device, const Provenance& provenance);
 
 /// Median milliseconds a step of a row that counts, else none.
 std::optional<double> counted_ms(const ResultRow& row);

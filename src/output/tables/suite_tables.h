@@ -38,6 +38,9 @@ inline constexpr auto published_table_kinds = std::to_array<PublishedTableInfo>(
     {"table3", "Bodies: Table 3 of Hong et al. (2016)", "three times"},
 });
 
+/// What they measured on.
+inline constexpr std::string_view paper_device = "Nexus 7";
+
 /// The configuration that speed-ups are over.
 inline constexpr std::string_view one_thread_configuration = "cpu-only";
 
