@@ -34,7 +34,7 @@ std::string noise_note(const ReportFolder& folder) {
   for (const std::string& sentence : folder.where_from().noise)
     noise.push_back(sentence.substr(0, sentence.find(": ")));
   return noise.empty() ? ""
-                       : fmt::format("<p class=\"problems\">When this run started, {}.</p>\n",
+                       : fmt::format("<p class=\"problems\">When this run started: {}.</p>\n",
                                      html_text(join(noise, "; ")));
 }
 
@@ -172,29 +172,40 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
   return text + html_of(table);
 }
 
-/// The outcomes of all folders side by side: a line for each claim that is about one, a column for each
-/// folder.
+/// The outcomes of all folders side by side: a line for each claim that one of them decides or leaves
+/// undecided, a column for each folder.
 std::string outcomes_of(const ReportInput& input) {
   Table table{{{"what the paper says"}, {"where"}}, {}};
   std::map<const Claim*, std::vector<Cell>> outcomes;
+  std::set<const Claim*> untested;
   for (const ReportFolder& folder : input.folders) {
     for (const JudgedClaim& judged : judge(folder, input)) {
+      if (judged.outcome == ClaimOutcome::not_testable) {
+        untested.insert(judged.claim);
+        continue;
+      }
       std::vector<Cell>& cells = outcomes[judged.claim];
       cells.resize(table.columns.size() - 2);
       Cell& cell = cells.emplace_back(std::string(name_of(judged.outcome)));
-      cell.strong = judged.outcome == ClaimOutcome::held || judged.outcome == ClaimOutcome::not_held;
+      cell.strong = judged.outcome != ClaimOutcome::undecided;
     }
     table.columns.push_back({std::filesystem::path(folder.name).filename().string()});
   }
   for (const Claim& claim : input.claims) {
     const auto found = outcomes.find(&claim);
     if (found == outcomes.end()) continue;
+    untested.erase(&claim);
     std::vector<Cell>& line = table.rows.emplace_back();
     line = {claim.says, claim.paper + ": " + claim.place};
     std::ranges::move(found->second, std::back_inserter(line));
     line.resize(table.columns.size());
   }
-  return table.rows.empty() ? "" : html_of(table);
+  std::string text =
+      table.rows.empty() ? "" : html_of(table) + "<p>A dash: not testable with that folder.</p>\n";
+  if (!untested.empty())
+    text += fmt::format("<p>{} can be tested with none of the folders.</p>\n",
+                        pluralize(untested.size(), table.rows.empty() ? "claim" : "further claim"));
+  return text;
 }
 
 std::string verdict_section(const ReportInput& input) {
