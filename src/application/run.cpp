@@ -344,7 +344,7 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
   Table table;
   table.add({{"scene", scene.spec.name},
              {"backend", info.name},
-             {"device", backend->device()},
+             {"device", device_name(backend->device())},
              {"threads", backend->threads()},
              {"integrator", options.integrator},
              {"dt_s", scene.dt_s},

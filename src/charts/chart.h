@@ -10,7 +10,7 @@ namespace mssim {
 
 /// Where the values of a series come from, which its look says: measured ones have filled points and solid
 /// lines, published ones open points and dashed lines. References are straight lines from point to point in
-/// the colour of the text, such as the roofs of a roofline. Where shapes of points repeat, lines have longer
+/// the colour of the text, such as the roofs of a roofline. Where shapes of points repeat, lines have other
 /// dashes.
 enum class Origin { measured, published, reference };
 
@@ -38,8 +38,10 @@ struct Series {
 };
 
 struct Axis {
-  std::string label;  ///< with the unit: "time of a step (ms)"
+  std::string label;  ///< with the unit: "time per step (ms)"
   bool logarithmic = false;
+  /// Of a horizontal axis: its ticks are the values along it, which are whole numbers, and no others.
+  bool ticks_at_values = false;
 };
 
 enum class ChartForm { lines, points };
@@ -49,6 +51,7 @@ enum class ChartForm { lines, points };
 struct Chart {
   std::string id;  ///< unique in the page: letters, digits and hyphens, a letter first
   std::string title;
+  std::string subtitle{};  ///< below the title, such as where it was measured
   ChartForm form = ChartForm::lines;
   Axis x, y;
   std::vector<Series> series;  ///< in the order of the legend

@@ -9,20 +9,23 @@
 namespace mssim {
 namespace {
 
-/// Shapes of points, from the point on: circle, square, triangles and diamond, pentagon.
-constexpr std::array<std::string_view, 6> point_shapes{"m-4.7,0a4.7,4.7 0 1,0 9.4,0a4.7,4.7 0 1,0 -9.4,0z",
-                                                       "m-4.4,-4.4h8.8v8.8h-8.8z",
-                                                       "m0,-6.3l6.3,9.5h-12.6z",
-                                                       "m0,-6.3l6.3,6.3l-6.3,6.3l-6.3,-6.3z",
-                                                       "m0,6.3l6.3,-9.5h-12.6z",
-                                                       "m0,-5.3l5,3.7l-1.9,5.9h-6.2l-1.9,-5.9z"};
+/// Shapes of points, from the point on: circle, square, triangles and diamond, pentagon, plus, star.
+constexpr std::array<std::string_view, 8> point_shapes{
+    "m-4.7,0a4.7,4.7 0 1,0 9.4,0a4.7,4.7 0 1,0 -9.4,0z",
+    "m-4.4,-4.4h8.8v8.8h-8.8z",
+    "m0,-6.3l6.3,9.5h-12.6z",
+    "m0,-6.3l6.3,6.3l-6.3,6.3l-6.3,-6.3z",
+    "m0,6.3l6.3,-9.5h-12.6z",
+    "m0,-5.3l5,3.7l-1.9,5.9h-6.2l-1.9,-5.9z",
+    "m-1.9,-5.7h3.8v3.8h3.8v3.8h-3.8v3.8h-3.8v-3.8h-3.8v-3.8h3.8z",
+    "m0,-7l2.1,4.9l4.9,2.1l-4.9,2.1l-2.1,4.9l-2.1,-4.9l-4.9,-2.1l4.9,-2.1z"};
 
 /// Those of PointMark.
 constexpr std::array<std::string_view, 4> mark_shapes{
     "", "m-9.4,0a9.4,9.4 0 1,0 18.8,0a9.4,9.4 0 1,0 -18.8,0z", "m-9.4,-9.4h18.8v18.8h-18.8z",
     "m-5.8,-5.8l11.6,11.6m0,-11.6l-11.6,11.6"};
 
-/// Dashes: the second where shapes of points repeat, so that twice as many lines differ without colours.
+/// Dashes: the second where shapes of points repeat, so that sixteen lines differ without colours.
 constexpr std::array<std::string_view, 2> measured_dashes{"", "9,4"}, published_dashes{"4,3", "4,3,1,3"};
 constexpr std::array<std::string_view, 4> reference_dashes{"", "2,3", "10,3,2,3", "14,4"};
 
@@ -59,8 +62,9 @@ class Drawing {
     constexpr std::size_t most = 4000;
     std::vector<std::string> names;
     for (const Series& one : chart_.series) names.push_back(one.name);
-    std::string description = fmt::format("Along: {}. Upwards: {}. Series: {}.", words_of(chart_.x),
-                                          words_of(chart_.y), join(names, ", "));
+    std::string description = chart_.subtitle.empty() ? "" : chart_.subtitle + ". ";
+    description += fmt::format("Along: {}. Upwards: {}. Series: {}.", words_of(chart_.x), words_of(chart_.y),
+                               join(names, ", "));
     for (const std::string& note : notes) description += ' ' + note + '.';
     svg_ = fmt::format(
         R"(<svg id="{0}" class="chart" viewBox="0 0 {1} {2}" xmlns="http://www.w3.org/2000/svg" role="img" )"
@@ -113,10 +117,16 @@ class Drawing {
       text(line, chart_edge, y, R"( font-weight="bold")");
       y += line_height;
     }
+    for (const std::string& line : layout_.subtitle) {
+      text(line, chart_edge, y);
+      y += line_height;
+    }
     text(layout_.y_label, chart_edge, layout_.y_label_middle);
     for (const Tick& tick : layout_.y.ticks) text(tick.label, layout_.left - 8, down(tick.value), end);
-    for (const Tick& tick : layout_.x.ticks)
-      text(tick.label, across(tick.value), layout_.tick_labels, middle);
+    for (std::size_t i = 0; i < layout_.x.ticks.size(); ++i)
+      if (const auto row = layout_.tick_rows[i])
+        text(layout_.x.ticks[i].label, across(layout_.x.ticks[i].value),
+             layout_.tick_labels + *row * line_height, middle);
     text(layout_.x_label, (layout_.left + layout_.right) / 2, layout_.x_label_middle, middle);
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include "text/text.h"
@@ -103,17 +104,53 @@ AxisScale scale_of(const Axis& axis, Interval range) {
   return (axis.logarithmic ? logarithmic_scale : linear_scale)(range.low, range.high);
 }
 
-/// Title and label of the y axis, above the plot.
+std::vector<Tick> ticks_at(const PlottedValues& values) {
+  std::set<double> along;
+  for (const auto& points : values.series)
+    for (const PlottedPoint& point : points) along.insert(point.x);
+  std::vector<Tick> ticks;
+  for (const double x : along) ticks.push_back({x, grouped(static_cast<std::uint64_t>(std::llround(x)))});
+  return ticks;
+}
+
+/// Labels that stand too close go to a second row, and those that find no room there are left out; the last
+/// one, which says how far the axis goes, is placed before the others.
+std::vector<std::optional<int>> rows_of_labels(const AxisScale& scale, double width) {
+  constexpr double apart = 3;
+  std::vector<std::optional<int>> rows(scale.ticks.size());
+  std::array<std::vector<Interval>, 2> taken;
+  const auto place = [&](std::size_t i) {
+    const double middle = scale.fraction(scale.ticks[i].value) * width,
+                 half = (drawn_width(scale.ticks[i].label) + apart) / 2;
+    for (std::size_t row = 0; row < taken.size() && !rows[i]; ++row) {
+      const bool is_free = std::ranges::none_of(taken[row], [&](const Interval& other) {
+        return other.low < middle + half && middle - half < other.high;
+      });
+      if (!is_free) continue;
+      taken[row].push_back({middle - half, middle + half});
+      rows[i] = static_cast<int>(row);
+    }
+  };
+  if (!rows.empty()) place(rows.size() - 1);
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) place(i);
+  return rows;
+}
+
+/// Title, subtitle and label of the y axis, above the plot.
 void lay_out_head(ChartLayout& layout, const Chart& chart) {
   layout.title = shown_lines(chart.title, letters_that_fit(0.95 * inner_width));  // bold letters are wider
+  layout.subtitle = shown_lines(chart.subtitle, letters_that_fit(inner_width));
   layout.y_label = shown_text(chart.y.label, letters_that_fit(inner_width));
-  layout.y_label_middle = chart_edge + line_height * (static_cast<double>(layout.title.size()) + 0.5) + 4;
+  const auto lines = static_cast<double>(layout.title.size() + layout.subtitle.size());
+  layout.y_label_middle = chart_edge + line_height * (lines + 0.5) + 4;
   layout.top = layout.y_label_middle + line_height / 2 + 12;
 }
 
-void lay_out_plot(ChartLayout& layout, const Chart& chart, const ChartRange& range) {
+void lay_out_plot(ChartLayout& layout, const Chart& chart, const PlottedValues& values,
+                  const ChartRange& range) {
   layout.y = scale_of(chart.y, range.y);
   layout.x = scale_of(chart.x, range.x);
+  if (chart.x.ticks_at_values) layout.x.ticks = ticks_at(values);
   std::vector<std::string> labels;
   for (const Tick& tick : layout.y.ticks) labels.push_back(tick.label);
   layout.left = chart_edge + widest(labels) + 12;
@@ -121,12 +158,14 @@ void lay_out_plot(ChartLayout& layout, const Chart& chart, const ChartRange& ran
   const double beside = layout.x.ticks.empty() ? 0 : drawn_width(layout.x.ticks.back().label) / 2;
   layout.right = chart_width - chart_edge - beside;
   layout.bottom = layout.top + plot_height;
+  layout.tick_rows = rows_of_labels(layout.x, layout.right - layout.left);
 }
 
 /// What stands below the x axis: ticks and its label.
 void lay_out_foot(ChartLayout& layout, const Chart& chart) {
   layout.tick_labels = layout.bottom + line_height / 2 + 5;
-  const double below = 10 + line_height;
+  const bool second_row = std::ranges::find(layout.tick_rows, 1) != layout.tick_rows.end();
+  const double below = 10 + line_height * (second_row ? 2 : 1);
   layout.x_label = shown_text(chart.x.label, letters_that_fit(inner_width));
   layout.x_label_middle = layout.bottom + below + line_height / 2;
 }
@@ -260,7 +299,7 @@ std::optional<ChartLayout> chart_layout(const Chart& chart, const PlottedValues&
   if (!range) return std::nullopt;
   ChartLayout layout;
   lay_out_head(layout, chart);
-  lay_out_plot(layout, chart, *range);
+  lay_out_plot(layout, chart, values, *range);
   lay_out_foot(layout, chart);
   lay_out_legend(layout, chart, values);
   return layout;

@@ -35,8 +35,9 @@ PlottedValues plotted_values(const Chart& chart);
 
 /// Colours of series, each with a contrast of at least 3 to 1 on white and on near-black (WCAG 2.2, 1.4.11),
 /// so that a chart needs none of its own for dark pages.
-inline constexpr std::array<std::string_view, 8> series_colours{"#2f7ed8", "#b8720a", "#2e8f57", "#d9534f",
-                                                                "#9b59b6", "#12858c", "#c2508a", "#8a7a00"};
+inline constexpr std::array<std::string_view, 12> series_colours{"#2f7ed8", "#b8720a", "#2e8f57", "#d9534f",
+                                                                 "#9b59b6", "#12858c", "#c2508a", "#8a7a00",
+                                                                 "#808080", "#6d67e4", "#96603c", "#4f8f00"};
 
 /// The number of each series's look: from it follow colour, shape, dash and pattern. No two series of one
 /// origin have the same but those of marks. The families `fixed` have the first numbers, whether they occur
@@ -79,14 +80,16 @@ inline constexpr double chart_edge = 8;      ///< around everything
 /// the y axis (which lies so that nobody tilts the head), the plot, ticks and label of the x axis, legend.
 struct ChartLayout {
   AxisScale x, y;
-  std::vector<std::string> title;  ///< lines
+  std::vector<std::string> title, subtitle;  ///< lines
   std::string x_label, y_label;
   std::vector<std::string> names;  ///< of the series in the legend
   std::size_t legend_columns = 1, legend_rows = 1;
   double left = 0, right = 0, top = 0, bottom = 0;  ///< of the plot
   double y_label_middle = 0, x_label_middle = 0;    ///< from above
-  double tick_labels = 0;                           ///< along x: the middle of their labels
-  double legend = 0, height = 0;                    ///< top of the legend; the whole
+  double tick_labels = 0;                           ///< along x: the middle of their labels in the first row
+  /// Of each tick along x: the row that its label stands in, which is free there; none for one without room.
+  std::vector<std::optional<int>> tick_rows;
+  double legend = 0, height = 0;  ///< top of the legend; the whole
 };
 
 /// None where there is no value.

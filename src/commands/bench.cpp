@@ -22,6 +22,7 @@
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
+#include "platform/machine.h"
 #include "text/error.h"
 #include "text/text.h"
 
@@ -54,7 +55,7 @@ std::vector<std::string> devices_of(RowPointers rows) {
   }
   std::vector<std::string> sentences;
   for (const auto& [device, names] : backends)
-    sentences.push_back(fmt::format("{} ran on {}", join(names, ", "), device));
+    sentences.push_back(fmt::format("{} ran on {}", join(names, ", "), device_name(device)));
   return sentences;
 }
 

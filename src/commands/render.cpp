@@ -72,11 +72,19 @@ fs::path output_of(const RenderOptions& options) {
                                                                            : "-sheet.png"));
 }
 
+/// The number of moments on a sheet, if there is one: a legend takes the last place.
+std::optional<std::size_t> moments_on_sheet(const RenderOptions& options, bool has_legend) {
+  const auto sheet = sheet_size(options);
+  if (!sheet) return std::nullopt;
+  const std::size_t places = std::size_t{sheet->first} * sheet->second;
+  return places > 1 && has_legend ? places - 1 : places;
+}
+
 /// The frames to draw, in order.
-std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceContent& content) {
+std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceContent& content,
+                                      bool has_legend) {
   std::vector<std::size_t> chosen = chosen_frames(options.frames, content.time_s);
-  if (const auto sheet = sheet_size(options))
-    return spread_over(chosen, std::size_t{sheet->first} * sheet->second);
+  if (const auto moments = moments_on_sheet(options, has_legend)) return spread_over(chosen, *moments);
   return options.movie ? chosen : std::vector{chosen.back()};
 }
 
@@ -91,8 +99,10 @@ double natural_fps(const TraceContent& content, const std::vector<std::size_t>& 
 std::string drawn_file(const RenderOptions& options, const PictureOptions& picture,
                        const TraceReader& trace) {
   const TraceContent& content = trace.content();
-  const std::vector<std::size_t> frames = drawn_frames(options, content);
   Painter painter(content, trace.positions(0), picture);
+  const std::vector<std::size_t> frames = drawn_frames(options, content, painter.has_legend());
+  const auto sheet = sheet_size(options);
+  const bool legend_apart = painter.has_legend() && sheet && sheet->first * sheet->second > 1;
   for (const std::size_t frame : frames) painter.make_room_for(trace.positions(frame));
   ProgressLine progress({1}, ProgressLine::Log::nothing);
   progress.begin_scene(stem_of(options));
@@ -100,7 +110,7 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   if (options.movie) movie.emplace(options.run.fps.value_or(natural_fps(content, frames)));
   std::vector<CaptionedPicture> pictures;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    Picture drawn = painter.picture_of(trace.positions(frames[i]));
+    Picture drawn = painter.picture_of(trace.positions(frames[i]), !legend_apart);
     progress.update_often(fmt::format("picture {} of {}", i + 1, frames.size()),
                           static_cast<double>(i + 1) / static_cast<double>(frames.size()));
     if (movie)
@@ -109,21 +119,22 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
       pictures.push_back({std::move(drawn), fmt::format("t = {:.2f} s", content.time_s[frames[i]])});
   }
   if (movie) return movie->take_bytes();
-  if (const auto sheet = sheet_size(options)) return png_of(sheet_of(pictures, sheet->first));
+  if (legend_apart) pictures.push_back({painter.legend(), ""});
+  if (sheet) return png_of(sheet_of(pictures, sheet->first));
   return png_of(pictures.front().picture);
 }
 
 /// Frames per simulated second that a run must provide for the pictures. A large scene has a large trace, so
 /// it takes no more than needed.
-double fps_of_run(const RenderOptions& options) {
+double fps_of_run(const RenderOptions& options, bool has_strain) {
   if (options.run.fps) return *options.run.fps;
   if (options.movie || options.frames.given()) return movie_fps;
   const double duration_s = options.run.duration_s.value_or(default_duration_s);
-  const auto sheet = sheet_size(options);
-  const std::uint32_t moments = sheet ? sheet->first * sheet->second : 2;
+  const std::size_t moments = moments_on_sheet(options, has_strain).value_or(2);
   // It is unknown when a garment will have settled.
-  if (sheet && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content)) return movie_fps;
-  return std::max(moments - 1, 1U) / duration_s;
+  if (sheet_size(options) && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content))
+    return movie_fps;
+  return static_cast<double>(std::max<std::size_t>(moments, 2) - 1) / duration_s;
 }
 
 int render(const RenderOptions& options) {
@@ -150,7 +161,7 @@ int render(const RenderOptions& options) {
   int code = exit_ok;
   if (trace.empty()) {
     RunOptions run = options.run;
-    run.fps = fps_of_run(options);
+    run.fps = fps_of_run(options, picture.colour == ColourBy::strain);
     trace = temporary_folder_of_process() / "scene.h5";
     run.files.trace = trace.string();
     run.files.temporary = true;

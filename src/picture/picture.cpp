@@ -138,7 +138,9 @@ Picture sheet_of(std::span<const CaptionedPicture> pictures, std::uint32_t colum
   const auto count = static_cast<std::uint32_t>(pictures.size());
   columns = std::min(columns, count);
   const std::uint32_t rows = (count + columns - 1) / columns;
-  const Letters letters{letter_size_for(height), Rgb{32, 34, 40}};
+  // Pages show a sheet as wide as they are, however many pictures are in it.
+  constexpr double of_sheet = 0.017;
+  const Letters letters{std::max(letter_size_for(height), of_sheet * columns * width), Rgb{32, 34, 40}};
   const auto margin = static_cast<std::uint32_t>(std::lround(letters.size_px));
   const bool captioned =
       std::ranges::any_of(pictures, [](const auto& cell) { return !cell.caption.empty(); });

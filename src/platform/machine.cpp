@@ -392,4 +392,22 @@ Terminal terminal_of(int descriptor) {
   return terminal_with(facts);
 }
 
+std::string_view instruction_set_name(std::string_view highway_name) {
+  return highway_name == "AVX3" ? "AVX-512" : highway_name;
+}
+
+std::string device_name(std::string_view device) {
+  constexpr std::string_view host = "cpu ";
+  if (device.starts_with(host))
+    return std::string(host).append(instruction_set_name(device.substr(host.size())));
+  // LLVM's targets are written small, and models begin with a capital.
+  for (const std::string_view driver : {"pthread-", "cpu-", "basic-"}) {
+    if (!device.starts_with(driver)) continue;
+    for (std::size_t at = driver.size() - 1; (at = device.find('-', at)) != std::string_view::npos;)
+      if (++at < device.size() && std::isupper(static_cast<unsigned char>(device[at])) != 0)
+        return "PoCL on " + std::string(device.substr(at));
+  }
+  return std::string(device);
+}
+
 }  // namespace mssim

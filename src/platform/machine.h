@@ -120,4 +120,12 @@ Terminal terminal_with(const StreamFacts& facts);
 /// The capabilities of a descriptor in this environment. Only this function inspects a stream's type.
 Terminal terminal_of(int descriptor);
 
+/// Highway's name of an instruction set as people know it: "AVX-512" for "AVX3"; the others are their
+/// makers'.
+std::string_view instruction_set_name(std::string_view highway_name);
+
+/// What a backend says that it ran on, as people know it: "cpu AVX-512" for "cpu AVX3", and "PoCL on MODEL"
+/// for what PoCL calls a processor, DRIVER-TARGET-MODEL, where the target is LLVM's. Anything else as it is.
+std::string device_name(std::string_view device);
+
 }  // namespace mssim

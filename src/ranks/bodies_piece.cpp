@@ -5,6 +5,7 @@
 #include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
+#include "platform/machine.h"
 #include "ranks/piece.h"
 #include "ranks/shares.h"
 #include "scene/scene_kinds.h"
@@ -206,9 +207,10 @@ class BodiesPiece final : public Piece {
     const auto divided = static_cast<std::size_t>(
         std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
     const std::size_t whole = shares_.size() - divided;
-    if (divided == 0) return fmt::format("{}, whole bodies", kernel_.instruction_set);
-    if (whole == 0) return fmt::format("{}, {} divided", kernel_.instruction_set, bodies_in_words(divided));
-    return fmt::format("{}, {} whole, {} divided", kernel_.instruction_set, bodies_in_words(whole), divided);
+    const std::string_view vectors = instruction_set_name(kernel_.instruction_set);
+    if (divided == 0) return fmt::format("{}, whole bodies", vectors);
+    if (whole == 0) return fmt::format("{}, {} divided", vectors, bodies_in_words(divided));
+    return fmt::format("{}, {} whole, {} divided", vectors, bodies_in_words(whole), divided);
   }
 
  private:

@@ -74,7 +74,7 @@ class ClothPiece final : public Piece {
   RankCosts costs() const override { return messages_->costs(); }
   int threads() const override { return static_cast<int>(bands_->threads); }
   std::string note() const override {
-    return fmt::format("{}, {} an exchange", kernel_.instruction_set,
+    return fmt::format("{}, {} an exchange", instruction_set_name(kernel_.instruction_set),
                        pluralize(bands_->steps_per_pass, "step"));
   }
 

@@ -10,6 +10,7 @@
 
 #include "backends/interface/backend.h"
 #include "backends/vectors/step_kernels.h"
+#include "platform/machine.h"
 #include "ranks/messages.h"
 #include "ranks/requests.h"
 #include "scene/spec/scene_spec.h"
@@ -96,7 +97,8 @@ StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Da
       kernels, [&](const Kernel& kernel) { return kernel.instruction_set == std::string_view(name); });
   if (first != kernels.end()) kernels.erase(kernels.begin(), first);
   const Kernel best = best_kernel(kernels, roots);
-  const std::vector<std::string> sets = session.gather(best.instruction_set);
+  const std::vector<std::string> sets =
+      session.gather(std::string(instruction_set_name(best.instruction_set)));
   if (std::ranges::count(sets, sets.front()) == std::ssize(sets)) return best;
   const Kernel exact = best_kernel(kernels, Roots::exact);
   const std::vector<std::string> roundings = session.gather(exact.fuses ? "once" : "twice");

@@ -312,6 +312,8 @@ Light Ground::colour_at(const Vec3d& point, const Light& background, float light
   return (1 - fade * darkness) * background;
 }
 
+Vec3d shadow_light(const ViewDirection& direction) { return Lights(direction).key().near(); }
+
 Box<double> seen_box(const Camera& camera, const std::vector<Vec3d>& points) {
   const Vec3d first = camera.seen(points.front());
   Box<double> box{first, first};

@@ -95,6 +95,9 @@ struct Shot {
   int threads = 1;
 };
 
+/// Unit vector towards the light that casts shadows in pictures from `direction`; it points upwards.
+Vec3d shadow_light(const ViewDirection& direction);
+
 /// The box of Camera::seen around points.
 Box<double> seen_box(const Camera& camera, const std::vector<Vec3d>& points);
 

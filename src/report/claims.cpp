@@ -233,7 +233,7 @@ std::string_view name_of(ClaimOutcome outcome) {
 }
 
 std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& input) {
-  const Provenance provenance = folder.provenance.value_or(Provenance());
+  const Provenance provenance = folder.where_from();
   std::vector<const ResultRow*> rows;
   for (const ResultRow& row : folder.rows) rows.push_back(&row);
   std::vector<JudgedClaim> all;

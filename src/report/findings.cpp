@@ -105,7 +105,7 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
   if (rows.empty()) return findings;
   if (const std::string devices = devices_of(rows, provenance); !devices.empty())
     findings.push_back(
-        {false, "Published GPUs are those of mobile devices. Measured here: " + devices + "."});
+        {false, fmt::format("The published GPU is that of a {}. Measured here: {}.", paper_device, devices)});
   std::vector<std::string> not_verified;
   std::size_t timed = 0, without_time = 0;
   for (const ResultRow& row : rows)

@@ -106,7 +106,7 @@ void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   if (!front.x.empty()) work.series.push_back(std::move(front));
 }
 
-/// Lines error ~ step^p to hold others against, for the orders p of the chart's integrators: from one point
+/// Lines error ~ step^p to compare others with, for the orders p of the chart's integrators: from one point
 /// low on the right, where long steps seldom have small errors, up a part of the way.
 void add_orders(Chart& steps) {
   const auto range = range_of(steps);
@@ -195,18 +195,28 @@ void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene
   add_names(chart, "No points: ", without);
 }
 
+/// A guide's files do not say on which device a backend ran, except where there is one only.
+BackendLook look_in_guide(const std::string& backend, const PaperLegend& legend,
+                          const Provenance& provenance) {
+  const std::vector<std::string>& devices = provenance.opencl_devices;
+  return look_on(is_for_gpus(backend, legend) && devices.size() == 1 ? devices.front() : "", backend,
+                 provenance);
+}
+
 /// Those of an integrator whose backends have two sizes.
-std::optional<Chart> size_chart(const FoundGuide& guide, const std::string& scene,
+std::optional<Chart> size_chart(const FoundGuide& guide, const PaperLegend& legend,
+                                const Provenance& provenance, const std::string& scene,
                                 const std::string& integrator) {
   Chart chart;
   chart.title = fmt::format("{} in other sizes, {}", scene, integrator);
-  chart.x = {"nodes", true};
-  chart.y = {"time of a step (ms)", true};
+  chart.x = {.label = "nodes", .logarithmic = true, .ticks_at_values = true};
+  chart.y = {"time per step (ms)", true};
   for (const GuideTime& time : guide.times) {
     if (time.scene != scene || time.integrator != integrator) continue;
-    auto series = std::ranges::find(chart.series, time.backend, &Series::name);
+    const BackendLook look = look_in_guide(time.backend, legend, provenance);
+    auto series = std::ranges::find(chart.series, look.name, &Series::name);
     if (series == chart.series.end())
-      series = chart.series.insert(series, Series{.name = time.backend, .family = time.backend});
+      series = chart.series.insert(series, Series{.name = look.name, .family = look.family});
     series->add(time.nodes, time.ms_per_step);
   }
   std::erase_if(chart.series, [](const Series& series) { return series.x.size() < 2; });
@@ -214,12 +224,14 @@ std::optional<Chart> size_chart(const FoundGuide& guide, const std::string& scen
 }
 
 /// Charts of sizes, of the first explicit and the first implicit integrator that have one.
-std::vector<Chart> size_charts(const FoundGuide& guide, const std::string& scene, const std::string& id) {
+std::vector<Chart> size_charts(const FoundGuide& guide, const PaperLegend& legend,
+                               const Provenance& provenance, const std::string& scene,
+                               const std::string& id) {
   std::vector<Chart> charts;
   for (const bool implicit : {false, true})
     for (const Integrator* integrator : all_integrators) {
       if (is_implicit(*integrator) != implicit) continue;
-      auto chart = size_chart(guide, scene, std::string(integrator->name));
+      auto chart = size_chart(guide, legend, provenance, scene, std::string(integrator->name));
       if (!chart) continue;
       chart->id = id + "-sizes-" + (implicit ? "implicit" : "explicit");
       charts.push_back(std::move(*chart));
@@ -230,10 +242,12 @@ std::vector<Chart> size_charts(const FoundGuide& guide, const std::string& scene
 
 }  // namespace
 
-std::vector<Chart> guide_charts(const FoundGuide& guide, const std::string& scene, const std::string& id) {
+std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& legend,
+                                const Provenance& provenance, const std::string& scene,
+                                const std::string& id) {
   const std::vector<GuideLine> lines = lines_of(guide, scene);
   Chart work = error_chart(lines, &GuidePoint::wall_s_per_s, id + "-work-precision",
-                           scene + ": error over cost", "wall seconds a simulated second");
+                           scene + ": error over cost", "wall seconds per simulated second");
   add_front(work, lines);
   add_remarks(work, guide, scene, lines);
   Chart steps =
@@ -241,12 +255,13 @@ std::vector<Chart> guide_charts(const FoundGuide& guide, const std::string& scen
   add_orders(steps);
   Chart evaluations =
       error_chart(lines, &GuidePoint::force_evaluations_per_s, id + "-error-evaluations",
-                  scene + ": error over force evaluations", "force evaluations a simulated second");
+                  scene + ": error over force evaluations", "force evaluations per simulated second");
   add_names(evaluations, "Without a fixed number of force evaluations: ", without_evaluations(lines));
   std::vector<Chart> charts;
   for (Chart* chart : {&work, &steps, &evaluations})
     if (!chart->series.empty()) charts.push_back(std::move(*chart));
-  for (Chart& chart : size_charts(guide, scene, id)) charts.push_back(std::move(chart));
+  for (Chart& chart : size_charts(guide, legend, provenance, scene, id)) charts.push_back(std::move(chart));
+  for (Chart& chart : charts) chart.subtitle = where_measured(provenance);
   return charts;
 }
 

@@ -117,7 +117,7 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
   for (const JudgedClaim& judged : judge(folder, input))
     claims.rows.push_back({judged.claim->name, name_of(judged.outcome), judged.published, judged.measured});
   Table rows{{{"is_warning"}, {"sentence"}}, {}};
-  for (const Finding& finding : row_findings(folder.rows, folder.provenance.value_or(Provenance())))
+  for (const Finding& finding : row_findings(folder.rows, folder.where_from()))
     rows.rows.push_back({finding.is_warning, finding.sentence});
   std::vector<std::string> problems;
   for (const std::string& problem : folder.problems) problems.push_back(json_string(problem));

@@ -68,6 +68,9 @@ struct ReportFolder {
   std::vector<FoundCurve> curves;
   std::vector<FoundPicture> pictures;
   std::vector<std::string> problems;  ///< without a full stop
+
+  /// An empty one where it is not known.
+  Provenance where_from() const { return provenance.value_or(Provenance()); }
 };
 
 /// The result folders that a folder stands for: itself where it has a timings.csv or a guide.csv; else its

@@ -27,6 +27,7 @@ class PaperScenes {
 
   const std::vector<PaperScene>& scenes() const { return scenes_; }  ///< by size
   const PaperLegend& legend() const { return legend_; }
+  std::span<const ResultRow> rows() const { return rows_; }
   /// Over one thread; none where either time is missing.
   std::optional<double> published_speedup(const PaperScene& scene, std::string_view integrator,
                                           std::string_view configuration) const;
@@ -73,19 +74,42 @@ struct Finding {
 /// told from 1. None without rows.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
 
+/// What a page calls a backend that ran on a device of OpenCL ("" for none): "opencl on the CPU", "opencl,
+/// DEVICE". `family` decides its look in charts: OpenCL on a GPU shares that of the published GPU, and OpenCL
+/// on the processor has one of its own.
+struct BackendLook {
+  std::string name, family;
+};
+BackendLook look_on(std::string_view device, std::string_view backend, const Provenance& provenance);
+
+/// The same of the backend of rows, by the device that they ran on.
+BackendLook look_of(std::span<const ResultRow> rows, std::string_view backend, const Provenance& provenance);
+
+/// Does the backend stand for a configuration of the paper with a GPU?
+bool is_for_gpus(std::string_view backend, const PaperLegend& legend);
+
+/// The families that look the same in every chart which has no others.
+std::vector<std::string> families_of_backends(const PaperLegend& legend);
+
+/// "Measured on PROCESSOR, N threads"; empty where the provenance does not tell.
+std::string where_measured(const Provenance& provenance, bool with_threads = true);
+
 /// Charts. `id` begins their ids, so that those of several folders differ. A chart without anything to show
-/// is none.
+/// is none. Each says on which processor it was measured, as far as the provenance tells.
 
 /// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
-std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& id);
+std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& provenance,
+                                  const std::string& id);
 
-/// Figure 6 of Vassilev: milliseconds an iteration against vertices, of garments.
-std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::string& id);
+/// Figure 6 of Vassilev: milliseconds per iteration against vertices, of garments.
+std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
+                                   const std::string& id);
 
-/// The time of a step of the first integrator against nodes, for each kind of scene with at least two sizes,
+/// The time per step of the first integrator against nodes, for each kind of scene with at least two sizes,
 /// with the slope of every line.
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
-                                  std::span<const PublishedTable> published, const std::string& id);
+                                  std::span<const PublishedTable> published, const Provenance& provenance,
+                                  const std::string& id);
 
 /// For each scene how many times as fast as on the fewest threads the rows with the first integrator are,
 /// against threads.
@@ -98,7 +122,8 @@ Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
 
 /// A dot a backend, on the largest scene that has a roofline, with the first integrator, below the roofs that
 /// the timings tell of.
-std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const std::string& id);
+std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
+                                    const std::string& id);
 
 /// Total energy against time, with the reference curve of the scene that the curve's name begins with, where
 /// there is one.
@@ -108,7 +133,14 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
 /// Differential Equations I, section II.10), errors over steps and over force evaluations, and times by size.
 /// A line is an integrator; each of its points is that of the cheapest backend with this step. Diverged
 /// points stand as crosses at the edge, whatever their error.
-std::vector<Chart> guide_charts(const FoundGuide& guide, const std::string& scene, const std::string& id);
+std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& legend,
+                                const Provenance& provenance, const std::string& scene,
+                                const std::string& id);
+
+/// A chart whose values all stand at one place along x, as a table, which shows them better.
+Table values_of(const Chart& chart);
+/// Do they, in a chart of lines?
+bool has_one_place(const Chart& chart);
 
 /// Any text (a file's name, a scene's, a message) as HTML shows it, in elements and in quoted attributes. The
 /// one place that escapes: all that stands in a page went through it, or is written in the program.

@@ -12,13 +12,23 @@
 namespace mssim {
 namespace {
 
-Series published_series(std::string_view configuration, const std::string& family) {
+/// The look of a published configuration is that of the first backend which stands for it.
+Series published_series(std::string_view configuration, const PaperLegend& legend) {
   const auto found = std::ranges::find(paper_configurations, configuration, &PaperConfiguration::name);
-  return {.name = std::string(found == paper_configurations.end() ? configuration : found->caption) +
-                  ", published",
-          .origin = Origin::published,
-          .family = family};
+  const auto backend =
+      std::ranges::find(legend.backends, configuration, &PaperLegend::Backend::configuration);
+  return {
+      .name = fmt::format("{}, {}, published",
+                          found == paper_configurations.end() ? configuration : found->caption, paper_device),
+      .origin = Origin::published,
+      .family = backend == legend.backends.end() ? "" : backend->name};
 }
+
+Series measured_series(const BackendLook& look) {
+  return {.name = look.name + ", measured", .family = look.family};
+}
+
+Axis nodes_axis() { return {.label = "nodes", .logarithmic = true, .ticks_at_values = true}; }
 
 void add_point(Series& series, std::uint64_t nodes, double y) { series.add(static_cast<double>(nodes), y); }
 
@@ -29,16 +39,19 @@ void add_time(Series& series, const ResultRow& row) {
   series.high.push_back(row.ms_per_step_high.value_or(*row.ms_per_step));
 }
 
-Chart chart_of(const std::string& id, const std::string& title, Axis x, Axis y,
+Chart chart_of(const std::string& id, const std::string& title, const std::string& subtitle, Axis x, Axis y,
                ChartForm form = ChartForm::lines) {
   Chart chart;
   chart.id = id;
   chart.title = title;
+  chart.subtitle = subtitle;
   chart.form = form;
   chart.x = std::move(x);
   chart.y = std::move(y);
   return chart;
 }
+
+constexpr const char* on_the_cpu = " on the CPU";
 
 constexpr std::array<std::string_view, 4> kind_names{"cloths", "bodies", "garments", "other scenes"};
 
@@ -52,8 +65,8 @@ struct SizeLines {
 };
 
 SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
-                     std::span<const PublishedTable> published, ContentKind kind, const std::string& backend,
-                     const std::string& integrator) {
+                     std::span<const PublishedTable> published, const Provenance& provenance,
+                     ContentKind kind, const std::string& backend, const std::string& integrator) {
   SizeLines lines;
   for (const ResultRow& row : rows)
     if (kind_of(row) == kind && row.backend == backend && row.integrator == integrator && counts(row))
@@ -62,8 +75,8 @@ SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
   const auto of_backend = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
   if (of_backend != legend.backends.end()) lines.configuration = of_backend->configuration;
   const auto method = std::ranges::find(legend.integrators, integrator, &PaperLegend::Integrator::name);
-  lines.measured = {.name = backend + ", measured", .family = backend};
-  lines.published = published_series(lines.configuration, backend);
+  lines.measured = measured_series(look_of(rows, backend, provenance));
+  lines.published = published_series(lines.configuration, legend);
   for (const ResultRow* row : lines.rows) {
     add_time(lines.measured, *row);
     if (method == legend.integrators.end() || !row->scene_as_shipped) continue;
@@ -132,7 +145,46 @@ Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, dou
 
 }  // namespace
 
-std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& id) {
+BackendLook look_on(std::string_view device, std::string_view backend, const Provenance& provenance) {
+  std::string name(backend), family(backend);
+  if (is_this_processor(device, provenance))
+    family = name += on_the_cpu;
+  else if (!device.empty())
+    name += ", " + device_name(device);
+  return {std::move(name), std::move(family)};
+}
+
+BackendLook look_of(std::span<const ResultRow> rows, std::string_view backend, const Provenance& provenance) {
+  const ResultRow* row = row_with_device(pointers_to(rows), backend);
+  return look_on(row ? opencl_device(*row) : "", backend, provenance);
+}
+
+bool is_for_gpus(std::string_view backend, const PaperLegend& legend) {
+  const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
+  return found != legend.backends.end() && found->configuration.find("gpu") != std::string::npos;
+}
+
+std::vector<std::string> families_of_backends(const PaperLegend& legend) {
+  std::vector<std::string> families;
+  const auto is_variant = [](const PaperLegend::Backend& backend) {
+    return backend.name.find(':') != std::string::npos;
+  };
+  for (const PaperLegend::Backend& backend : legend.backends)
+    if (!is_variant(backend)) families.push_back(backend.name);
+  for (const PaperLegend::Backend& backend : legend.backends)
+    if (!is_variant(backend) && is_for_gpus(backend.name, legend))
+      families.push_back(backend.name + on_the_cpu);
+  return families;
+}
+
+std::string where_measured(const Provenance& provenance, bool with_threads) {
+  if (provenance.machine.cpu_model.empty()) return {};
+  return "Measured on " + cpu_name(provenance.machine) +
+         (with_threads ? ", " + pluralize(provenance.threads, "thread") : "");
+}
+
+std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& provenance,
+                                  const std::string& id) {
   std::vector<Chart> charts;
   const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
   if (std::ranges::find(one_thread, baseline_name) == one_thread.end()) return charts;
@@ -140,18 +192,18 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& 
     if (integrator.name != integrator.paper_name) continue;
     Chart chart =
         chart_of(id + "-speed-up-" + integrator.name, integrator.name + ": speed-up over one thread",
-                 {"nodes", true}, {"times as fast as one thread", true});
+                 where_measured(provenance), nodes_axis(), {"times as fast as one thread", true});
     bool is_measured = false;
     for (const PaperConfiguration& configuration : paper_configurations) {
       if (configuration.name == one_thread_configuration) continue;
       const std::vector<std::string> backends = scenes.backends_of(configuration.name);
-      Series published = published_series(configuration.name, backends.empty() ? "" : backends.front());
+      Series published = published_series(configuration.name, scenes.legend());
       for (const PaperScene& scene : scenes.scenes())
         if (const auto speedup = scenes.published_speedup(scene, integrator.paper_name, configuration.name))
           add_point(published, scene.nodes, *speedup);
       if (!published.x.empty()) chart.series.push_back(std::move(published));
       for (const std::string& backend : backends) {
-        Series measured{.name = backend + ", measured", .family = backend};
+        Series measured = measured_series(look_of(scenes.rows(), backend, provenance));
         for (const PaperScene& scene : scenes.scenes()) {
           const auto speedup = times_as_fast(scenes.row(scene, backend, integrator.name),
                                              scenes.row(scene, baseline_name, integrator.name));
@@ -170,16 +222,18 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& 
   return charts;
 }
 
-std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::string& id) {
-  Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of jeans", {"vertices", false},
-                         {"time of an iteration (ms)", false});
+std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
+                                   const std::string& id) {
+  Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of jeans", where_measured(provenance),
+                         {"vertices", false}, {"time per iteration (ms)", false});
   for (const ResultRow& row : rows) {
     if (!row.dressing || !counts(row)) continue;
+    const BackendLook look = look_of(rows, row.backend, provenance);
     const std::string name =
-        row.backend + (is_parallel(row.backend) ? ", with parallelisation" : ", without parallelisation");
+        look.name + (is_parallel(row.backend) ? ", with parallelisation" : ", without parallelisation");
     auto series = std::ranges::find(chart.series, name, &Series::name);
     if (series == chart.series.end())
-      series = chart.series.insert(series, Series{.name = name, .family = row.backend});
+      series = chart.series.insert(series, Series{.name = name, .family = look.family});
     add_time(*series, row);
   }
   return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
@@ -192,18 +246,19 @@ ContentKind kind_of(const ResultRow& row) {
 }
 
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
-                                  std::span<const PublishedTable> published, const std::string& id) {
+                                  std::span<const PublishedTable> published, const Provenance& provenance,
+                                  const std::string& id) {
   std::vector<Chart> charts;
   if (rows.empty()) return charts;
   const std::string integrator = rows.front().integrator;
   for (std::size_t kind = 0; kind < kind_names.size(); ++kind) {
     Chart chart = chart_of(fmt::format("{}-scaling-{}", id, kind),
-                           fmt::format("Time of a {} step of {}", integrator, kind_names[kind]),
-                           {"nodes", true}, {"time of a step (ms)", true});
+                           fmt::format("{}: time per step of {}", integrator, kind_names[kind]),
+                           where_measured(provenance), nodes_axis(), {"time per step (ms)", true});
     std::vector<std::string> shown;
     for (const std::string& backend : distinct(rows, &ResultRow::backend)) {
-      SizeLines lines =
-          size_lines(rows, legend, published, static_cast<ContentKind>(kind), backend, integrator);
+      SizeLines lines = size_lines(rows, legend, published, provenance, static_cast<ContentKind>(kind),
+                                   backend, integrator);
       if (!lines.measured_slope) continue;
       chart.series.push_back(with_slope(std::move(lines.measured), lines.measured_slope));
       if (lines.published.x.empty() || std::ranges::find(shown, lines.configuration) != shown.end()) continue;
@@ -224,17 +279,18 @@ std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenan
     const std::optional<RatioInterval> speedup = of.speedup();
     if (!speedup || of.row->integrator != rows.front().integrator) continue;
     if (!last || last->scene != of.row->scene) {
-      charts.push_back(
-          chart_of(fmt::format("{}-threads-{}", id, charts.size()),
-                   of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
-                   {"threads", true}, {"times as fast", true}));
+      charts.push_back(chart_of(
+          fmt::format("{}-threads-{}", id, charts.size()),
+          of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
+          where_measured(provenance, false),
+          {.label = "threads", .logarithmic = true, .ticks_at_values = true}, {"times as fast", true}));
       charts.back().series.push_back({.name = "as many times as threads", .origin = Origin::reference});
     }
     last = of.row;
     std::vector<Series>& all = charts.back().series;
-    auto series = std::ranges::find(all, of.backend, &Series::family);
-    if (series == all.end())
-      series = all.insert(series, {.name = std::string(of.backend), .family = std::string(of.backend)});
+    const BackendLook look = look_on(opencl_device(*of.row), of.backend, provenance);
+    auto series = std::ranges::find(all, look.family, &Series::family);
+    if (series == all.end()) series = all.insert(series, {.name = look.name, .family = look.family});
     if (all.size() == 2) all.front().add(of.threads, static_cast<double>(of.threads) / of.fewest_threads);
     series->add(of.threads, speedup->ratio);
     series->low.push_back(speedup->low);
@@ -250,7 +306,7 @@ Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
     for (const std::string& integrator : distinct(rows, &ResultRow::integrator))
       for (const std::string& backend : distinct(rows, &ResultRow::backend)) {
         const SizeLines lines =
-            size_lines(rows, legend, published, static_cast<ContentKind>(kind), backend, integrator);
+            size_lines(rows, legend, published, {}, static_cast<ContentKind>(kind), backend, integrator);
         if (lines.measured_slope)
           table.add({{"backend", "`" + backend + "`"},
                      {"integrator", integrator},
@@ -262,21 +318,24 @@ Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
   return table;
 }
 
-std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const std::string& id) {
+std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
+                                    const std::string& id) {
   const ResultRow* largest = nullptr;
   for (const ResultRow& row : rows)
     if (row.roofline_fraction && dot_of(row) && (!largest || row.nodes > largest->nodes)) largest = &row;
   if (!largest) return std::nullopt;
   Chart chart = chart_of(id + "-roofline", "Roofline: " + largest->scene + ", " + largest->integrator,
-                         {"operations a byte", true}, {"operations a second (10⁹)", true}, ChartForm::points);
+                         where_measured(provenance), {"operations per byte", true},
+                         {"operations per second (10⁹)", true}, ChartForm::points);
   std::map<int, std::vector<RoofDot>> under_roof;  // by threads
   double least = INFINITY, most = 0;
   for (const ResultRow& row : rows) {
     if (row.scene != largest->scene || row.integrator != largest->integrator) continue;
     const auto dot = dot_of(row);
     if (!dot) continue;
+    const BackendLook look = look_of(rows, row.backend, provenance);
     chart.series.push_back(
-        {.name = row.backend, .family = row.backend, .x = {dot->intensity}, .y = {dot->gigaflops}});
+        {.name = look.name, .family = look.family, .x = {dot->intensity}, .y = {dot->gigaflops}});
     if (dot->roof) under_roof[row.threads].push_back(*dot);
     least = std::min(least, dot->intensity);
     most = std::max(most, dot->intensity);
@@ -286,10 +345,26 @@ std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const std::
   return chart;
 }
 
+bool has_one_place(const Chart& chart) {
+  const auto range = range_of(chart);
+  return chart.form == ChartForm::lines && range && range->x.low == range->x.high;
+}
+
+Table values_of(const Chart& chart) {
+  Table table{{{chart.x.label}, {"configuration"}, {chart.y.label}, {"95 % interval", Align::right}}, {}};
+  for (const Series& series : chart.series)
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      table.rows.push_back(
+          {static_cast<std::uint64_t>(series.x[i]), series.name, series.y[i],
+           series.low.empty() ? Cell() : Cell(interval_text(series.low[i], series.high[i]))});
+  return table;
+}
+
 Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> references, const std::string& id) {
   // More points would hide the reference.
   constexpr std::size_t most_points = 40;
-  Chart chart = chart_of(id, "Total energy: " + curve.name, {"time (s)", false}, {"total energy (J)", false});
+  Chart chart =
+      chart_of(id, "Total energy: " + curve.name, "", {"time (s)", false}, {"total energy (J)", false});
   Series& points = chart.series.emplace_back(Series{.name = curve.name, .family = ""});
   const std::size_t count = curve.time_s.size(), apart = std::max<std::size_t>(1, count / most_points);
   for (std::size_t i = 0; i < count; i += apart) points.add(curve.time_s[i], curve.total_j[i]);

@@ -27,6 +27,17 @@ std::string of_each_folder(const ReportInput& input, const std::string& without,
   return text.empty() ? without : text;
 }
 
+/// What made the times of a folder less certain, as mssim saw it when it started to measure; its remedies
+/// come too late. Empty where there was nothing.
+std::string noise_note(const ReportFolder& folder) {
+  std::vector<std::string> noise;
+  for (const std::string& sentence : folder.where_from().noise)
+    noise.push_back(sentence.substr(0, sentence.find(": ")));
+  return noise.empty() ? ""
+                       : fmt::format("<p class=\"problems\">When this run started: {}.</p>\n",
+                                     html_text(join(noise, "; ")));
+}
+
 // Machine and provenance
 
 std::string caches_of(const Machine& machine) {
@@ -47,12 +58,31 @@ std::string rounds_of(const ReportFolder& folder) {
   return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
-/// What ran in which folder, and what is missing.
+/// The devices as people know them, without their platforms, which the names of PoCL's say.
+std::vector<std::string> devices_of(const Provenance& provenance) {
+  std::vector<std::string> devices;
+  for (const std::string& device : provenance.opencl_devices) {
+    const std::size_t name = device.find(": ");
+    devices.push_back(device_name(name == std::string::npos ? device : device.substr(name + 2)));
+  }
+  return devices;
+}
+
+/// What is missing or damaged; empty where nothing is.
+std::string problem_section(const ReportInput& input) {
+  std::vector<std::string> problems = input.problems;
+  for (const ReportFolder& folder : input.folders)
+    problems.insert(problems.end(), folder.problems.begin(), folder.problems.end());
+  // These name files, in which no mark is meant.
+  std::string items;
+  for (const std::string& problem : problems) items += "<li>" + html_text(problem) + ".</li>\n";
+  return items.empty() ? items : "<ul class=\"problems\">\n" + items + "</ul>\n";
+}
+
+/// What ran in which folder.
 std::string machine_section(const ReportInput& input) {
   Table table;
-  BulletList problems{input.problems};
   for (const ReportFolder& folder : input.folders) {
-    problems.items.insert(problems.items.end(), folder.problems.begin(), folder.problems.end());
     if (!folder.provenance) continue;
     const Provenance& provenance = *folder.provenance;
     const Machine& machine = provenance.machine;
@@ -61,25 +91,17 @@ std::string machine_section(const ReportInput& input) {
                {"logical CPUs", machine.logical_cpus},
                {"threads", provenance.threads},
                {"memory", three_digits(static_cast<double>(machine.memory_bytes) / (1U << 30U)) + " GiB"},
-               {"OpenCL devices", join(provenance.opencl_devices, "; ")},
+               {"OpenCL devices", join(devices_of(provenance), "; ")},
                {"system", machine.operating_system},
                {"compiler", provenance.build.compiler + ", " + provenance.build.build_type},
                {"mssim", made_by(provenance)},
                {"rounds", rounds_of(folder)}});
   }
   for (Column& column : table.columns) column.align = Align::left;
-  std::string text =
-      table.rows.empty() ? "<p>No folder says on which machine it was measured.</p>\n" : html_of(table);
-  // These name files, in which no mark is meant.
-  if (!problems.items.empty()) {
-    text += "<h3>What is missing or damaged</h3>\n<ul class=\"problems\">\n";
-    for (const std::string& problem : problems.items) text += "<li>" + html_text(problem) + ".</li>\n";
-    text += "</ul>\n";
-  }
-  return text;
+  return table.rows.empty() ? "<p>No folder says on which machine it was measured.</p>\n" : html_of(table);
 }
 
-std::string provenance_of(const Provenance& provenance) {
+std::string list_of(const Provenance& provenance) {
   const Machine& machine = provenance.machine;
   std::vector<std::string> environment, scenes, load;
   for (const auto& [name, value] : provenance.thread_environment) environment.push_back(name + "=" + value);
@@ -116,7 +138,7 @@ std::string provenance_of(const Provenance& provenance) {
 /// What one needs to judge the numbers and to measure them again.
 std::string provenance_section(const ReportInput& input) {
   return of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) {
-    return folder.provenance ? provenance_of(*folder.provenance)
+    return folder.provenance ? list_of(*folder.provenance)
                              : "<p>provenance.json is missing or damaged: where these numbers come from is "
                                "not known.</p>\n";
   });
@@ -150,17 +172,57 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
   return text + html_of(table);
 }
 
+/// The outcomes of all folders side by side: a line for each claim that one of them decides or leaves
+/// undecided, a column for each folder.
+std::string outcomes_of(const ReportInput& input) {
+  Table table{{{"what the paper says"}, {"where"}}, {}};
+  std::map<const Claim*, std::vector<Cell>> outcomes;
+  std::set<const Claim*> untested;
+  for (const ReportFolder& folder : input.folders) {
+    for (const JudgedClaim& judged : judge(folder, input)) {
+      if (judged.outcome == ClaimOutcome::not_testable) {
+        untested.insert(judged.claim);
+        continue;
+      }
+      std::vector<Cell>& cells = outcomes[judged.claim];
+      cells.resize(table.columns.size() - 2);
+      Cell& cell = cells.emplace_back(std::string(name_of(judged.outcome)));
+      cell.strong = judged.outcome != ClaimOutcome::undecided;
+    }
+    table.columns.push_back({std::filesystem::path(folder.name).filename().string()});
+  }
+  for (const Claim& claim : input.claims) {
+    const auto found = outcomes.find(&claim);
+    if (found == outcomes.end()) continue;
+    untested.erase(&claim);
+    std::vector<Cell>& line = table.rows.emplace_back();
+    line = {claim.says, claim.paper + ": " + claim.place};
+    std::ranges::move(found->second, std::back_inserter(line));
+    line.resize(table.columns.size());
+  }
+  std::string text =
+      table.rows.empty() ? "" : html_of(table) + "<p>A dash: not testable with that folder.</p>\n";
+  if (!untested.empty())
+    text += fmt::format("<p>{} can be tested with none of the folders.</p>\n",
+                        pluralize(untested.size(), table.rows.empty() ? "claim" : "further claim"));
+  return text;
+}
+
 std::string verdict_section(const ReportInput& input) {
-  return "<p>What the papers say, and whether it holds of the rows of a folder, whose machine is not theirs: "
-         "Hong et al. measured on a Nexus 7, with ten threads. A claim held where every ratio lies above "
-         "what it needs with its whole interval, and did not where one lies below. A row that is not "
-         "verified "
-         "counts nowhere, and OpenCL on the processor decides nothing about a GPU.</p>\n" +
-         of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
-           if (folder.rows.empty()) return std::string("<p>There is no row to judge.</p>\n");
-           return table_of(judge(folder, input)) +
-                  list_of(row_findings(folder.rows, folder.provenance.value_or(Provenance())));
-         });
+  const std::string ratios = of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
+    if (folder.rows.empty()) return std::string("<p>There is no row to judge.</p>\n");
+    return table_of(judge(folder, input)) + list_of(row_findings(folder.rows, folder.where_from()));
+  });
+  return fmt::format(
+      "<p>What the papers say, and whether it held here. Hong et al. measured on a {}, with ten threads. A "
+      "claim <strong>held</strong> if every ratio lies above what it needs with its whole interval, and is "
+      "<strong>not held</strong> if one lies below. Rows that are not verified do not count. OpenCL on the "
+      "processor decides nothing about a GPU.</p>\n{}",
+      paper_device,
+      input.folders.size() < 2
+          ? ratios
+          : outcomes_of(input) + "<details><summary>The ratios of each folder</summary>\n" + ratios +
+                "</details>\n");
 }
 
 /// The rows that can be compared: those that count have samples.
@@ -204,12 +266,15 @@ std::string verified_mark(const ResultRow& row) {
   return row.status == "ok" ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
 }
 
-Table times_of(const std::vector<const ResultRow*>& rows, RowPointers all) {
+/// Times come second, so that a narrow screen shows them.
+Table times_of(const std::vector<const ResultRow*>& rows, const ReportFolder& folder) {
+  const std::vector<const ResultRow*> all = pointers_to(folder.rows);
+  const Provenance provenance = folder.where_from();
   Table table{{{"scene"},
-               {"integrator"},
+               {"ms per step", Align::right},
                {"backend"},
+               {"integrator"},
                {"threads"},
-               {"time of a step (ms)", Align::right},
                {"95 % interval (ms)", Align::right},
                {"speed-up", Align::right, "×"},
                {"95 % interval", Align::right},
@@ -223,9 +288,9 @@ Table times_of(const std::vector<const ResultRow*>& rows, RowPointers all) {
     const bool shown = counts(*row);
     Cell published = row->paper_ms;
     published.exact = true;
-    table.rows.push_back({row->scene, row->integrator, "`" + row->backend + "`",
+    table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
+                          look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
                           row->threads > 0 ? Cell(row->threads) : Cell(),
-                          shown ? Cell(row->ms_per_step) : Cell(),
                           shown && row->ms_per_step_low && row->ms_per_step_high
                               ? Cell(interval_text(*row->ms_per_step_low, *row->ms_per_step_high))
                               : Cell(),
@@ -254,15 +319,17 @@ std::vector<const ResultRow*> headline_rows(RowPointers rows) {
 }
 
 std::string headline_section(const ReportInput& input) {
-  return "<p>The largest scene of each kind. Times are medians of the rounds; intervals hold the true median "
-         "in 95 % of the cases (with fewer than six rounds they are the smallest and the largest sample). "
-         "Speed-ups are over <code>serial</code>, medians of the ratios within each round.</p>\n" +
+  return "<p>The largest scene of each kind; <em>ms per step</em> are medians over the rounds. Intervals "
+         "contain "
+         "the true median in 95 % of all cases. With fewer than six rounds they are the smallest and the "
+         "largest "
+         "sample. Speed-ups are over <code>serial</code>: medians of the ratios within each round.</p>\n" +
          of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) -> std::string {
            if (folder.rows.empty()) return "<p>There are no rows.</p>\n";
            const std::vector<const ResultRow*> all = pointers_to(folder.rows);
-           return fmt::format("{}<details><summary>All {}</summary>\n{}</details>\n",
-                              html_of(times_of(headline_rows(all), all)), pluralize(all.size(), "row"),
-                              html_of(times_of(all, all)));
+           return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n", noise_note(folder),
+                              html_of(times_of(headline_rows(all), folder)), pluralize(all.size(), "row"),
+                              html_of(times_of(all, folder)));
          });
 }
 
@@ -271,9 +338,9 @@ std::string published_section(const ReportInput& input) {
   return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
     std::string text;
     if (input.tables)
-      for (const ResultTable& table : input.tables(folder.rows, folder.provenance.value_or(Provenance())))
+      for (const ResultTable& table : input.tables(folder.rows, folder.where_from()))
         text += html_of(table.page, 4);
-    return text.empty() ? "<p>No row of this folder belongs into a published table.</p>\n" : text;
+    return text.empty() ? "<p>No row of this folder belongs in a published table.</p>\n" : text;
   });
 }
 
@@ -286,18 +353,19 @@ std::string in_figures(const std::string& figures) {
 /// Where nothing else decides how series look, each backend looks the same in every chart, whatever variants
 /// of backends are beside it.
 std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
-  for (Chart& chart : charts) {
-    if (!chart.families.empty()) continue;
-    for (const PaperLegend::Backend& backend : legend.backends)
-      if (backend.name.find(':') == std::string::npos) chart.families.push_back(backend.name);
-  }
+  for (Chart& chart : charts)
+    if (chart.families.empty()) chart.families = families_of_backends(legend);
   return charts;
 }
 
-/// Charts with their notes, or the sentence why there is none.
+/// Charts with their notes, or the sentence why there is none; first those of one place, as tables.
 std::string figures_of(const std::vector<Chart>& charts) {
-  std::string text;
+  std::string tables, text;
   for (const Chart& chart : charts) {
+    if (has_one_place(chart)) {
+      tables += fmt::format("<h4>{}</h4>\n", html_text(chart.title)) + html_of(values_of(chart));
+      continue;
+    }
     const DrawnChart drawn = draw_svg(chart);
     // The chart has its title in it.
     const std::string notes =
@@ -306,7 +374,7 @@ std::string figures_of(const std::vector<Chart>& charts) {
                                     ": no chart, because there is no value to draw.</p>\n"
                               : "<figure>" + drawn.svg + notes + "</figure>\n";
   }
-  return in_figures(text);
+  return tables + in_figures(text);
 }
 
 std::string pictures_of(const std::vector<FoundPicture>& pictures) {
@@ -318,34 +386,38 @@ std::string pictures_of(const std::vector<FoundPicture>& pictures) {
 }
 
 std::string speedup_section(const ReportInput& input) {
-  return "<p>Published lines are dashed, with open points; measured ones have intervals. Both axes are "
-         "logarithmic in charts of speed-ups, and neither in Figure 6 of Vassilev, which shows its own times "
-         "as curves without numbers.</p>\n" +
+  return "<p>Published lines are dashed and have open points; measured ones have intervals. Both axes of "
+         "speed-ups "
+         "are logarithmic, neither of Figure 6 of Vassilev is. The paper shows its own times as curves "
+         "without "
+         "numbers.</p>\n" +
          of_each_folder(input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           std::vector<Chart> charts;
                           for (const PublishedTable& published : input.published) {
                             const PaperScenes scenes(folder.rows, input.legend, published);
-                            std::ranges::move(
-                                speedup_charts(scenes, id + "-" + std::string(published.info().name)),
-                                std::back_inserter(charts));
+                            std::ranges::move(speedup_charts(scenes, folder.where_from(),
+                                                             id + "-" + std::string(published.info().name)),
+                                              std::back_inserter(charts));
                           }
-                          if (auto figure6 = figure6_chart(folder.rows, id))
+                          if (auto figure6 = figure6_chart(folder.rows, folder.where_from(), id))
                             charts.push_back(std::move(*figure6));
                           return figures_of(with_looks_of_backends(std::move(charts), input.legend));
                         });
 }
 
 std::string scaling_section(const ReportInput& input) {
-  return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes: 1 "
-         "where a node costs the same at every size. Speed-ups over threads are those of one backend over "
-         "itself "
-         "on the fewest.</p>\n" +
+  return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes. It "
+         "is 1 "
+         "if a node costs the same at every size. Speed-ups over threads compare a backend with itself on "
+         "the "
+         "fewest threads.</p>\n" +
          of_each_folder(
              input, "<p>No folder has two sizes of a kind of scene, or two numbers of threads.</p>\n",
              [&](const ReportFolder& folder, const std::string& id) {
                const Table slopes = slope_table(folder.rows, input.legend, input.published);
-               std::vector<Chart> charts = scaling_charts(folder.rows, input.legend, input.published, id);
+               std::vector<Chart> charts =
+                   scaling_charts(folder.rows, input.legend, input.published, folder.where_from(), id);
                if (folder.provenance)
                  std::ranges::move(thread_charts(folder.rows, *folder.provenance, id),
                                    std::back_inserter(charts));
@@ -355,11 +427,12 @@ std::string scaling_section(const ReportInput& input) {
 }
 
 std::string roofline_section(const ReportInput& input) {
-  return "<p>Operations and bytes are what a step needs at least. Roofs are what the timings say of the "
-         "machine's peaks, measured in the same process.</p>\n" +
+  return "<p>Operations and bytes are the least that a step needs. Roofs are the machine's peaks, measured "
+         "in the "
+         "same process; other programs that run then lower them.</p>\n" +
          of_each_folder(input, "<p>No folder has rows with a roofline; garments have none.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
-                          const auto chart = roofline_chart(folder.rows, id);
+                          const auto chart = roofline_chart(folder.rows, folder.where_from(), id);
                           return chart ? figures_of(with_looks_of_backends({*chart}, input.legend))
                                        : std::string();
                         });
@@ -449,7 +522,8 @@ std::string guide_of_scene(const Document& scene, const std::vector<Chart>& char
   return text;
 }
 
-std::string guide_of(const FoundGuide& guide, const PaperLegend& legend, const std::string& id, int level) {
+std::string guide_of(const FoundGuide& guide, const Provenance& provenance, const PaperLegend& legend,
+                     const std::string& id, int level) {
   std::vector<Document> parts = parts_of(guide.page, 2);
   // The title is the section's.
   std::erase_if(parts.front(), [](const auto& block) { return std::holds_alternative<Heading>(block); });
@@ -464,8 +538,10 @@ std::string guide_of(const FoundGuide& guide, const PaperLegend& legend, const s
         std::ranges::find_if(scenes, [&](const std::string& name) { return is_about(parts[i], name); });
     std::vector<Chart> charts;
     if (scene != scenes.end())
-      charts = with_looks_of_backends(
-          guide_charts(guide, *scene, fmt::format("{}-guide-{}", id, scene - scenes.begin() + 1)), legend);
+      charts =
+          with_looks_of_backends(guide_charts(guide, legend, provenance, *scene,
+                                              fmt::format("{}-guide-{}", id, scene - scenes.begin() + 1)),
+                                 legend);
     text += guide_of_scene(parts[i], charts, level);
   }
   return text;
@@ -475,18 +551,21 @@ std::string guide_of(const FoundGuide& guide, const PaperLegend& legend, const s
 std::string guide_section(const ReportInput& input) {
   const int level = input.folders.size() < 2 ? 3 : 4;
   return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string& id) {
-    return folder.guide ? guide_of(*folder.guide, input.legend, id, level) : std::string();
+    if (!folder.guide) return std::string();
+    return (folder.rows.empty() ? noise_note(folder) : "") +
+           guide_of(*folder.guide, folder.where_from(), input.legend, id, level);
   });
 }
 
 constexpr auto sections = std::to_array<PageSection>({
-    {"machine", "Machine and settings", machine_section, false},
+    {"problems", "What is missing or damaged", problem_section, false},
     {"verdict", "Verdict", verdict_section},
-    {"changes", "What changed", changes_section},
     {"headline", "Times", headline_section},
-    {"published", "Published beside measured", published_section},
+    {"changes", "What changed", changes_section},
     {"guide", "Guide", guide_section, false},
+    {"machine", "Machine and settings", machine_section, false},
     {"speed-up", "Speed-up", speedup_section},
+    {"published", "Published beside measured", published_section},
     {"scaling", "Scaling", scaling_section},
     {"roofline", "Roofline", roofline_section},
     {"energy", "Energy", energy_section},

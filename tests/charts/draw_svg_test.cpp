@@ -25,6 +25,7 @@ Chart small_chart(ChartForm form) {
   chart.id = "small";
   chart.title = "Time of a step";
   chart.form = form;
+  chart.subtitle = "Measured on A Processor";
   chart.x = {"nodes", true};
   chart.y = {"time of a step (ms)", true};
   const std::vector<double> nodes{2500, 10000};
@@ -63,8 +64,8 @@ TEST_F(DrawSvg, EachFormIsWellFormedAndHasItsTexts) {
   for (const ChartForm form : {ChartForm::lines, ChartForm::points}) {
     const std::string svg = drawn(small_chart(form));
     expect_well_formed(svg);
-    for (const char* text :
-         {">Time of a step<", ">nodes<", ">time of a step (ms)<", ">serial<", ">CPU, published<"})
+    for (const char* text : {">Time of a step<", ">Measured on A Processor<", ">nodes<",
+                             ">time of a step (ms)<", ">serial<", ">CPU, published<"})
       EXPECT_THAT(svg, HasSubstr(text));
     EXPECT_EQ(count(svg.substr(std::min(svg.size(), svg.rfind("<g "))), "L"), 1U)
         << "the reference is a line";
@@ -98,12 +99,12 @@ TEST_F(DrawSvg, MarksAreSignsInTheColourOfTheText) {
   }
 }
 
-TEST_F(DrawSvg, TwelveLinesDifferWithoutColours) {
+TEST_F(DrawSvg, SixteenLinesDifferWithoutColours) {
   Chart chart = small_chart(ChartForm::lines);
   chart.series.clear();
-  for (int i = 0; i < 12; ++i) chart.series.push_back({.name = "a", .x = {1, 2}, .y = {1, 2}});
+  for (int i = 0; i < 16; ++i) chart.series.push_back({.name = "a", .x = {1, 2}, .y = {1, 2}});
   std::string svg = drawn(chart);
-  EXPECT_EQ(count(svg, "stroke-dasharray"), 6U) << "from the seventh on, where shapes repeat";
+  EXPECT_EQ(count(svg, "stroke-dasharray"), 8U) << "from the ninth on, where shapes repeat";
   std::set<std::string> looks;
   for (std::size_t at = 0; (at = svg.find("<g ", at)) != std::string::npos;) {
     const std::string series = svg.substr(at, svg.find("</g>", at) - at);
@@ -113,7 +114,7 @@ TEST_F(DrawSvg, TwelveLinesDifferWithoutColours) {
                  series.substr(shape, series.find('M', shape) - shape));
     ++at;
   }
-  EXPECT_EQ(looks.size(), 12U);
+  EXPECT_EQ(looks.size(), 16U);
 }
 
 TEST_F(DrawSvg, ValuesStandWhereTheAxesSay) {

@@ -99,6 +99,10 @@ TEST(SeriesLook, ColoursAreSeenOnWhiteAndOnNearBlack) {
   }
 }
 
+TEST(SeriesLook, NoTwoColoursAreTheSame) {
+  EXPECT_EQ(std::set(series_colours.begin(), series_colours.end()).size(), series_colours.size());
+}
+
 TEST(SeriesLook, AFamilyDiffersByOriginAlone) {
   const std::vector<Series> series{{.name = "a", .origin = Origin::published, .family = "gpu"},
                                    {.name = "b", .family = "cpu"},
@@ -229,6 +233,35 @@ TEST(AxisScale, EachPairOfValuesHasRoomAndTicks) {
     EXPECT_LT(linear_scale(low, high).low, linear_scale(low, high).high);
     EXPECT_GE(linear_scale(low, high).ticks.size(), 2U);
   }
+}
+
+ChartLayout layout_with_ticks_at(const std::vector<double>& along) {
+  Chart chart = chart_of({.name = "a", .x = along, .y = along});
+  chart.x = {.label = "nodes", .logarithmic = true, .ticks_at_values = true};
+  return chart_layout(chart, plotted_values(chart)).value();
+}
+
+TEST(ChartLayout, TicksAtValuesAreTheValues) {
+  const ChartLayout layout = layout_with_ticks_at({2500, 4900, 10000, 40000, 200000, 350000});
+  EXPECT_THAT(labels_of(layout.x), ElementsAre("2,500", "4,900", "10,000", "40,000", "200,000", "350,000"));
+  EXPECT_THAT(layout.tick_rows, testing::Each(testing::Ne(std::nullopt))) << "all are named";
+}
+
+TEST(ChartLayout, LabelsThatStandTooCloseTakeTurns) {
+  EXPECT_THAT(layout_with_ticks_at({100, 1000, 10000}).tick_rows, ElementsAre(0, 0, 0));
+  EXPECT_THAT(layout_with_ticks_at({1000, 9000, 10000}).tick_rows, ElementsAre(0, 1, 0));
+  EXPECT_THAT(layout_with_ticks_at({1000, 9800, 9900, 10000}).tick_rows, ElementsAre(0, 1, std::nullopt, 0));
+  EXPECT_GT(layout_with_ticks_at({1000, 9000, 10000}).height, layout_with_ticks_at({1000, 10000}).height);
+}
+
+TEST(ChartLayout, HasASubtitleBelowTheTitle) {
+  Chart chart = chart_of({.name = "a", .x = {1}, .y = {1}});
+  chart.title = "title";
+  const ChartLayout without = chart_layout(chart, plotted_values(chart)).value();
+  chart.subtitle = "Measured on A Processor";
+  const ChartLayout with = chart_layout(chart, plotted_values(chart)).value();
+  EXPECT_THAT(with.subtitle, ElementsAre("Measured on A Processor"));
+  EXPECT_EQ(with.top - without.top, line_height);
 }
 
 }  // namespace

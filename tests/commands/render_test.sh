@@ -46,6 +46,9 @@ cmp -s object.png strain.png && fail "strain is not shown"
 ends 0 render t.h5 --sheet 2x2 --size 100x80
 expect_picture t-sheet.png "$(size_of t-sheet.png)"
 [ "$(size_of t-sheet.png | cut -dx -f1)" -gt 200 ] || fail "two pictures do not fit beside each other on the sheet"
+# A legend takes the last place: of two, one is the moment.
+ends 0 render t.h5 --sheet 2x1 --size 320x240 --colour strain --out with-legend.png
+[ "$(size_of with-legend.png | cut -dx -f1)" -gt 640 ] || fail "the legend has no place of its own"
 ends 0 render t.h5 --movie --size 80x60
 [ "$(frames_of t.webp)" -eq 5 ] || fail "the movie has $(frames_of t.webp) frames instead of 5"
 ends 0 render t.h5 --movie --size 80x60 --frames 1-2,last --out some.webp

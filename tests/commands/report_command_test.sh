@@ -82,7 +82,7 @@ report() {
 # The committed results: folders of folders, sections in order, one claim of each outcome.
 report "$results/table1" "$results/table3" "$results/garment"
 order=$(grep -o '<section id="[a-z-]*"' "$work/page.html" | cut -d'"' -f2 | tr '\n' ' ')
-[ "$order" = "machine verdict headline published speed-up scaling roofline energy pictures provenance " ] || fail "sections: $order"
+[ "$order" = "verdict headline machine speed-up published scaling roofline energy pictures provenance " ] || fail "sections: $order"
 [ "$(grep -c '<h3>.*results/[a-z0-9]*/zen[45]</h3>' "$work/page.html")" -ge 36 ] || fail "not every folder is in every section"
 for outcome in held 'not held' undecided 'not testable here'; do has ">$outcome</td>"; done
 python3 - "$work/page.html" <<'EOF'
@@ -102,6 +102,9 @@ gpu = claims["table1/zen4"]["gpu-10-to-34"]
 assert gpu["published"].startswith("10.7× to 34.9×") and gpu["measured"] == "needs a GPU", gpu
 EOF
 has 'all are verified against the double-precision reference'
+for label in '>opencl on the CPU, measured<' '>opencl, NVIDIA H100 80GB HBM3, measured<' '>GPU, Nexus 7, published<' '>350,000<'; do has "$label"; done
+lacks 'AVX3 vectors'
+lacks '>opencl, measured<'
 lacks 'What changed'
 [ "$(grep -c '<svg' "$work/page.html")" -ge 20 ] || fail "charts are missing"
 lacks 'no chart, because '

@@ -144,6 +144,16 @@ TEST(Sheet, WritesCaptionsBelowTheirPictures) {
   EXPECT_NEAR(centred.left + centred.width / 2.0, a.left + a.width / 2.0, 2);
 }
 
+TEST(Sheet, WritesLargerWhereMorePicturesStandInARow) {
+  const auto height_of_letters = [](std::uint32_t columns) {
+    return ink_of(sheet_of(std::vector<CaptionedPicture>(columns, {Picture(320, 60), "H"}), columns))
+        .value()
+        .height;
+  };
+  EXPECT_GE(height_of_letters(4), 15) << "0.73 of 1.7 % of 1280 pixels";
+  EXPECT_LT(height_of_letters(1), 10);
+}
+
 TEST(Sheet, ShortensLongCaptions) {
   std::vector<CaptionedPicture> cells = three(std::string(200, 'n'));
   const Picture sheet = sheet_of(cells, 1);

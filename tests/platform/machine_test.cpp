@@ -128,5 +128,20 @@ TEST(Terminal, TakesTheLocaleOfTheFirstVariableThatIsSet) {
   EXPECT_FALSE(terminal_with({}).utf8);
 }
 
+TEST(DeviceName, IsOneThatPeopleKnow) {
+  for (const auto& [device, name] :
+       {std::pair{"pthread-skylake-avx512-Intel(R) Xeon(R) Processor", "PoCL on Intel(R) Xeon(R) Processor"},
+        {"cpu-znver4-AMD EPYC 9R14-based", "PoCL on AMD EPYC 9R14-based"},
+        {"pthread-A Processor", "PoCL on A Processor"},
+        {"cpu AVX3", "cpu AVX-512"},
+        {"cpu AVX2", "cpu AVX2"},
+        {"cpu", "cpu"},
+        {"cpu-", "cpu-"},
+        {"cpu-cortex-a72", "cpu-cortex-a72"},
+        {"NVIDIA H100 80GB HBM3", "NVIDIA H100 80GB HBM3"},
+        {"", ""}})
+    EXPECT_EQ(device_name(device), name);
+}
+
 }  // namespace
 }  // namespace mssim

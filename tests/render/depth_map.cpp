@@ -1,6 +1,7 @@
 // Writes the depths that mssim's rasteriser finds in the last frame of a trace, for vtk_test.sh:
 //   depth_map TRACE AZIMUTH,ELEVATION WIDTH HEIGHT FILE
-// FILE gets a double for each point that `mssim render` draws such a picture at, row by row from the lowest:
+// FILE gets doubles: the left and the lower edge of such a picture of `mssim render` and the distance of the
+// points that it is drawn at, m as the camera sees them; then one for each point, row by row from the lowest:
 // metres towards the camera from the trace's origin, or a NaN where nothing is.
 #include <cstdint>
 #include <exception>
@@ -34,16 +35,21 @@ Surface last_surface(const TraceReader& trace) {
   return surface;
 }
 
-void write_depths(Surface surface, Shot shot, const std::string& file) {
+Shot shot_of(const TraceReader& trace, const PictureOptions& options) {
+  Painter painter(trace.content(), trace.positions(0), options);
+  painter.make_room_for(trace.positions(trace.frames() - 1));
+  return painter.shot();
+}
+
+void write_depths(Surface surface, const Shot& shot, const std::string& file) {
   const Camera camera(shot.direction);
-  shot.seen = seen_box(camera, surface.points);
   for (Vec3d& point : surface.points) point = camera.seen(point);
+  const PixelGrid grid = drawn_points(shot);
   std::ofstream out(file, std::ios::binary);
-  for (const Fragment& fragment : rasterise(surface, drawn_points(shot), ViewFrom::front)) {
-    const bool hit = fragment.triangle != Fragment::nothing;
-    const double depth = hit ? fragment.z : std::numeric_limits<double>::quiet_NaN();
-    out.write(reinterpret_cast<const char*>(&depth), sizeof depth);
-  }
+  const auto write = [&](double value) { out.write(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (const double value : {grid.left, grid.bottom, grid.pixel}) write(value);
+  for (const Fragment& fragment : rasterise(surface, grid, ViewFrom::front))
+    write(fragment.triangle != Fragment::nothing ? fragment.z : std::numeric_limits<double>::quiet_NaN());
   out.close();
   if (!out) throw std::runtime_error("cannot write " + file);
 }
@@ -52,11 +58,12 @@ void write_depths(Surface surface, Shot shot, const std::string& file) {
 
 int main(int count, char** arguments) try {
   const std::vector<std::string> given(arguments + 1, arguments + count);
-  Shot shot;
-  shot.direction = view_direction(given.at(1)).value();
-  shot.width = static_cast<std::uint32_t>(std::stoul(given.at(2)));
-  shot.height = static_cast<std::uint32_t>(std::stoul(given.at(3)));
-  write_depths(last_surface(TraceReader(given.at(0))), shot, given.at(4));
+  PictureOptions options;
+  options.view = view_direction(given.at(1)).value();
+  options.width = static_cast<std::uint32_t>(std::stoul(given.at(2)));
+  options.height = static_cast<std::uint32_t>(std::stoul(given.at(3)));
+  const TraceReader trace(given.at(0));
+  write_depths(last_surface(trace), shot_of(trace, options), given.at(4));
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "depth_map: " << error.what() << '\n';

@@ -39,9 +39,10 @@ def shown_in(light, elevation):
 
 
 class Rays:
-    """What VTK sees at the points of a picture."""
+    """What VTK sees at the points of a picture, which shows the subject only, or where there is ground has the edges and steps of `grid`,
+    with more room: for the shadow."""
 
-    def __init__(self, name, azimuth, elevation, columns, rows):
+    def __init__(self, name, azimuth, elevation, columns, rows, grid):
         reader = vtk.vtkOBJReader()
         reader.SetFileName(name)
         camera = vtk.vtkCamera()  # it looks from +z at the origin, 1 m away
@@ -61,6 +62,14 @@ class Rays:
         self.step = max((right - left) / columns, (top - bottom) / rows) / (1 - 2 * MARGIN) / SAMPLES
         self.left = (left + right - SAMPLES * columns * self.step) / 2
         self.bottom = (bottom + top - SAMPLES * rows * self.step) / 2
+        if elevation > 0:
+            self.left, self.bottom, step = grid
+            require(step >= self.step * (1 - 1e-9), f"{name}: a picture with ground has no room for the subject")
+            self.step = step
+            width, height = SAMPLES * columns * step, SAMPLES * rows * step
+            require(self.left + MARGIN * width <= left + 1e-9 and right - 1e-9 <= self.left + (1 - MARGIN) * width
+                    and self.bottom + MARGIN * height <= bottom + 1e-9 and top - 1e-9 <= self.bottom + (1 - MARGIN) * height,
+                    f"{name}: the subject reaches into the margin")
         self.hit = vtk.reference(0.0), [0.0] * 3, [0.0] * 3, vtk.reference(0), vtk.reference(0)
 
     def depth(self, column, row):
@@ -113,11 +122,12 @@ def check(name):
     azimuth, elevation = map(float, name.split("-", 1)[1].split(","))
     shown, least = shown_in(read_picture(name + ".png"), elevation)
     rows, columns = shown.shape
-    rays = Rays(name.split("-", 1)[0] + ".obj", azimuth, elevation, columns, rows)
+    grid, drawn = np.split(np.fromfile(name + ".depths"), [3])
+    rays = Rays(name.split("-", 1)[0] + ".obj", azimuth, elevation, columns, rows, grid)
     depths, cast = rays.depths(shown)
     hits, tried = (np.count_nonzero(points.reshape(rows, SAMPLES, columns, SAMPLES), axis=(1, 3)) for points in (~np.isnan(depths), cast))
     covered = hits / tried
-    drawn = np.fromfile(name + ".depths").reshape(depths.shape)
+    drawn = drawn.reshape(depths.shape)
     most = MOST_DEPTH * rays.extent
 
     wrong, far = pixels_off(covered, shown, least)

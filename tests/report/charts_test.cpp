@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "charts/layout.h"
+#include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "tests/support/result_fixture.h"
 
@@ -42,11 +46,13 @@ const Series& series(const Chart& chart, const std::string& name) {
 TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
   const std::vector<ResultRow> rows = two_cloths();
   const PublishedTable table1(published_table_kinds[0]);
-  const auto charts = speedup_charts(PaperScenes(rows, legend, table1), "f1-table1");
+  const auto charts = speedup_charts(PaperScenes(rows, legend, table1), made_up_provenance(), "f1-table1");
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_EQ(charts[0].id, "f1-table1-speed-up-semi-euler");
+  EXPECT_EQ(charts[0].subtitle, "Measured on A Processor, 2 threads");
+  EXPECT_TRUE(charts[0].x.ticks_at_values);
   EXPECT_EQ(charts[0].series.size(), 4U);
-  const Series &published = series(charts[0], "GPU, published"),
+  const Series &published = series(charts[0], "GPU, Nexus 7, published"),
                &measured = series(charts[0], "opencl, measured");
   EXPECT_EQ(published.origin, Origin::published);
   EXPECT_EQ(published.family, measured.family);
@@ -55,20 +61,65 @@ TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
   EXPECT_TRUE(published.low.empty());
   EXPECT_EQ(measured.y, (std::vector<double>{5, 5}));
   EXPECT_EQ(measured.low, measured.y);
-  EXPECT_TRUE(speedup_charts(PaperScenes({}, legend, table1), "f1").empty());
+  EXPECT_TRUE(speedup_charts(PaperScenes({}, legend, table1), {}, "f1").empty());
+}
+
+TEST(SpeedupCharts, OpenclOnTheProcessorLooksLikeNoGpu) {
+  std::vector<ResultRow> rows = two_cloths();
+  const PublishedTable table1(published_table_kinds[0]);
+  const auto chart_on = [&](const std::string& device) {
+    for (ResultRow& row : rows)
+      if (row.backend == "opencl") row.device = device;
+    return speedup_charts(PaperScenes(rows, legend, table1), made_up_provenance(), "f1").at(0);
+  };
+  const Chart on_cpu = chart_on("pthread-skylake-avx512-A Processor"), on_gpu = chart_on("A GPU");
+  EXPECT_NE(series(on_cpu, "opencl on the CPU, measured").family,
+            series(on_cpu, "GPU, Nexus 7, published").family);
+  EXPECT_EQ(series(on_gpu, "opencl, A GPU, measured").family,
+            series(on_gpu, "GPU, Nexus 7, published").family);
+  EXPECT_EQ(series(on_cpu, "GPU, Nexus 7, published").family,
+            series(on_gpu, "GPU, Nexus 7, published").family);
+  const std::vector<std::string> families = families_of_backends(legend);
+  const auto looks = looks_of(on_cpu.series, families);
+  EXPECT_EQ(std::set(looks.begin(), looks.end()).size(), on_cpu.series.size());
+  for (const char* family : {"opencl", "hybrid", "opencl on the CPU", "hybrid on the CPU"})
+    EXPECT_THAT(families, Contains(family));
+}
+
+TEST(LookOn, NamesTheDevice) {
+  const Provenance provenance = made_up_provenance();
+  EXPECT_EQ(look_on("", "hybrid", provenance).name, "hybrid");
+  EXPECT_EQ(look_on("pthread-znver4-A Processor", "hybrid", provenance).name, "hybrid on the CPU");
+  EXPECT_EQ(look_on("A GPU", "hybrid", provenance).name, "hybrid, A GPU");
+  EXPECT_EQ(look_on("A GPU", "hybrid", provenance).family, "hybrid");
+}
+
+TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
+  const std::vector<ResultRow> rows = two_cloths();
+  const PublishedTable table1(published_table_kinds[0]);
+  const auto chart_of = [&](std::size_t count) {
+    return speedup_charts(PaperScenes(std::span(rows).first(count), legend, table1), {}, "f1").at(0);
+  };
+  EXPECT_FALSE(has_one_place(chart_of(6)));
+  const Chart chart = chart_of(3);
+  EXPECT_TRUE(has_one_place(chart));
+  EXPECT_THAT(to_text(values_of(chart), ListingFormat::csv),
+              testing::AllOf(HasSubstr("\n2500,\"GPU, Nexus 7, published\",10.65"),
+                             HasSubstr("2500,\"opencl, measured\",5.0,5.00 to 5.00")));
 }
 
 TEST(ScalingCharts, NameTheSlopes) {
   const std::vector<ResultRow> rows = two_cloths();
   const std::vector<PublishedTable> published = published_tables();
-  const auto charts = scaling_charts(rows, legend, published, "f1");
+  const auto charts = scaling_charts(rows, legend, published, made_up_provenance(), "f1");
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_TRUE(charts[0].x.logarithmic && charts[0].y.logarithmic);
   EXPECT_EQ(series(charts[0], "serial, measured, slope 1.50").high, (std::vector<double>{2, 16}));
-  EXPECT_EQ(series(charts[0], "CPU only, published, slope 1.02").y, (std::vector<double>{19.475, 80.48}));
+  EXPECT_EQ(series(charts[0], "CPU only, Nexus 7, published, slope 1.02").y,
+            (std::vector<double>{19.475, 80.48}));
   const Table slopes = slope_table(rows, legend, published);
   EXPECT_EQ(slopes.rows.size(), 3U);
-  EXPECT_TRUE(scaling_charts(std::vector(rows.begin(), rows.begin() + 3), legend, published, "f1").empty());
+  EXPECT_TRUE(scaling_charts(std::span(rows).first(3), legend, published, {}, "f1").empty());
 }
 
 TEST(ThreadCharts, ShowSpeedUpsOverTheFewestThreadsBesideTheNumberOfThreads) {
@@ -94,7 +145,7 @@ TEST(RooflineChart, PutsDotsBelowTheirRoofs) {
   for (ResultRow& row : rows) row.gigabytes_per_second = 0.12 / *row.ms_per_step;
   for (ResultRow& row : rows)
     if (row.backend == "opencl") row.roofline_fraction.reset();
-  const auto chart = roofline_chart(rows, "f1");
+  const auto chart = roofline_chart(rows, {}, "f1");
   ASSERT_TRUE(chart);
   EXPECT_EQ(chart->title, "Roofline: cloth10000, semi-euler");
   const Series &dot = series(*chart, "openmp"), &roof = series(*chart, "roof of 2 threads");
@@ -103,7 +154,7 @@ TEST(RooflineChart, PutsDotsBelowTheirRoofs) {
   EXPECT_NEAR(roof.y[1] / roof.x[1] * dot.x[0], dot.y[0] / 0.5, 1e-9 * dot.y[0]);
   EXPECT_EQ(chart->series.size(), 4U);
   for (ResultRow& row : rows) row.roofline_fraction.reset();
-  EXPECT_FALSE(roofline_chart(rows, "f1"));
+  EXPECT_FALSE(roofline_chart(rows, {}, "f1"));
 }
 
 TEST(RooflineChart, EndsARoofAtItsCeiling) {
@@ -113,7 +164,7 @@ TEST(RooflineChart, EndsARoofAtItsCeiling) {
   rows[0].roofline_fraction = 0.5;
   rows[1].gigabytes_per_second = 0.5;  // ten times the intensity of openmp
   rows[1].roofline_fraction = 0.5;
-  const auto chart = roofline_chart(rows, "f1");
+  const auto chart = roofline_chart(rows, {}, "f1");
   const Series& roof = series(*chart, "roof of 2 threads");
   ASSERT_EQ(roof.x.size(), 3U);
   EXPECT_EQ(roof.y[1], roof.y[2]);
@@ -122,10 +173,10 @@ TEST(RooflineChart, EndsARoofAtItsCeiling) {
 
 TEST(Figure6Chart, HasALineForEachBackendThatDresses) {
   std::vector<ResultRow> rows = two_cloths();
-  EXPECT_FALSE(figure6_chart(rows, "f1"));
+  EXPECT_FALSE(figure6_chart(rows, {}, "f1"));
   for (ResultRow& row : rows)
     if (row.backend != "opencl") row.dressing.emplace();
-  const auto chart = figure6_chart(rows, "f1");
+  const auto chart = figure6_chart(rows, {}, "f1");
   ASSERT_TRUE(chart);
   EXPECT_EQ(chart->series.size(), 2U);
   EXPECT_EQ(series(*chart, "openmp, with parallelisation").y, (std::vector<double>{0.1, 0.8}));
@@ -198,7 +249,7 @@ std::vector<std::string> names_in(const Chart& chart) {
 }
 
 TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
-  const auto charts = guide_charts(two_methods(), "cloth", "f1-guide-1");
+  const auto charts = guide_charts(two_methods(), legend, {}, "cloth", "f1-guide-1");
   const Chart& work = chart_called(charts, "f1-guide-1-work-precision");
   EXPECT_TRUE(work.x.logarithmic && work.y.logarithmic);
   EXPECT_THAT(names_in(work), ElementsAre("rk4", "implicit-euler", "diverged", "on the front"));
@@ -211,24 +262,24 @@ TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
   EXPECT_THAT(work.remarks, Contains("Each point is that of the cheapest backend with its step: "
                                      "openmp (implicit-euler), openmp and serial (rk4)"));
   EXPECT_THAT(work.remarks, Contains("No points: xpbd (no time was left)"));
-  EXPECT_THAT(guide_charts(two_methods(), "other", "f1"), IsEmpty());
+  EXPECT_THAT(guide_charts(two_methods(), legend, {}, "other", "f1"), IsEmpty());
 }
 
 TEST(GuideCharts, PutDivergedPointsAtTheEdgeWhateverTheirError) {
-  for (const Chart& chart : guide_charts(two_methods(), "cloth", "f1")) {
+  for (const Chart& chart : guide_charts(two_methods(), legend, {}, "cloth", "f1")) {
     const Series& diverged = series(chart, "diverged");
     EXPECT_EQ(diverged.mark, PointMark::cross);
     EXPECT_THAT(diverged.y, ElementsAre(10)) << chart.id;
     EXPECT_THAT(chart.remarks, Contains("Crosses at an error of 10 diverged, whatever their error"));
   }
-  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  const auto charts = guide_charts(two_methods(), legend, {}, "cloth", "f1");
   EXPECT_THAT(charts.front().remarks, Contains("Diverged: rk4 with 4.00 ms"));
 }
 
 TEST(GuideCharts, PreferABackendThatDidNotDiverge) {
   FoundGuide guide = two_methods();
   guide.points[0] = guide_point("rk4", "serial", 0.004, 1, 0.7);
-  const auto charts = guide_charts(guide, "cloth", "f1");
+  const auto charts = guide_charts(guide, legend, {}, "cloth", "f1");
   EXPECT_THAT(series(charts.front(), "rk4").x, ElementsAre(1, 2, 8));
   EXPECT_THAT(names_in(charts.front()), Not(Contains("diverged")));
 }
@@ -236,7 +287,7 @@ TEST(GuideCharts, PreferABackendThatDidNotDiverge) {
 TEST(GuideCharts, MarkWhatIsNotCompared) {
   FoundGuide guide = two_methods();
   guide.points[2].status = "within the reference's error";
-  for (const Chart& chart : guide_charts(guide, "cloth", "f1")) {
+  for (const Chart& chart : guide_charts(guide, legend, {}, "cloth", "f1")) {
     const Series& marked = series(chart, "not compared");
     EXPECT_EQ(marked.mark, PointMark::square);
     EXPECT_THAT(marked.y, ElementsAre(0.03));
@@ -245,7 +296,7 @@ TEST(GuideCharts, MarkWhatIsNotCompared) {
 }
 
 TEST(GuideCharts, ShowErrorsOverStepsWithTheirOrders) {
-  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  const auto charts = guide_charts(two_methods(), legend, {}, "cloth", "f1");
   const Chart& steps = chart_called(charts, "f1-error-step");
   EXPECT_THAT(names_in(steps), ElementsAre("rk4", "implicit-euler", "diverged", "order 1", "order 4"));
   EXPECT_THAT(series(steps, "rk4").x, ElementsAre(0.002, 0.001));
@@ -257,11 +308,35 @@ TEST(GuideCharts, ShowErrorsOverStepsWithTheirOrders) {
 }
 
 TEST(GuideCharts, SayWhichMethodsHaveNoNumberOfEvaluations) {
-  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  const auto charts = guide_charts(two_methods(), legend, {}, "cloth", "f1");
   const Chart& evaluations = chart_called(charts, "f1-error-evaluations");
   EXPECT_THAT(names_in(evaluations), ElementsAre("rk4", "diverged"));
   EXPECT_THAT(series(evaluations, "rk4").x, ElementsAre(2000, 4000));
   EXPECT_THAT(evaluations.remarks, Contains("Without a fixed number of force evaluations: implicit-euler"));
+}
+
+TEST(GuideCharts, GiveEachIntegratorAColour) {
+  FoundGuide guide;
+  for (const Integrator* integrator : all_integrators)
+    guide.points.push_back(guide_point(std::string(integrator->name), "serial", 0.001, 1, 0.1));
+  const Chart chart = guide_charts(guide, legend, made_up_provenance(), "cloth", "f1").at(0);
+  EXPECT_EQ(chart.subtitle, "Measured on A Processor, 2 threads");
+  std::set<std::string_view> colours;
+  for (const std::size_t look : looks_of(chart.series, chart.families))
+    colours.insert(series_colours.at(look % series_colours.size()));
+  EXPECT_EQ(colours.size(), all_integrators.size());
+}
+
+TEST(GuideCharts, NameTheOnlyDeviceInSizes) {
+  FoundGuide guide;
+  for (const double nodes : {256.0, 529.0}) guide.times.push_back({"cloth", "rk4", "opencl", nodes, nodes});
+  Provenance provenance = made_up_provenance();
+  const auto names = [&] { return names_in(guide_charts(guide, legend, provenance, "cloth", "f1").at(0)); };
+  EXPECT_THAT(names(), ElementsAre("opencl"));
+  provenance.opencl_devices = {"Portable Computing Language: pthread-A Processor, driver 3.1"};
+  EXPECT_THAT(names(), ElementsAre("opencl on the CPU"));
+  provenance.opencl_devices.emplace_back("NVIDIA CUDA: A GPU, driver 1");
+  EXPECT_THAT(names(), ElementsAre("opencl")) << "which of both is not known";
 }
 
 TEST(GuideCharts, ShowSizesOfAnExplicitAndAnImplicitIntegrator) {
@@ -271,7 +346,7 @@ TEST(GuideCharts, ShowSizesOfAnExplicitAndAnImplicitIntegrator) {
       guide.times.push_back({"cloth", integrator, "openmp", nodes, nodes / 100});
       if (nodes < 300) guide.times.push_back({"cloth", integrator, "serial", nodes, nodes / 10});
     }
-  const auto charts = guide_charts(guide, "cloth", "f1");
+  const auto charts = guide_charts(guide, legend, {}, "cloth", "f1");
   ASSERT_EQ(charts.size(), 2U);
   EXPECT_EQ(charts[0].id, "f1-sizes-explicit");
   EXPECT_EQ(charts[0].title, "cloth in other sizes, semi-euler");

@@ -371,5 +371,68 @@ TEST(ReportPage, MarksRowsThatAreNotVerifiedInWords) {
   EXPECT_TRUE(has(page, "! not verified</strong> 1 row is not verified"));
 }
 
+/// Where texts begin in a page, one after the other; a failure where one is missing or out of turn.
+void expect_in_order(const std::string& page, const std::vector<std::string>& texts) {
+  std::size_t at = 0;
+  for (const std::string& text : texts) {
+    const std::size_t found = page.find(text, at);
+    ASSERT_NE(found, std::string::npos) << text;
+    at = found;
+  }
+}
+
+TEST(ReportPage, BeginsWithTheVerdictAndTheTimes) {
+  ReportFolder folder;
+  folder.name = "run";
+  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
+  folder.provenance = made_up_provenance();
+  const std::string page = report_page(input_of(folder));
+  expect_in_order(
+      page, {"<h2>Verdict</h2>", "<h2>Times</h2>", "<h2>Machine and settings</h2>", "<h2>Speed-up</h2>"});
+  EXPECT_FALSE(has(page, "What is missing or damaged"));
+  expect_in_order(page, {"scope=\"col\">scene</th><th scope=\"col\" class=\"number\">ms per step</th>",
+                         "scope=\"row\">cloth2500</th><td class=\"number\">1.00</td>"});
+  folder.problems = {"a file is damaged"};
+  expect_in_order(report_page(input_of(folder)), {"<li>a file is damaged.</li>", "<h2>Verdict</h2>"});
+}
+
+TEST(ReportPage, SaysAtTheTopOfAFolderWhatDisturbedIt) {
+  ReportFolder folder;
+  folder.rows = {measured_row("serial", 1, 1.0)};
+  folder.provenance = made_up_provenance();
+  EXPECT_FALSE(has(report_page(input_of(folder)), "When this run started"));
+  folder.provenance->noise = {"other programs are running (load 9.5 over the last minute): end them"};
+  expect_in_order(report_page(input_of(folder)),
+                  {"<h2>Times</h2>", "(load 9.5 over the last minute).</p>", "<table>"});
+}
+
+TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {
+  ReportFolder folder;
+  folder.name = "results/one";
+  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
+  ReportInput input = input_of(folder);
+  Claim& claim = input.claims.emplace_back();
+  claim.says = "Threads help";
+  ClaimTest& test = claim.test.emplace();
+  test.scenes = "table1";
+  test.fast = "openmp";
+  test.slow = "serial";
+  folder.name = "results/two";
+  folder.rows[1].samples_ms.clear();
+  folder.rows[1].ms_per_step = folder.rows[1].ms_per_step_low = folder.rows[1].ms_per_step_high = 50;
+  input.folders.push_back(folder);
+  expect_in_order(report_page(input), {">one</th><th scope=\"col\">two</th>", "Threads help", "held</strong>",
+                                       "not held</strong>", "<summary>The ratios of each folder</summary>"});
+}
+
+TEST(ReportPage, ShowsASingleSceneAsATable) {
+  ReportFolder folder;
+  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
+  const std::string page = report_page(input_of(folder));
+  expect_in_order(page, {"<section id=\"speed-up\">", "<h4>semi-euler: speed-up over one thread</h4>",
+                         "openmp, measured</td>"});
+  EXPECT_FALSE(has(page, "-speed-up-semi-euler\" class=\"chart\""));
+}
+
 }  // namespace
 }  // namespace mssim

@@ -127,16 +127,34 @@ std::vector<Vec3d> Painter::points_at(const std::vector<Vec3d>& positions) const
 }
 
 void Painter::make_room_for(const std::vector<Vec3d>& positions) {
-  const std::vector<Vec3d> points = points_at(positions);
-  const Box<double> seen = seen_box(camera_, points);
-  seen_ = seen_ ? united(*seen_, seen) : seen;
+  std::vector<Vec3d> points = points_at(positions);
+  const auto unite = [this](std::optional<Box<double>>& box, const std::vector<Vec3d>& with) {
+    const Box<double> seen = seen_box(camera_, with);
+    box = box ? united(*box, seen) : seen;
+  };
+  unite(seen_, points);
   if (!world_) world_ = {points.front(), points.front()};
   for (const Vec3d& point : points) extend(*world_, point);
+  const Vec3d light = shadow_light(options_.view);
+  for (Vec3d& point : points) point = point - (point.y / light.y) * light;
+  unite(shadow_, points);
   if (options_.colour == ColourBy::strain)
     most_strain_ = std::max(most_strain_, usual_most(node_strain(content_, positions)));
 }
 
+bool Painter::has_legend() const {
+  return options_.colour == ColourBy::strain ||
+         (options_.colour == ColourBy::panel && skin_.parts.size() > 1);
+}
+
+Picture Painter::legend() const {
+  Picture picture(options_.width, options_.height);
+  write_legend(picture);
+  return picture;
+}
+
 void Painter::write_legend(Picture& picture) const {
+  if (!has_legend()) return;
   constexpr double percent = 100;
   if (options_.colour == ColourBy::strain) {
     draw_colour_bar(picture,
@@ -146,7 +164,7 @@ void Painter::write_legend(Picture& picture) const {
   std::vector<LegendEntry> entries;
   for (std::size_t part = 0; part < skin_.parts.size(); ++part)
     entries.push_back({colour_[part], skin_.parts[part]});
-  if (options_.colour == ColourBy::panel && entries.size() > 1) draw_legend(picture, entries);
+  draw_legend(picture, entries);
 }
 
 Shot Painter::shot() const {
@@ -155,11 +173,18 @@ Shot Painter::shot() const {
   const Vec3d size = world_->size();
   const double extent = std::max({size.x, size.y, size.z});
   const bool near_floor = floor_ && *floor_ <= world_->low.y && world_->low.y - *floor_ < far * extent;
-  const double ground = (near_floor ? *floor_ : world_->low.y) - gap * extent;
-  return {options_.view, options_.width, options_.height, *seen_, Ground(*world_, ground), options_.threads};
+  const double height = (near_floor ? *floor_ : world_->low.y) - gap * extent;
+  const Ground ground(*world_, height);
+  Box<double> seen = *seen_;
+  if (ground.met_by(camera_, 0, 0)) {
+    const Vec3d light = shadow_light(options_.view);
+    const Vec3d moved = camera_.seen((height / light.y) * light);
+    seen = united(seen, {shadow_->low + moved, shadow_->high + moved});
+  }
+  return {options_.view, options_.width, options_.height, seen, ground, options_.threads};
 }
 
-Picture Painter::picture_of(const std::vector<Vec3d>& positions) const {
+Picture Painter::picture_of(const std::vector<Vec3d>& positions, bool with_legend) const {
   Subject subject{{points_at(positions), skin_.triangles}, {}, {}};
   subject.front.reserve(subject.surface.points.size());
   if (options_.colour == ColourBy::strain) {
@@ -181,7 +206,7 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions) const {
   subject.front.resize(subject.surface.points.size(), light_of(skin_tone));
   subject.back.resize(subject.surface.points.size(), light_of(skin_tone));
   Picture picture = drawn(subject, shot());
-  write_legend(picture);
+  if (with_legend) write_legend(picture);
   return picture;
 }
 

@@ -48,11 +48,19 @@ class Painter {
   void make_room_for(const std::vector<Vec3d>& positions);
 
   /// The picture of a moment for which there is room.
-  Picture picture_of(const std::vector<Vec3d>& positions) const;
+  Picture picture_of(const std::vector<Vec3d>& positions, bool with_legend = true) const;
+
+  /// Do colours stand for anything that has to be said?
+  bool has_legend() const;
+  /// That alone, as large as a picture.
+  Picture legend() const;
+
+  /// How every picture is taken: with all for which there is room, and the shadows of it where ground is
+  /// seen.
+  Shot shot() const;
 
  private:
   std::vector<Vec3d> points_at(const std::vector<Vec3d>& positions) const;
-  Shot shot() const;
   void write_legend(Picture& picture) const;
 
   const TraceContent& content_;
@@ -62,7 +70,8 @@ class Painter {
   std::vector<Rgb> colour_;  ///< [parts] unless strain is shown
   std::optional<double> floor_;
   std::optional<Box<double>> seen_, world_;
-  double most_strain_ = 0;  ///< in either direction, of the colours' ends
+  std::optional<Box<double>> shadow_;  ///< as seen, were the ground at height 0
+  double most_strain_ = 0;             ///< in either direction, of the colours' ends
 };
 
 /// A folder of pictures of a run, drawn while it runs: frame-000000.png, frame-000001.png and so on. What

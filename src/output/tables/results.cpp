@@ -13,10 +13,11 @@ namespace {
 /// Start of a row's device if its backend chose an instruction set, whose name follows.
 constexpr std::string_view host_with_vectors = "cpu ";
 
-/// Instruction set that the row's backend chose on the host ("AVX3"); otherwise empty.
+/// Instruction set that the row's backend chose on the host ("AVX-512"); otherwise empty.
 std::string_view instruction_set(const ResultRow& row) {
   const std::string_view device = row.device;
-  return device.starts_with(host_with_vectors) ? device.substr(host_with_vectors.size()) : std::string_view();
+  return device.starts_with(host_with_vectors) ? instruction_set_name(device.substr(host_with_vectors.size()))
+                                               : std::string_view();
 }
 
 constexpr std::string_view ratio_mark = "†";
@@ -75,7 +76,7 @@ Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
   for (const std::string_view set : instruction_sets)
     if (!set.empty()) text.append("; ").append(set).append(" vectors");
   for (const std::string_view device : devices)
-    if (!device.empty()) text.append("; device ").append(device);
+    if (!device.empty()) text.append("; device ").append(device_name(device));
   return {text + "; " + made_by(provenance) + "."};
 }
 
@@ -85,7 +86,10 @@ std::string_view opencl_device(const ResultRow& row) {
 }
 
 bool is_this_processor(const ResultRow& row, const Provenance& provenance) {
-  const std::string_view device = opencl_device(row);
+  return is_this_processor(opencl_device(row), provenance);
+}
+
+bool is_this_processor(std::string_view device, const Provenance& provenance) {
   if (device.empty()) return false;
   // CPU drivers name their device after the processor's model; some models have no name.
   const std::string& processor = provenance.machine.cpu_model;
@@ -96,15 +100,19 @@ bool is_this_processor(const ResultRow& row, const Provenance& provenance) {
   });
 }
 
-std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance) {
-  std::string label = fmt::format("`{}`", backend);
+const ResultRow* row_with_device(RowPointers rows, std::string_view backend) {
   const auto row = std::ranges::find_if(rows, [&](const ResultRow* candidate) {
     return candidate->backend == backend && !opencl_device(*candidate).empty();
   });
-  if (row == rows.end()) return label;
-  label.append(" on ").append(opencl_device(**row));
-  if (is_this_processor(**row, provenance)) label += ", the same processor";
-  return label;
+  return row == rows.end() ? nullptr : *row;
+}
+
+std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance) {
+  const ResultRow* row = row_with_device(rows, backend);
+  if (!row) return fmt::format("`{}`", backend);
+  const std::string device = device_name(opencl_device(*row));
+  return is_this_processor(*row, provenance) ? fmt::format("`{}` on the CPU ({})", backend, device)
+                                             : fmt::format("`{}` on {}", backend, device);
 }
 
 std::optional<double> counted_ms(const ResultRow& row) {

@@ -153,6 +153,9 @@ std::string made_by(const Provenance& provenance);
 /// and time.
 Paragraph measured_on(RowPointers rows, const Provenance& provenance);
 
+/// The first row of the backend that ran on an OpenCL device; null if there is none.
+const ResultRow* row_with_device(RowPointers rows, std::string_view backend);
+
 /// The name of a backend in a cell. Adds the OpenCL device of its rows, if any, and whether that is the
 /// machine's processor.
 std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance);
@@ -162,6 +165,8 @@ std::string_view opencl_device(const ResultRow& row);
 
 /// Whether the row's OpenCL device is the machine's processor.
 bool is_this_processor(const ResultRow& row, const Provenance& provenance);
+/// The same for a device by its name.
+bool is_this_processor(std::string_view device, const Provenance& provenance);
 
 /// Median ms per step of a row that counts, otherwise none.
 std::optional<double> counted_ms(const ResultRow& row);

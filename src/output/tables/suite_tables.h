@@ -40,6 +40,9 @@ inline constexpr auto published_table_kinds = std::to_array<PublishedTableInfo>(
     {"table3", "Bodies: Table 3 of Hong et al. (2016)", "three times"},
 });
 
+/// The device that Hong et al. measured.
+inline constexpr std::string_view paper_device = "Nexus 7";
+
 /// The configuration that published speed-ups are relative to.
 inline constexpr std::string_view one_thread_configuration = "cpu-only";
 

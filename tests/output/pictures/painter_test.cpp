@@ -66,6 +66,30 @@ TEST(Painter, ShowsAllForWhichThereIsRoomFromTheSamePlace) {
   EXPECT_NE(painter.picture_of(start), close_up);
 }
 
+TEST(Painter, MakesRoomForShadows) {
+  const System system = solid_block(4, 4, 4);
+  const TraceContent content = content_of(system);
+  const std::vector<Vec3d> above = moved(system.start.position, {0, 0.3, 0});
+  Painter painter(content, above, options());
+  for (const std::vector<Vec3d>& positions : {above, system.start.position}) painter.make_room_for(positions);
+  const Shot shot = painter.shot();
+  const Camera camera(options().view);
+  const double ground = shot.ground->met_by(camera, 0, 0).value().y;
+  const Vec3d light = shadow_light(options().view);
+  for (const Vec3d& point : above) {
+    const Vec3d shadow = camera.seen(point - ((point.y - ground) / light.y) * light);
+    EXPECT_LE(shot.seen.low.x, shadow.x + 1e-9);
+    EXPECT_LE(shot.seen.low.y, shadow.y + 1e-9);
+    EXPECT_GE(shot.seen.high.x, shadow.x - 1e-9);
+    EXPECT_GE(shot.seen.high.y, shadow.y - 1e-9);
+  }
+  PictureOptions from_below = options();
+  from_below.view.elevation = -20;
+  Painter other(content, above, from_below);
+  other.make_room_for(above);
+  EXPECT_EQ(other.shot().seen.high.x, seen_box(Camera(from_below.view), above).high.x) << "no ground is seen";
+}
+
 TEST(Painter, StandsThingsOnTheFloorThatTheSceneStates) {
   const System system = solid_block(4, 4, 4);
   TraceContent content = content_of(system);
@@ -83,6 +107,25 @@ TEST(Painter, StandsThingsOnTheFloorThatTheSceneStates) {
     content.scene_json = text;
     EXPECT_EQ(picture(), without) << text;
   }
+}
+
+TEST(Painter, DrawsALegendApart) {
+  const System system = cloth_system(12, 15);
+  const TraceContent content = content_of(system);
+  const std::vector<Vec3d>& start = system.start.position;
+  Painter plain(content, start, options()), strain(content, start, options(ColourBy::strain));
+  EXPECT_FALSE(plain.has_legend());
+  EXPECT_FALSE(ink_of(plain.legend()));
+  EXPECT_TRUE(strain.has_legend());
+  strain.make_room_for(moved(start, {}));
+  const PixelBox legend = ink_of(strain.legend()).value();
+  const Picture with = strain.picture_of(start), without = strain.picture_of(start, false);
+  EXPECT_NE(with, without);
+  for (std::uint32_t y = 0; y < with.height; ++y)
+    for (std::uint32_t x = 0; x < with.width; ++x)
+      if (static_cast<int>(x) < legend.left) {
+        EXPECT_EQ(with.at(x, y), without.at(x, y));
+      }
 }
 
 TEST(NodeStrain, IsTheMeanOfTheNodesSprings) {
