@@ -38,7 +38,7 @@ int launch_ranks(bool copies);
 /// fails, its sentence is on stderr, and all ranks are ended.
 int run_rank(int argc, char** argv);
 
-/// The program's side of the protocol of own backends (docs/own-backends.md), line by line.
+/// The program's side of the protocol of own backends (docs/protocol.md), line by line.
 class Requests {
  public:
   /// Connects to the socket that MSSIM_SOCKET names. Throws std::runtime_error with one sentence.

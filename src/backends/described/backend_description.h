@@ -10,7 +10,7 @@ namespace mssim {
 /// Maximum size of a description: a wrong file should not fill the memory.
 inline constexpr std::size_t largest_description_bytes = std::size_t{64} << 10;
 
-/// The program in the text of a description, NAME.json (docs/own-backends.md). Also looks up whether it can
+/// The program in the text of a description, NAME.json (docs/protocol.md). Also looks up whether it can
 /// be run. Throws SceneError, one sentence with file, place, value and remedy, as for a scene file.
 BackendProgram parse_description(const std::filesystem::path& file, const std::string& text);
 

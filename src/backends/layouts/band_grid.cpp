@@ -91,10 +91,12 @@ std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integ
   return std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, most));
 }
 
-/// If half of the last-level cache holds the state, one step per pass is best: more active columns than the
-/// first-level cache holds cost 4 to 12 % at 350,000 nodes. From memory, as many steps as fit among the
-/// active stages: semi-euler was 1.9 times as fast with four at a million nodes and 1.8 times with columns of
-/// 4,000 rows. Ghost columns must stay a small fraction.
+/// Model: with T steps per pass, a step takes c + m / T per node, where c is the time of arithmetic and
+/// caches and m that of memory, which grows with the cores that share its bandwidth; scripts/steps-a-pass
+/// measures both. If half of the last-level cache holds the state, m is 0 and one step per pass is best: more
+/// active columns than the first-level cache holds cost 4 to 12 % at 350,000 nodes. From memory, as many
+/// steps as fit among the active stages: semi-euler was 1.9 times as fast with four at a million nodes
+/// and 1.8 times with columns of 4,000 rows. Ghost columns must stay a small fraction.
 std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator,
                                std::size_t partitions) {
   constexpr std::size_t columns_per_stage = 16;

@@ -11,7 +11,7 @@
 
 namespace mssim {
 
-/// A program that is a backend: it uses the protocol of docs/own-backends.md.
+/// A program that is a backend: it uses the protocol of docs/protocol.md.
 struct BackendProgram {
   std::string name;                      ///< name of its rows
   std::string description;               ///< one line for `mssim list backends`
@@ -27,7 +27,7 @@ struct BackendProgram {
   /// It runs in several processes (--ranks), and builds its parts of a cloth from the scene file.
   bool in_ranks = false;
   int ranks = 0;  ///< processes set by its name, as in mpi:4; 0: --ranks
-  /// It supports the requests `restart` and `get ROW COLUMN ROWS COLUMNS` of docs/own-backends.md; only with
+  /// It supports the requests `restart` and `get ROW COLUMN ROWS COLUMNS` of docs/protocol.md; only with
   /// ranks.
   bool has_windows = false;
 };
@@ -57,7 +57,7 @@ int processors_of(const BackendProgram& program, const ExecutionOptions& options
 /// outline of a cloth and the program has windows; the backend moves the states of an integrator that is
 /// ahead. A call takes about 15 us in addition to the program's work (measured with tests/backends/process/
 /// on two cores of an AMD EPYC, Zen 4). Throws Unavailable, Unsupported and, like each call of the backend,
-/// BackendFailure if the program violates docs/own-backends.md.
+/// BackendFailure if the program violates docs/protocol.md.
 std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& program, const System& system,
                                                     const Integrator& integrator, double dt_s,
                                                     const ExecutionOptions& options,
