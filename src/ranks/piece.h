@@ -108,7 +108,7 @@ StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Da
                     session.name_of(0), sets.front(), session.name_of(static_cast<int>(rank)), sets[rank]);
 }
 
-/// States between mssim and the pieces: rank 0 has the file of a state (docs/own-backends.md), and each rank
+/// States between mssim and the pieces: rank 0 has the file of a state (docs/protocol.md), and each rank
 /// its part. No rank holds more than its part and a message. All ranks call these together; they throw
 /// RankFailure.
 
@@ -123,7 +123,7 @@ void gather_window(const Session& session, const std::filesystem::path& file, co
                    const GridWindow& window);
 
 /// What the steps of all ranks cost since they were last told: the answers to the request `costs`
-/// (docs/own-backends.md).
+/// (docs/protocol.md).
 class StepCosts {
  public:
   explicit StepCosts(const LinkSpeed& links) : links_(links) {}

@@ -38,7 +38,7 @@ int launch_ranks(bool copies);
 /// rank fails, its sentence is on stderr, and all ranks are ended.
 int run_rank(int argc, char** argv);
 
-/// The program's end of the protocol of own backends (docs/own-backends.md): what mssim says comes line by
+/// The program's end of the protocol of own backends (docs/protocol.md): what mssim says comes line by
 /// line.
 class Requests {
  public:

@@ -1,5 +1,5 @@
 // A program that is a backend, as a user may write one: it knows nothing of mssim but the protocol of
-// docs/own-backends.md. It steps the list of springs in double precision. Its argument names something that
+// docs/protocol.md. It steps the list of springs in double precision. Its argument names something that
 // it does wrong; tests/commands/own_backend_test.sh says what mssim makes of each.
 
 #include <hdf5.h>

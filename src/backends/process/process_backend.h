@@ -11,7 +11,7 @@
 
 namespace mssim {
 
-/// A program that is a backend: it speaks the protocol of docs/own-backends.md.
+/// A program that is a backend: it speaks the protocol of docs/protocol.md.
 struct BackendProgram {
   std::string name;                      ///< of its rows
   std::string description;               ///< one line for `mssim list backends`
@@ -27,7 +27,7 @@ struct BackendProgram {
   /// It runs in several processes (--ranks), and builds its parts of a cloth from the scene's file.
   bool in_ranks = false;
   int ranks = 0;  ///< processes that its name asks for, as mpi:4 does; 0: --ranks
-  /// It knows the requests `restart` and `get ROW COLUMN ROWS COLUMNS` of docs/own-backends.md; in ranks
+  /// It knows the requests `restart` and `get ROW COLUMN ROWS COLUMNS` of docs/protocol.md; in ranks
   /// alone.
   bool has_windows = false;
 };
@@ -57,7 +57,7 @@ int processors_of(const BackendProgram& program, const ExecutionOptions& options
 /// outline of a cloth, and the program has windows; the backend moves the states of an integrator that is
 /// ahead. A call of it takes about 15 us beside what the program does with it (measured with
 /// tests/backends/process/ on two cores of an AMD EPYC, Zen 4). Throws Unavailable, Unsupported and, like
-/// each call of the backend, BackendFailure where the program does what docs/own-backends.md does not allow.
+/// each call of the backend, BackendFailure where the program does what docs/protocol.md does not allow.
 std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& program, const System& system,
                                                     const Integrator& integrator, double dt_s,
                                                     const ExecutionOptions& options,
