@@ -189,7 +189,9 @@ std::string outcomes_of(const ReportInput& input) {
       Cell& cell = cells.emplace_back(std::string(name_of(judged.outcome)));
       cell.strong = judged.outcome != ClaimOutcome::undecided;
     }
-    table.columns.push_back({std::filesystem::path(folder.name).filename().string()});
+    // Folders of several suites may have the same last name.
+    const std::filesystem::path name(folder.name);
+    table.columns.push_back({(name.parent_path().filename() / name.filename()).string()});
   }
   for (const Claim& claim : input.claims) {
     const auto found = outcomes.find(&claim);

@@ -421,8 +421,9 @@ TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {
   folder.rows[1].samples_ms.clear();
   folder.rows[1].ms_per_step = folder.rows[1].ms_per_step_low = folder.rows[1].ms_per_step_high = 50;
   input.folders.push_back(folder);
-  expect_in_order(report_page(input), {">one</th><th scope=\"col\">two</th>", "Threads help", "held</strong>",
-                                       "not held</strong>", "<summary>The ratios of each folder</summary>"});
+  expect_in_order(report_page(input),
+                  {">results/one</th><th scope=\"col\">results/two</th>", "Threads help", "held</strong>",
+                   "not held</strong>", "<summary>The ratios of each folder</summary>"});
 }
 
 TEST(ReportPage, ShowsASingleSceneAsATable) {
