@@ -330,11 +330,11 @@ std::unique_ptr<DressingBackend> make(const System& system, const Integrator& in
 constexpr auto table = std::to_array<PublishedDressing>({
     {"algorithm1", "garments, as published: the six loops of Vassilev's Algorithm 1, one after the other",
      false, make<Vec3<float>, false>},
-    {"algorithm1-simd", "the same with SIMD instructions for vectors of three components", false,
+    {"algorithm1-simd", "algorithm1 with SIMD instructions for vectors of three components", false,
      make<Vec3InRegister, false>},
-    {"algorithm1-threads", "the same as algorithm1, each loop a `parallel for`", true,
-     make<Vec3<float>, true>},
-    {"algorithm1-threads-simd", "the same with SIMD instructions", true, make<Vec3InRegister, true>},
+    {"algorithm1-threads", "algorithm1, each loop a `parallel for`", true, make<Vec3<float>, true>},
+    {"algorithm1-threads-simd", "algorithm1-threads with SIMD instructions", true,
+     make<Vec3InRegister, true>},
 });
 
 }  // namespace
