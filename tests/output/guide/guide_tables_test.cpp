@@ -169,23 +169,6 @@ TEST(GuidePage, HasTheNumbersOfItsResults) {
   EXPECT_THAT(page, HasSubstr(provenance["build"]["commit"].get<std::string>().substr(0, 7)));
 }
 
-/// What README quotes of guide.md, between "> " and an ellipsis, its lines one.
-TEST(GuidePage, IsWhatReadmeQuotes) {
-  const std::string readme = text_of(source_file("README.md"));
-  const std::size_t begin = readme.find("\n> Take ");
-  ASSERT_NE(begin, std::string::npos);
-  std::string quote = readme.substr(begin + 3, readme.find(" […]", begin) - begin - 3);
-  for (std::size_t at = 0; (at = quote.find("\n> ", at)) != std::string::npos;) quote.replace(at, 3, " ");
-  EXPECT_THAT(text_of(source_file(results + std::string("guide.md"))), HasSubstr(quote));
-  const Table cheapest = cheapest_methods(measured_guides());
-  const auto row = std::ranges::find_if(cheapest.rows, [](const std::vector<Cell>& cells) {
-    return std::get<std::string>(cells.front().value) == "cloth10k";
-  });
-  const std::string runner_up = std::get<std::string>((*row)[4].value);
-  EXPECT_THAT(readme, HasSubstr(fmt::format("{}, the runner-up, takes {} times", runner_up,
-                                            cell_text((*row)[5], cheapest.columns[5]))));
-}
-
 TEST(GuideTables, HaveTheirColumnsWhereTheyWere) {
   SceneGuide guide;
   guide.wish.error = error;
