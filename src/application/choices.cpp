@@ -220,12 +220,12 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   }
   BackendProgram program = file ? read_description(*file) : BackendProgram{};
   if (row ? !row->makes_threads && !row->uses_device : !program.in_ranks)
-    throw UsageError("{} says a number of ranks or threads, which {} does not take: leave \":{}\" out",
+    throw UsageError("{} has a number of ranks or threads, which {} does not take: leave \":{}\" out",
                      printable(name), its_name, printable(how));
   const int most = row ? most_threads : most_ranks;
   const std::optional<int> number = number_in<int>(how);
   if (!number || *number < 1 || *number > most)
-    throw UsageError("{} says a number of {} that cannot be: give one from 1 to {}, as in {}:4",
+    throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4",
                      printable(name), row ? "threads" : "ranks", most, its_name);
   if (row) return &add_variant(*row, std::to_string(*number));
   program.ranks = *number;
@@ -277,7 +277,8 @@ std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std
   for (const std::string& name : names) asked.push_back(&require(name));
   for (const BackendInfo* row : known_)
     if (std::ranges::find(asked, row) != asked.end()) rows.push_back(row);
-  std::ranges::copy(own(), std::back_inserter(rows));
+  for (const BackendInfo* row : asked)  // not own(): NAME:each:2 has made NAME:each on the way
+    if (std::ranges::find(rows, row) == rows.end()) rows.push_back(row);
   return rows;
 }
 

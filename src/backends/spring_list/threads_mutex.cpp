@@ -31,7 +31,11 @@ class ThreadsMutex final : public Backend {
         together_(threads) {}
   ~ThreadsMutex() override { end_threads(); }
 
-  void set_state(const State& state) override { list_.set_state(state); }
+  /// Also makes the threads, so a caller who times step() does not time that.
+  void set_state(const State& state) override {
+    list_.set_state(state);
+    if (group_.size() + 1 < threads_) make_threads();
+  }
   State state() const override { return list_.state(); }
   int threads() const override { return static_cast<int>(threads_); }
   void rest() override { end_threads(); }
@@ -49,6 +53,7 @@ class ThreadsMutex final : public Backend {
     std::promise<bool> complete;  // whether all threads exist: those that do would wait for the missing ones
     const std::shared_future<bool> all_are_there = complete.get_future();
     try {
+      group_.reserve(threads_ - 1);
       const OnAllProcessCpus inherited;
       for (std::size_t thread = 1; thread < threads_; ++thread)
         group_.emplace_back([this, thread, all_are_there] {

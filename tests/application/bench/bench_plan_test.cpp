@@ -111,6 +111,8 @@ TEST_F(BenchPlanTest, TakesABackendOnItsOwnNumberOfThreads) {
 
 TEST_F(BenchPlanTest, TakesABackendThatStepsEachBodyForItself) {
   options_.scenes = {"bodies3858"};
+  options_.backends = {"openmp:each:2"};
+  EXPECT_THAT(names_in(plan_of(options_).settings.backends), testing::ElementsAre("openmp:each:2"));
   options_.backends = {"openmp:each:2", "serial", "serial:each", "openmp:each"};
   options_.threads = {1, 2};
   options_.execution.threads = 2;
