@@ -121,10 +121,13 @@ std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backen
 /// Whether the backend implements Algorithm 1 (garment/stepping/); others refuse garments.
 inline bool dresses(const BackendInfo& backend) { return backend.make_dressing != nullptr; }
 
-/// Whether it steps cloths, and bodies.
+/// Whether it steps cloths; others refuse them.
 inline bool steps_cloths(const BackendInfo& backend) {
-  return backend.program != nullptr ? backend.program->steps_cloths : backend.make != nullptr;
+  return backend.program != nullptr ? backend.program->steps_cloths
+                                    : backend.make != nullptr && !backend.each_body;
 }
+
+/// Whether it steps bodies; others refuse them.
 inline bool steps_bodies(const BackendInfo& backend) {
   return backend.program != nullptr ? backend.program->steps_bodies : backend.make != nullptr;
 }
