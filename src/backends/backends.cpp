@@ -64,11 +64,6 @@ constexpr auto table = std::to_array<BackendInfo>({
      ThreadStack::openmp, make_hybrid, packed, packed, 0.35},
 });
 
-std::unique_ptr<Backend> steps_garments_only(const System& /*system*/, const Integrator& /*integrator*/,
-                                             double /*dt_s*/, const ExecutionOptions& /*options*/) {
-  throw Unsupported("it steps garments only");
-}
-
 /// The names of the backends that have a feature, in words.
 std::string names_of(bool (*has)(const BackendInfo& row)) {
   std::vector<std::string_view> names;
@@ -114,7 +109,7 @@ std::span<const BackendInfo> garment_backends() {
            .description = dressing.description,
            .uses_device = false,
            .makes_threads = dressing.parallel ? std::optional(ThreadStack::openmp) : std::nullopt,
-           .make = steps_garments_only,
+           .make = nullptr,
            .grid_memory = loops,
            .mesh_memory = loops,
            .make_dressing = dressing.make,
@@ -162,6 +157,7 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   if (backend.program != nullptr)
     return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
                       integrator, dt_s);
+  if (backend.make == nullptr) throw Unsupported("it steps garments only");
   if (is_implicit(integrator) && backend.make_implicit == nullptr)
     throw Unsupported("implicit integrators are stepped by " +
                       names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; }));

@@ -33,7 +33,8 @@ struct BackendInfo {
   /// The stack of its threads, if it creates as many as requested.
   std::optional<ThreadStack> makes_threads;
   /// Makes a backend for a cloth or bodies and an explicit integrator, at the system's start state. `system`
-  /// must outlive it. Throws Unavailable or Unsupported.
+  /// must outlive it. Throws Unavailable or Unsupported. Null if a program takes its steps, or if it steps
+  /// garments only.
   std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth
@@ -50,7 +51,7 @@ struct BackendInfo {
                                             const ExecutionOptions& options) = nullptr;
   /// Memory of that backend, for a cloth (`grid`) or bodies; null if `make_implicit` is.
   MemoryUse (*implicit_memory)(const Integrator& integrator, bool grid) = nullptr;
-  /// The program that takes its steps; `make` is null then. It must outlive the row.
+  /// The program that takes its steps. It must outlive the row.
   const BackendProgram* program = nullptr;
   int threads = 0;         ///< fixed by the row; 0: the number requested
   bool each_body = false;  ///< one backend per body of the scene; the bodies take a step in turn
@@ -119,6 +120,17 @@ std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backen
 
 /// Whether the backend implements Algorithm 1 (garment/stepping/); others refuse garments.
 inline bool dresses(const BackendInfo& backend) { return backend.make_dressing != nullptr; }
+
+/// Whether it steps cloths; others refuse them.
+inline bool steps_cloths(const BackendInfo& backend) {
+  return backend.program != nullptr ? backend.program->steps_cloths
+                                    : backend.make != nullptr && !backend.each_body;
+}
+
+/// Whether it steps bodies; others refuse them.
+inline bool steps_bodies(const BackendInfo& backend) {
+  return backend.program != nullptr ? backend.program->steps_bodies : backend.make != nullptr;
+}
 
 /// A note for readers of its times if a backend uses more CPUs than it was made for; else empty.
 std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options);

@@ -66,6 +66,15 @@ Table list_scenes(const ListOptions& /*options*/) {
   return table;
 }
 
+/// The kinds of scenes that it steps: "cloth+bodies".
+std::string steps_of(const BackendInfo& backend) {
+  std::vector<std::string> kinds;
+  if (steps_cloths(backend)) kinds.emplace_back("cloth");
+  if (steps_bodies(backend)) kinds.emplace_back("bodies");
+  if (dresses(backend)) kinds.emplace_back("garment");
+  return join(kinds, "+");
+}
+
 Table list_backends(const ListOptions& options) {
   Table table;
   std::vector<const BackendInfo*> all = with_garment_backends(table_backends());
@@ -75,6 +84,7 @@ Table list_backends(const ListOptions& options) {
   for (const BackendInfo* backend : all) {
     const std::string reason = unavailable_reason(*backend, options.execution);
     table.add({{"backend", backend->name},
+               {"steps", steps_of(*backend)},
                {"paper_configuration", backend->paper_configuration},
                {"available", reason.empty()},
                {"reason", reason.empty() ? Cell() : Cell(reason)},

@@ -17,9 +17,19 @@ constexpr std::array<std::string_view, 2> paper_words{"Hong et al. (2016)", "Vas
 constexpr std::string_view table_of_garments = "figure6";
 constexpr std::array<std::string_view, 2> device_words{"any", "GPU"}, of_words{"each", "average"};
 
+/// The tables whose scenes can decide a claim.
+std::vector<std::string_view> deciding_tables() {
+  std::vector<std::string_view> names;
+  for (const PublishedTableInfo& table : published_table_kinds) names.push_back(table.name);
+  names.push_back(table_of_garments);
+  return names;
+}
+
 void visit_test(FieldVisitor& fields, ClaimTest& test) {
-  fields.text({"scenes", "The table whose scenes decide: table1, table3 or figure6."}, Presence::required,
-              test.scenes);
+  const std::vector<std::string_view> tables = deciding_tables();
+  std::uint32_t table = 0;
+  fields.choice({"scenes", "The table whose scenes decide."}, Presence::required, tables, table);
+  test.scenes = tables.at(table);
   fields.text({"fast", "The backend that is said to be faster."}, Presence::required, test.fast);
   fields.text({"slow", "The backend that it is compared with."}, Presence::required, test.slow);
   fields.texts({"integrators", "Those that decide (default: the paper's three)."}, Presence::optional, 1, 3,

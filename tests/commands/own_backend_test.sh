@@ -134,7 +134,7 @@ echo text >wrong.txt
 describe here '"description": "a list of springs", "scenes": ["bodies"], "integrators": ["rk4"]'
 cp backends/here.json config/mssim/backends/mine.json
 ends 0 list backends --backend-folder backends --format csv
-grep -q '^here,,true,,a list of springs$' "$work/out" && grep -q '^mine,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
+grep -q '^here,bodies,,true,,a list of springs$' "$work/out" && grep -q '^mine,bodies,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
 status=0
 "$mssim" "${bench[@]}" --backend mine >out 2>err || status=$?
 [ "$status" -eq 3 ] && grep -q 'mine, semi-euler: unsupported: it does not step cloths$' err || fail "mine gives $status: $(cat err)"

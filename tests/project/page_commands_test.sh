@@ -19,4 +19,13 @@ refuses 'mssim list scenes' 'mssim list scenes'
 refuses 'scripts/mssim list scene' 'exit code 2'
 refuses 'scripts/mssim bench --scene cloth2501' 'cloth2501'
 refuses 'scripts/mssim bench --suite table1     # 4000 minutes' 'the dry run says'
+refuses 'scripts/mssim bench --scene cloth2500 --dry-run     # a few minutes' 'a few minutes'
+refuses 'scripts/mssim bench --suite table1 --dry-run     # half a minute' 'the dry run says'
+refuses 'scripts/mssim bench --suite table1 --dry-run     # a minute and a half' 'the dry run says'
 refuses 'scripts/mssim list guides' 'guides'
+refuses 'scripts/mssim list compilers' 'exit code 2'
+
+# A page without commands is an error of every mode.
+printf '# A page\n' >"$place/page.md"
+! "$commands" --list "$place/page.md" 2>"$place/err" || { echo "--list of no command passes" && exit 1; }
+grep -q 'no command' "$place/err" || { echo "--list: $(cat "$place/err")" && exit 1; }

@@ -100,6 +100,10 @@ column_of() {
 # names_of LIST: the first column of mssim list LIST, a line each
 names_of() { "$mssim" list "$1" --format csv | awk -F, 'NR > 1 { print $1 }'; }
 
+# backends_for KIND: the names of mssim's backends that step scenes of that kind (cloth, bodies, garment), a line each. Without mpi and
+# mpi-copies, which are measured only on request.
+backends_for() { "$mssim" list backends --format csv | awk -F, -v kind="$1" '$1 !~ /^mpi/ && "+" $2 "+" ~ "[+]" kind "[+]" { print $1 }'; }
+
 # explicit_integrators: their names, a line each
 explicit_integrators() { "$mssim" list integrators --format csv | awk -F, 'NR > 1 && $4 != "" { print $1 }'; }
 
