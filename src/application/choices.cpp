@@ -39,7 +39,7 @@ constexpr std::string_view description_extension = ".json";
 /// What follows the colon in hybrid:each.
 constexpr std::string_view each_word = each_suffix.substr(1);
 
-/// The folder of the user's own descriptions; none where the user has no home.
+/// The folder of the user's own descriptions; none if the user has no home folder.
 std::optional<fs::path> user_folder() {
   if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
     return fs::path(folder) / "mssim" / "backends";
@@ -225,8 +225,8 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   const int most = row ? most_threads : most_ranks;
   const std::optional<int> number = number_in<int>(how);
   if (!number || *number < 1 || *number > most)
-    throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4",
-                     printable(name), row ? "threads" : "ranks", most, its_name);
+    throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4", printable(name),
+                     row ? "threads" : "ranks", most, its_name);
   if (row) return &add_variant(*row, std::to_string(*number));
   program.ranks = *number;
   program.name = fmt::format("{}:{}", its_name, *number);

@@ -32,7 +32,7 @@ inline constexpr int most_ranks = 65536;
 /// The value of --memory.
 std::string name_of(DeviceMemory memory);
 
-/// Throws UsageError where there is a thread_excess. `asked`: what says the number, where that is not
+/// Throws UsageError if thread_excess() does not allow so many. `asked`: what says the number, if it is not
 /// --threads.
 void require_few_threads(int threads, std::string_view asked = {});
 

@@ -149,8 +149,17 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   if (backend.each_body) {
     BackendInfo of_one = backend;
     of_one.each_body = false;
-    return make_for_each_body(
-        system, [&](const System& body) { return make_backend(of_one, body, integrator, dt_s, asked); });
+    int bodies = 0;
+    auto each = make_for_each_body(system, [&](const System& body) {
+      ++bodies;
+      return make_backend(of_one, body, integrator, dt_s, asked);
+    });
+    // OpenMP has one team for all bodies; other teams live side by side.
+    if (backend.makes_threads == ThreadStack::usual)
+      if (const auto shortage =
+              thread_shortage(1 + bodies * (execution_of(backend, asked).threads - 1), ThreadStack::usual))
+        throw Unavailable(*shortage);
+    return each;
   }
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);

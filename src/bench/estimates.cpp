@@ -70,6 +70,7 @@ std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize
                                .bytes(*integrator, size.nodes, size.springs,
                                       execution_of(*backend, settings.execution).threads);
       held += bytes;
+      if (backend->each_body) held += system;                       // a system of its own for each body
       if (backend->role == BackendRole::baseline) serial += bytes;  // steps while the references run
     }
   }

@@ -105,8 +105,7 @@ std::string warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
   if (unstable.empty()) return "";
   return fmt::format(
       "dt_s {:.3g} is above the stability limit of {}, with which the scene may blow up: give at most "
-      "{:.3g}, "
-      "or \"auto\"",
+      "{:.3g}, or \"auto\"",
       scene.dt_s, listed(unstable), smallest);
 }
 

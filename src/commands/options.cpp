@@ -189,7 +189,7 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vec
 
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
   return arguments.add_list("--backend-folder DIR,...", options.folders,
-                            "Folders with descriptions of backends, NAME.json (see docs/own-backends.md)");
+                            "Folders with descriptions of backends, NAME.json (see docs/protocol.md)");
 }
 
 Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {

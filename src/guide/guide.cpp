@@ -85,16 +85,17 @@ std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
 
 std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const CostAtError& cost) {
   const double rate = guide.wish.frames_per_second;
+  const auto method = std::ranges::find_if(
+      guide.methods, [&](const GuidedMethod& candidate) { return is_of(point, candidate); });
+  const auto steps = steps_to_try(guide, *method);
   const StepLimit* limit = limit_of(guide, point.integrator);
-  const bool is_limited =
-      cost.at_longest_step && limit != nullptr && limit->measured.unstable_s > 0 && limit->measured.finished;
+  const bool is_limited = !steps && cost.at_longest_step && limit != nullptr &&
+                          limit->measured.unstable_s > 0 && limit->measured.finished;
   std::string text =
       fmt::format("Take {} with a step of {} s{}, which is {} per frame at {} frames per second.",
                   named(point), two_digits(point.dt_s), is_limited ? ", the longest that is stable" : "",
                   pluralize(steps_a_frame(point.dt_s, rate), "step"), decimal(rate));
-  const auto method = std::ranges::find_if(
-      guide.methods, [&](const GuidedMethod& candidate) { return is_of(point, candidate); });
-  if (const auto steps = steps_to_try(guide, *method))
+  if (steps)
     text += fmt::format(" A step of about {} s should do, too, but was not measured.",
                         two_digits(guide.trusted.horizon_s / *steps));
   return text;
@@ -139,6 +140,8 @@ std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const G
   for (const GuidedMethod* method : {&winner, &other})
     for (const WorkPoint* point : counting(points, *method)) errors.push_back(error_of(*point));
   std::ranges::sort(errors);
+  // Between two equal errors there is nothing to turn at.
+  errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
   std::vector<ErrorRange> ranges;
   bool cheaper = false;
   const auto turn_at = [&](double error) {
@@ -254,7 +257,8 @@ double rounded_up(double seconds) {
 
 std::string seconds_of(const SceneGuide& guide) { return decimal(std::round(10 * guide.seconds) / 10); }
 
-std::string why_nothing(const SceneGuide& guide, double needed_s,
+/// Without `needed_s` it names no time that would do.
+std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
                         std::span<const GuidedMethod* const> missed) {
   std::string text = guide.stopped
                          ? "Nothing is recommended: the guide was stopped"
@@ -262,7 +266,9 @@ std::string why_nothing(const SceneGuide& guide, double needed_s,
   if (!missed.empty())
     text += fmt::format(", and any of these methods could be the cheapest at an error of {}: {}",
                         decimal(guide.wish.error), names_of(missed));
-  return text + fmt::format(". About {} s for this scene would do (--time-budget).", decimal(needed_s));
+  return needed_s
+             ? text + fmt::format(". About {} s for this scene would do (--time-budget).", decimal(*needed_s))
+             : text + '.';
 }
 
 /// Shares of the wall time. A part that ends early leaves its time to the next, and one that takes longer
@@ -606,8 +612,9 @@ Recommendation recommend(const SceneGuide& guide) {
   const std::vector<const GuidedMethod*> missed = missed_methods(guide);
   const bool without_reference = !guide.trusted.failure.empty() && guide.trusted.short_of_s > 0;
   if (!missed.empty() || without_reference) {
-    chosen.needed_s = needed_seconds(guide, missed);
-    chosen.sentences = {why_nothing(guide, *chosen.needed_s, missed)};
+    // What a stopped guide had no time for says nothing of its budget.
+    if (!guide.stopped) chosen.needed_s = needed_seconds(guide, missed);
+    chosen.sentences = {why_nothing(guide, chosen.needed_s, missed)};
     return chosen;
   }
   if (!guide.trusted.failure.empty()) return chosen;

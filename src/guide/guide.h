@@ -83,7 +83,7 @@ struct Recommendation {
   std::optional<std::size_t> runner_up;
   std::optional<std::size_t> nearest;  ///< the most accurate, where none is accurate enough
   /// Wall time, s, with which the guide of the scene would have recommended something; none: it has the time
-  /// that it needs. With it, none of the above is set.
+  /// that it needs, or was stopped. With it, none of the above is set.
   std::optional<double> needed_s;
   std::vector<std::string> sentences;  ///< three, or one where nothing is recommended, with full stops
 };

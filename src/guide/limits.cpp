@@ -159,8 +159,7 @@ std::string why_they_differ(const Integrator& integrator, const StableStep& meas
   if (measured.stable_s == 0 && !measured.finished) return "no time was left to find the limit";
   if (is_shorter_than_theory(measured, theory) && floor_is_why)
     return "the floor: a node that a step takes below it is put onto it, which strains its springs the more, "
-           "the "
-           "longer the step is; without the floor longer steps are stable";
+           "the longer the step is; without the floor longer steps are stable";
   if (is_implicit(integrator)) {
     if (measured.unstable_s == 0) return {};
     return "backward Euler damps every linear mode at every step; a solver that stops before it has "

@@ -390,8 +390,7 @@ std::string why_not_executed(const fs::path& file, int error) {
   if (fs::is_directory(file, ignored)) return "it is a folder";
   if (names_interpreter_with_return(file))
     return "its lines end in CR LF, as on Windows, and so does the name of its interpreter; save it with "
-           "lines "
-           "that end in LF (sed -i 's/\\r$//')";
+           "lines that end in LF (sed -i 's/\\r$//')";
   if (error == ENOENT && !fs::exists(file, ignored)) return "there is no such file";
   if (error == EACCES && ::access(file.c_str(), X_OK) != 0) return "it is not executable (chmod +x)";
   if (error == ENOEXEC)

@@ -360,7 +360,7 @@ std::optional<std::string> thread_excess(int threads) {
   constexpr int most_a_processor = 8;
   const int processors = omp_get_num_procs();
   if (threads <= most_a_processor * processors) return std::nullopt;
-  return fmt::format("too many for the {} that this process may use; ask for at most {} threads, {} for each",
+  return fmt::format("too many for the {} that this process may use; request at most {} threads, {} for each",
                      pluralize(processors, "processor"), most_a_processor * processors, most_a_processor);
 }
 

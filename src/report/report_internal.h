@@ -137,9 +137,10 @@ std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& lege
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& id);
 
-/// A chart whose values all stand at one place along x, as a table, which shows them better.
+/// The values of a chart that has one place, as a table, which shows them better. References, which only help
+/// to read a chart, are left out.
 Table values_of(const Chart& chart);
-/// Do they, in a chart of lines?
+/// Whether it is a chart of lines over whole numbers, such as nodes, with all values at one of them.
 bool has_one_place(const Chart& chart);
 
 /// Any text (a file's name, a scene's, a message) as HTML shows it, in elements and in quoted attributes. The

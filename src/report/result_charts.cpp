@@ -124,7 +124,7 @@ std::optional<RoofDot> dot_of(const ResultRow& row) {
 }
 
 /// The roof that dots of as many threads lie under: bandwidth times intensity, up to a ceiling where any dot
-/// shows that there is one. Such dots were held against the same peaks.
+/// shows that there is one. Such dots were compared with the same peaks.
 Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, double to) {
   double bandwidth = 0, ceiling = 0;
   for (const RoofDot& dot : dots) {
@@ -347,16 +347,18 @@ std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Prove
 
 bool has_one_place(const Chart& chart) {
   const auto range = range_of(chart);
-  return chart.form == ChartForm::lines && range && range->x.low == range->x.high;
+  return chart.form == ChartForm::lines && chart.x.ticks_at_values && range && range->x.low == range->x.high;
 }
 
 Table values_of(const Chart& chart) {
   Table table{{{chart.x.label}, {"configuration"}, {chart.y.label}, {"95 % interval", Align::right}}, {}};
-  for (const Series& series : chart.series)
+  for (const Series& series : chart.series) {
+    if (series.origin == Origin::reference) continue;
     for (std::size_t i = 0; i < series.x.size(); ++i)
       table.rows.push_back(
           {static_cast<std::uint64_t>(series.x[i]), series.name, series.y[i],
            series.low.empty() ? Cell() : Cell(interval_text(series.low[i], series.high[i]))});
+  }
   return table;
 }
 

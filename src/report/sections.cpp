@@ -190,7 +190,8 @@ std::string outcomes_of(const ReportInput& input) {
       cell.strong = judged.outcome != ClaimOutcome::undecided;
     }
     // Folders of several suites may have the same last name.
-    const std::filesystem::path name(folder.name);
+    std::filesystem::path name = std::filesystem::path(folder.name).lexically_normal();
+    if (!name.has_filename()) name = name.parent_path();  // it ended with a slash
     table.columns.push_back({(name.parent_path().filename() / name.filename()).string()});
   }
   for (const Claim& claim : input.claims) {
@@ -216,10 +217,10 @@ std::string verdict_section(const ReportInput& input) {
     return table_of(judge(folder, input)) + list_of(row_findings(folder.rows, folder.where_from()));
   });
   return fmt::format(
-      "<p>What the papers say, and whether it held here. Hong et al. measured on a {}, with ten threads. A "
-      "claim <strong>held</strong> if every ratio lies above what it needs with its whole interval, and is "
-      "<strong>not held</strong> if one lies below. Rows that are not verified do not count. OpenCL on the "
-      "processor decides nothing about a GPU.</p>\n{}",
+      "<p>What the papers say, and whether it held here. Hong et al. measured on a {}; their Figure 5 shows "
+      "ten threads. A claim <strong>held</strong> if every ratio lies above what it needs with its whole "
+      "interval, and is <strong>not held</strong> if one lies below. Rows that are not verified do not "
+      "count. OpenCL on the processor decides nothing about a GPU.</p>\n{}",
       paper_device,
       input.folders.size() < 2
           ? ratios
@@ -322,10 +323,9 @@ std::vector<const ResultRow*> headline_rows(RowPointers rows) {
 
 std::string headline_section(const ReportInput& input) {
   return "<p>The largest scene of each kind; <em>ms per step</em> are medians over the rounds. Intervals "
-         "contain "
-         "the true median in 95 % of all cases. With fewer than six rounds they are the smallest and the "
-         "largest "
-         "sample. Speed-ups are over <code>serial</code>: medians of the ratios within each round.</p>\n" +
+         "contain the true median in 95 % of all cases. With fewer than six rounds they are the smallest "
+         "and the largest sample. Speed-ups are over <code>serial</code>: medians of the ratios within each "
+         "round.</p>\n" +
          of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) -> std::string {
            if (folder.rows.empty()) return "<p>There are no rows.</p>\n";
            const std::vector<const ResultRow*> all = pointers_to(folder.rows);
@@ -360,18 +360,26 @@ std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const Paper
   return charts;
 }
 
+/// A chart of one place: with the title, subtitle and notes that it would have when drawn.
+std::string table_of(const Chart& chart, const std::string& notes) {
+  const std::string subtitle =
+      chart.subtitle.empty() ? "" : fmt::format("<p>{}</p>\n", html_text(chart.subtitle));
+  return fmt::format("<h4>{}</h4>\n{}{}{}", html_text(chart.title), subtitle, html_of(values_of(chart)),
+                     notes.empty() ? "" : fmt::format("<p>{}</p>\n", notes));
+}
+
 /// Charts with their notes, or the sentence why there is none; first those of one place, as tables.
 std::string figures_of(const std::vector<Chart>& charts) {
   std::string tables, text;
   for (const Chart& chart : charts) {
+    const DrawnChart drawn = draw_svg(chart);
+    const std::string said = drawn.notes.empty() ? "" : html_text(join(drawn.notes, ". ")) + ".";
     if (has_one_place(chart)) {
-      tables += fmt::format("<h4>{}</h4>\n", html_text(chart.title)) + html_of(values_of(chart));
+      tables += table_of(chart, said);
       continue;
     }
-    const DrawnChart drawn = draw_svg(chart);
     // The chart has its title in it.
-    const std::string notes =
-        drawn.notes.empty() ? "" : "<figcaption>" + html_text(join(drawn.notes, ". ")) + ".</figcaption>";
+    const std::string notes = said.empty() ? "" : "<figcaption>" + said + "</figcaption>";
     text += drawn.svg.empty() ? "<p class=\"problems\">" + html_text(chart.title) +
                                     ": no chart, because there is no value to draw.</p>\n"
                               : "<figure>" + drawn.svg + notes + "</figure>\n";
@@ -389,10 +397,8 @@ std::string pictures_of(const std::vector<FoundPicture>& pictures) {
 
 std::string speedup_section(const ReportInput& input) {
   return "<p>Published lines are dashed and have open points; measured ones have intervals. Both axes of "
-         "speed-ups "
-         "are logarithmic, neither of Figure 6 of Vassilev is. The paper shows its own times as curves "
-         "without "
-         "numbers.</p>\n" +
+         "speed-ups are logarithmic, neither of Figure 6 of Vassilev is. The paper shows its own times as "
+         "curves without numbers.</p>\n" +
          of_each_folder(input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           std::vector<Chart> charts;
@@ -410,10 +416,8 @@ std::string speedup_section(const ReportInput& input) {
 
 std::string scaling_section(const ReportInput& input) {
   return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes. It "
-         "is 1 "
-         "if a node costs the same at every size. Speed-ups over threads compare a backend with itself on "
-         "the "
-         "fewest threads.</p>\n" +
+         "is 1 if a node costs the same at every size. Speed-ups over threads compare a backend with itself "
+         "on the fewest threads.</p>\n" +
          of_each_folder(
              input, "<p>No folder has two sizes of a kind of scene, or two numbers of threads.</p>\n",
              [&](const ReportFolder& folder, const std::string& id) {
@@ -430,8 +434,7 @@ std::string scaling_section(const ReportInput& input) {
 
 std::string roofline_section(const ReportInput& input) {
   return "<p>Operations and bytes are the least that a step needs. Roofs are the machine's peaks, measured "
-         "in the "
-         "same process; other programs that run then lower them.</p>\n" +
+         "in the same process; other programs that run then lower them.</p>\n" +
          of_each_folder(input, "<p>No folder has rows with a roofline; garments have none.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           const auto chart = roofline_chart(folder.rows, folder.where_from(), id);

@@ -151,6 +151,19 @@ TEST(BenchMemory, HoldsAllCombinationsAtOnce) {
   EXPECT_GT(needed({"hybrid"}, {"semi-euler", "rk4"}) - needed({"hybrid"}, {"semi-euler"}), hybrid);
 }
 
+TEST(BenchMemory, OfARowBodyByBodyHoldsASystemOfEachBody) {
+  const SceneSize size{1'000'000, 6'000'000, false};
+  BackendInfo openmp = *find_backend("openmp");
+  const auto needed = [&] {
+    SceneJob job = job_of({"hybrid"}, {"semi-euler"});
+    job.backends.push_back(&openmp);
+    return bench_memory_needed(job, size);
+  };
+  const std::uint64_t together = needed();
+  openmp.each_body = true;
+  EXPECT_EQ(needed() - together, size.nodes * 56 + size.springs * 16);
+}
+
 TEST(BenchMemory, OfAGarmentHoldsTheStatesOfItsReference) {
   const SceneJob job = job_of({"openmp"}, {"semi-euler"});
   // Both ends of 20 stretches while the seams close and of 20 when draped, 48 bytes a node each, instead of

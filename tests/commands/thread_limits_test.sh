@@ -43,6 +43,11 @@ if [ "$(id -u)" -eq 0 ] && chmod 777 . && setpriv --reuid=54321 --regid=54321 --
     [ "$status" -eq 3 ] || fail "$backend under a limit of processes exits with $status: $(cat err)"
     [ "$(row "limited-$backend" serial)" = ok ] || fail "serial has not gone on under a limit of processes: $(cat err)"
   done
+  # Room for the threads of one body, and not for those of three bodies, which live at once.
+  env HOME="$work" setpriv --reuid=54321 --regid=54321 --clear-groups bash -c \
+    'ulimit -u 9; exec timeout 120 "$@"' bash "$mssim" bench --scene bodies3858 --integrator semi-euler --rounds 1 --threads 4 \
+    --backend serial,threads-mutex:each --out limited-each >out 2>err || true
+  row limited-each threads-mutex:each | grep -Eq '^"?unavailable: 10 threads ' || fail "the threads of three bodies: $(cat err)"
 fi
 
 # More than eight threads for each processor.

@@ -17,6 +17,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::Not;
 
 /// A point that counts. `cost`: wall seconds a simulated second.
 WorkPoint made_point(std::string_view integrator, double dt_s, double cost, double error,
@@ -225,6 +226,12 @@ TEST(Recommendation, SaysForWhichErrorsTheRunnerUpIsCheaper) {
   EXPECT_THAT(
       runner_up_sentence({made_point("rk4", 1e-4, 0.5, 1e-4), made_point("verlet", 1e-4, 0.3, 1.001e-4)}),
       EndsWith("it would win at errors of about 0.0001."));
+  // Both have the same two errors. rk4 takes half as long at the smaller one and five times as long at the
+  // larger one: they meet at log(2) of log(10) of the way.
+  EXPECT_THAT(
+      runner_up_sentence({made_point("rk4", 1e-5, 1, 1e-5), made_point("rk4", 1e-4, 0.5, 1e-3),
+                          made_point("verlet", 1e-5, 2, 1e-5), made_point("verlet", 1e-4, 0.1, 1e-3)}),
+      EndsWith("at errors of 1e-05 to below 4e-05."));
 }
 
 SceneGuide between_two_steps() {
@@ -258,8 +265,10 @@ TEST(LongestStep, IsBoundedByStability) {
   guide.wish.error = 1e-2;
   add_limit(guide, "verlet", 4e-4);
   EXPECT_EQ(steps_to_try(guide, verlet), 27);  // 0.01 s / (0.95 * 4e-4 s) = 26.3
-  guide.limits[0].measured.stable_s = 2e-4;    // not longer than what was measured
+  EXPECT_THAT(recommend(guide).sentences.at(0), AllOf(HasSubstr("0.00037 s"), Not(HasSubstr("stable"))));
+  guide.limits[0].measured.stable_s = 2e-4;  // not longer than what was measured
   EXPECT_EQ(steps_to_try(guide, verlet), std::nullopt);
+  EXPECT_THAT(recommend(guide).sentences.at(0), AllOf(HasSubstr("0.0002 s"), HasSubstr("stable")));
   guide.limits[0].measured.stable_s = 4e-4;
   guide.points.push_back(made_point("verlet", 0.01 / 30, 0.5, 1));
   guide.points.back().steps = 30;
@@ -362,6 +371,16 @@ TEST(NeededTime, IsThatOfAReference) {
   EXPECT_DOUBLE_EQ(*recommend(guide).needed_s, 150);
   guide.trusted.short_of_s = 0;  // another failure
   EXPECT_FALSE(recommend(guide).needed_s);
+}
+
+TEST(NeededTime, IsNotKnownToAGuideThatWasStopped) {
+  SceneGuide guide = with_unfinished(made_point("rk4", 4e-4, 0.1, 1.6e-2), 0.99 * 0.3 * 2e-4);
+  guide.seconds = 5;
+  guide.stopped = true;
+  const Recommendation chosen = recommend(guide);
+  EXPECT_FALSE(chosen.needed_s || chosen.best || chosen.nearest);
+  EXPECT_THAT(chosen.sentences, ElementsAre(AllOf(HasSubstr("stopped"), HasSubstr("rk4 on openmp"),
+                                                  Not(HasSubstr("--time-budget")))));
 }
 
 TEST(WhatWasMeasured, SaysWhichMethodsWereNotAndWhy) {

@@ -106,6 +106,11 @@ TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
   EXPECT_THAT(to_text(values_of(chart), ListingFormat::csv),
               testing::AllOf(HasSubstr("\n2500,\"GPU, Nexus 7, published\",10.65"),
                              HasSubstr("2500,\"opencl, measured\",5.0,5.00 to 5.00")));
+  Chart changed = chart;
+  changed.series.push_back({.name = "order 4", .origin = Origin::reference, .x = {2500}, .y = {1}});
+  EXPECT_EQ(values_of(changed).rows.size(), values_of(chart).rows.size()) << "a reference is no value";
+  changed.x.ticks_at_values = false;
+  EXPECT_FALSE(has_one_place(changed)) << "seconds are no whole numbers";
 }
 
 TEST(ScalingCharts, NameTheSlopes) {

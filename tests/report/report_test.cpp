@@ -417,7 +417,7 @@ TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {
   test.scenes = "table1";
   test.fast = "openmp";
   test.slow = "serial";
-  folder.name = "results/two";
+  folder.name = "results/two/";
   folder.rows[1].samples_ms.clear();
   folder.rows[1].ms_per_step = folder.rows[1].ms_per_step_low = folder.rows[1].ms_per_step_high = 50;
   input.folders.push_back(folder);
@@ -429,9 +429,10 @@ TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {
 TEST(ReportPage, ShowsASingleSceneAsATable) {
   ReportFolder folder;
   folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
+  folder.provenance = made_up_provenance();
   const std::string page = report_page(input_of(folder));
   expect_in_order(page, {"<section id=\"speed-up\">", "<h4>semi-euler: speed-up over one thread</h4>",
-                         "openmp, measured</td>"});
+                         "A Processor", "openmp, measured</td>"});
   EXPECT_FALSE(has(page, "-speed-up-semi-euler\" class=\"chart\""));
 }
 

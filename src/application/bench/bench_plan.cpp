@@ -41,9 +41,9 @@ std::uint64_t window_memory(const BenchSettings& settings, const GridWindow& win
   return static_cast<std::uint64_t>(most) * static_cast<std::uint64_t>(settings.execution.threads);
 }
 
-/// A cloth whose backends all have windows gets some where they are asked for, or where the whole does not
-/// fit. Throws UsageError where they are asked for and cannot be had. Throws SceneError where the scene needs
-/// more memory than there is: a user shall not wait for a scene only to see the program killed.
+/// A cloth whose backends all have windows gets some if they are requested, or if the whole does not fit.
+/// Throws UsageError if they are requested and cannot be had. Throws SceneError if the scene needs more
+/// memory than there is: nobody should wait for a scene only to see the program killed.
 PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
   const SceneCounts counts = scene.parts.counts;
   const SceneSize size = size_of(scene.spec, counts);
@@ -82,7 +82,7 @@ std::vector<std::string> timed_names(const BenchOptions& options) {
   return scenes;
 }
 
-/// Those asked for, or else all of the table and, where the suite compares them, all that are described.
+/// The requested ones, or else all of the table and, where the suite compares them, all that are described.
 std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const Comparison& comparison,
                                             const ExecutionOptions& execution, BackendChoice& choice) {
   if (!options.backends.empty()) return choice.require_all(options.backends);

@@ -48,8 +48,9 @@ constexpr auto scenes_of_guide = [] {
 /// Figure 5 of Hong et al. shows ten threads.
 constexpr std::array<std::string_view, 1> cloths_as_published{"threads-mutex:10"};
 /// And they step one object after the other (Conclusions).
-constexpr std::array<std::string_view, 6> bodies_as_published{
-    "serial:each", "threads-mutex:10", "threads-mutex:each", "openmp:each", "opencl:each", "hybrid:each"};
+constexpr std::array<std::string_view, 7> bodies_as_published{
+    "serial:each", "threads-mutex:10", "threads-mutex:each", "threads-mutex:each:10",
+    "openmp:each", "opencl:each",      "hybrid:each"};
 
 /// The real methods, those that are a paper's integrator under its own name.
 constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
@@ -69,7 +70,7 @@ std::vector<const BackendInfo*> all_methods() {
 /// The other backends are rows that say that they cannot dress.
 std::vector<const BackendInfo*> all_that_dress() { return with_garment_backends(table_backends()); }
 
-/// What peers and ranks are held against: the plain list and the fastest of the host's.
+/// What peers and ranks are compared with: the plain list and the fastest of the host's.
 std::vector<const BackendInfo*> baseline_and_best() { return {&baseline_backend(), &best_host_backend()}; }
 
 /// 1, 2, 4, ... and the largest.
@@ -194,8 +195,8 @@ PaperLegend paper_legend() {
   for (const Suite& suite : table) variants.insert(suite.variants.begin(), suite.variants.end());
   for (const BackendInfo* backend : with_garment_backends(table_backends())) {
     const auto add = [&](std::string_view name) {
-      legend.backends.push_back({std::string(name), std::string(backend->paper_configuration),
-                                 backend->makes_threads.has_value()});
+      legend.backends.push_back(
+          {std::string(name), std::string(backend->paper_configuration), backend->makes_threads.has_value()});
     };
     add(backend->name);
     for (const std::string_view variant : variants)

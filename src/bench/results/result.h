@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "text/text.h"
+
 namespace mssim {
 
 /// The backend that the others are compared with (speedup_vs_serial): the one marked BackendRole::baseline.
@@ -32,6 +34,17 @@ struct DressingRecord {
   double wall_s = 0;
   std::vector<FitNumberRecord> fit;
 };
+
+/// What of the dressing is out of bounds, each a sentence without full stop.
+inline std::vector<std::string> out_of_bounds(const DressingRecord& dressing) {
+  std::vector<std::string> sentences;
+  if (!dressing.seamed_at) sentences.emplace_back("its seams have not closed");
+  if (!dressing.settled) sentences.emplace_back("it has not settled");
+  for (const FitNumberRecord& number : dressing.fit)
+    if (number.within == false)
+      sentences.push_back(number.name + " is " + (number.value ? three_digits(*number.value) : "not finite"));
+  return sentences;
+}
 
 /// Difference between a row's state and the reference's after the verification's steps.
 struct Agreement {

@@ -114,11 +114,7 @@ bool keep_earlier(ResultRow& row, const std::vector<ResultRow>& earlier) {
 
 /// Notes what of a published algorithm's dressing is out of bounds.
 void note_misfit(ResultRow& row) {
-  std::vector<std::string> found;
-  if (!row.dressing->settled) found.emplace_back("it has not settled");
-  for (const FitNumberRecord& number : row.dressing->fit)
-    if (number.within == false)
-      found.push_back(number.name + " is " + (number.value ? three_digits(*number.value) : "not finite"));
+  const std::vector<std::string> found = out_of_bounds(*row.dressing);
   if (!found.empty()) append_sentence(row.note, "as published it does not fit: " + join(found, ", "));
 }
 

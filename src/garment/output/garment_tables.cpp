@@ -58,8 +58,10 @@ struct Layout {
   std::vector<Line> lines;
 };
 
+/// Null for other backends. After a colon a backend's number of threads may stand.
 const PublishedDressing* published_dressing(std::string_view backend) {
-  const auto row = std::ranges::find(published_dressings(), backend, &PublishedDressing::name);
+  const auto row = std::ranges::find(published_dressings(), backend.substr(0, backend.find(':')),
+                                     &PublishedDressing::name);
   return row == published_dressings().end() ? nullptr : &*row;
 }
 
@@ -105,13 +107,12 @@ Table table_of(const Layout& layout, const Provenance& provenance, const std::st
 /// What is timed although its garment does not fit: only a published algorithm is.
 void add_misfits(Document& page, const Rows& rows) {
   BulletList list;
-  const auto fits = [](const DressingRecord& dressing) {
-    return dressing.settled &&
-           std::ranges::none_of(dressing.fit, [](const FitNumberRecord& one) { return one.within == false; });
-  };
-  for (const ResultRow* row : rows)
-    if (row->dressing && counts(*row) && !fits(*row->dressing))
-      list.items.push_back(fmt::format("`{}` on `{}`: {}", row->backend, row->scene, row->note));
+  for (const ResultRow* row : rows) {
+    if (!row->dressing || !counts(*row)) continue;
+    const std::vector<std::string> found = out_of_bounds(*row->dressing);
+    if (!found.empty())
+      list.items.push_back(fmt::format("`{}` on `{}`: {}", row->backend, row->scene, join(found, ", ")));
+  }
   if (!list.items.empty())
     page.insert(page.end(), {Heading{2, "Timed, but not dressed within bounds"}, std::move(list)});
 }

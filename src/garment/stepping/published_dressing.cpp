@@ -323,7 +323,9 @@ std::unique_ptr<DressingBackend> make(const System& system, const Integrator& in
                                       const ExecutionOptions& options) {
   require_semi_euler(integrator);
   if (std::get<Garment>(system.topology).touching)
-    throw Unsupported("Algorithm 1 as printed has no layers that touch each other");
+    throw Unsupported(
+        "these rows leave out collisions between layers, as Vassilev's Figure 6 does: dress the scene with "
+        "serial or openmp");
   return std::make_unique<PublishedLoops<Vector, parallel>>(system, dt_s, options.threads);
 }
 

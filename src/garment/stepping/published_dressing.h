@@ -13,25 +13,26 @@ namespace mssim {
 ///
 /// The paper's ("Cloth simulation", "Background", "SIMD instruction for accelerating computations"):
 /// - the loops, their order, and what each computes: (1) the force of each spring, Eq. (2), is added to both
-///   ends; (2) viscous damping and gravity are added; (3) each open joint pulls its ends; (4) velocities are
+///   ends; (2) viscous damping and gravity are added; (3) each joint pulls its ends; (4) velocities are
 ///   updated, Eq. (1), and those of points that would enter the body change; (5) over-elongated springs of
 ///   all three kinds change the velocities of their ends, once; (6) positions are updated. Nothing else
 ///   happens in a step. Loops 4 and 5 change no position;
 /// - threads: OpenMP's `parallel for` over the springs, points or joints of a loop, and a barrier after each;
-/// - SIMD: additions, products and dot products of vectors of three components. A register holds one point.
-///   Without it the compiler gets plain floats, with the same options.
+/// - SIMD: additions, products and dot products of vectors of three components.
 ///
 /// Chosen here, because the paper does not say:
 /// - The data race. Threads add to nodes that they share in loops 1, 3 and 5, and the paper has neither lock
 ///   nor atomic. Here the springs are taken in batches, and batches without a common node side by side, in as
 ///   many rounds as that takes. The rows without threads take the same order, so that all have the same bits.
+/// - SIMD: a register holds one point. Without it the compiler gets plain floats, with the same options.
 /// - The correction: half of what lengthens a spring further is taken from each end of equal mass, as
 ///   `"correction": "published"` does elsewhere. The threshold is the scene's. The paper refers to "Fast
 ///   cloth animation on walking avatars" (2001), its [5].
 /// - The body: planes of a pixel instead of its depth (BodyMaps). Velocity into the body is dropped, and
 ///   friction is Coulomb's. The paper refers to [5] here, too.
-/// - Joints: the force is the scene's; the paper gives none. It does not say what holds a closed seam. Here a
-///   joint that has come near is a spring of natural length zero, as stiff as the cloth, in loop 3.
+/// - Joints: the force is the scene's; the paper gives none. That force pulls each open joint. The paper does
+///   not say what holds a closed seam. Here a joint that has come near is a spring of natural length zero, as
+///   stiff as the cloth, in loop 3.
 /// - Phases: damping, gravity and friction are the scene's, while seams close and after. Upper edges are not
 ///   held, there is no floor, and panels pass through each other: Figure 6 has no cloth-cloth collisions.
 struct PublishedDressing {

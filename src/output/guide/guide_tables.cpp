@@ -154,7 +154,8 @@ void add_costs(Document& page, const SceneGuide& guide) {
   add_table(
       page, "At equal error",
       "Seconds that a simulated second takes if the error may be as large as the column says, by a line "
-      "through the logarithms of two points. ‡: the longest stable step is more accurate than that.",
+      "through the logarithms of two points. ‡: the longest step that was compared is more accurate "
+      "than that; no curve goes beyond it.",
       costs_at_errors(guide));
   const std::vector<std::string> sentences = beside_the_paper(guide);
   if (sentences.empty()) return;

@@ -115,10 +115,9 @@ constexpr std::string_view how_to_read_clusters =
     "processes; packing is all work on messages except waiting. *Bytes* and *messages*: sent per step by the "
     "process that sends most. *Efficiency*: nodes per second, divided by those of one process and by the "
     "number of processes. *Against copies*: nodes per second, divided by those of as many processes that "
-    "each "
-    "step the whole scene (`mpi-copies`); these share the memory too, but send nothing. *Model*: the time of "
-    "computing as fast as these copies plus that of messages, from the latency and bandwidth measured before "
-    "the first step; in brackets, divided by the measured time.";
+    "each step the whole scene (`mpi-copies`); these share the memory too, but send nothing. *Model*: the "
+    "time of computing as fast as these copies plus that of messages, from the latency and bandwidth "
+    "measured before the first step; in brackets, divided by the measured time.";
 
 std::optional<double> computing_share(const ResultRow& row) {
   if (!row.waiting_share || !row.packing_share) return std::nullopt;

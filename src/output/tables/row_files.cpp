@@ -263,7 +263,7 @@ Table github_table(std::span<const ResultRow> rows) {
                {"unit", "ms/step"},
                {"value", *row.ms_per_step},
                {"range", fmt::format("{} to {}", text(row.ms_per_step_low), text(row.ms_per_step_high))},
-               {"extra", device_name(row.device) + ", " + pluralize(row.threads, "thread")}});
+               {"extra", row.device + ", " + pluralize(row.threads, "thread")}});
   }
   return table;
 }

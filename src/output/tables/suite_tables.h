@@ -186,8 +186,8 @@ struct ThreadRow {
   std::optional<RatioInterval> speedup() const { return times_as_fast(row, fewest); }
 };
 
-/// The rows with several numbers of threads, in order. Rows with more threads than the run, which repeat a
-/// paper's, are left out: they are not part of how a backend scales.
+/// The rows with several numbers of threads, in order. Rows with more threads than the run are left out, such
+/// as `threads-mutex:10` on two processors: their threads share processors, which is no scaling.
 std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenance);
 
 /// Adds the table `threads` of thread_rows after the tables of `maker`: times, speed-ups over the fewest

@@ -15,6 +15,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 ResultRow dressed_row(const std::string& scene, std::uint64_t nodes, const std::string& backend, double ms,
                       std::optional<double> speedup) {
@@ -145,15 +146,20 @@ TEST(GarmentTable, IsLaidOutAsTheFigure) {
 TEST(GarmentTable, SetsThePublishedAlgorithmBesideAndNamesWhatDoesNotFit) {
   std::vector<ResultRow> rows = garment_rows();
   rows.push_back(dressed_row("large", 4000, "algorithm1-simd", 3, 2.0 / 3));
+  rows.push_back(dressed_row("large", 4000, "algorithm1-threads-simd:1", 3, 2.0 / 3));
   rows.push_back(dressed_row("large", 4000, "algorithm1-threads-simd", 1.5, 4.0 / 3));
   EXPECT_EQ(markdown(table_of(rows).page).find("not dressed within bounds"), std::string::npos);
-  rows.back().dressing->fit.front().within = false;
-  rows.back().note = "largest_gap_mm is 12";
+  rows.back().dressing->settled = false;
+  rows.back().dressing->fit.front() = {"largest_gap_mm", 12, false};
+  rows.back().note = "something else";
   const std::string page = markdown(table_of(rows).page);
   EXPECT_THAT(page, AllOf(HasSubstr("as printed, without: `algorithm1-simd` | – | **3.00**"),
                           HasSubstr("as printed, with: `algorithm1-threads-simd` | – | **1.50**"),
+                          HasSubstr("as printed, with: `algorithm1-threads-simd:1` | – | **3.00**"),
                           HasSubstr("i7-4702MQ"), HasSubstr("Cortex-A17"),
-                          HasSubstr("- `algorithm1-threads-simd` on `large`: largest_gap_mm is 12")));
+                          HasSubstr("- `algorithm1-threads-simd` on `large`: it has not settled, "
+                                    "largest_gap_mm is 12"),
+                          Not(HasSubstr("something else"))));
   EXPECT_THAT(table_csv(table_of(rows).data),
               AllOf(HasSubstr("\nalgorithm1-simd,semi-euler,without,ms_per_iteration,,3\n"),
                     HasSubstr("\nalgorithm1-threads-simd,semi-euler,with,ms_per_iteration,,1.5\n")));

@@ -87,6 +87,12 @@ TEST_F(CombinationTimes, AreRefusedWhereOneIsMissingOrNoTime) {
   EXPECT_EQ(refusal(header + "a,b,c,,false,failed: x\n"), "");
 }
 
+TEST(GithubTable, KeepsTheDevicesOwnName) {
+  ResultRow row = measured_row("opencl", 0.5, 1.0);
+  row.device = "pthread-znver4-A Processor";
+  EXPECT_THAT(table_csv(github_table(std::vector{row})), HasSubstr(row.device));
+}
+
 TEST(RatioMark, StandsWhereTheTimesNameTheOtherOneAsTheFaster) {
   EXPECT_EQ(mark_of_ratio(0.923, 1.54, 1.48), "†");
   EXPECT_EQ(mark_of_ratio(1.1, 1.48, 1.54), "†");
