@@ -142,14 +142,14 @@ allowed = {
 # README.md
 pages = {"README.md": [], "docs/papers.md": []}
 readme, papers = pages["README.md"], pages["docs/papers.md"]
-chart = "results/table1/granite-rapids"
+chart = "results/table1/zen4"
 sizes = [int(row["nodes"]) for row in rows(f"{chart}/timings.csv")]
 readme.append(f"The chart is Table {os.path.dirname(chart)[-1]} of Hong et al.")
 readme.append(f"on cloths of {min(sizes):,} to {max(sizes):,} nodes: published")
-readme.append(f"It was measured on {cpus(chart)} logical CPUs of an Intel Xeon (Granite Rapids), {when(chart)}")
+readme.append(f"It was measured on {cpus(chart)} logical CPUs of an AMD EPYC (Zen 4), {when(chart)}")
 for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies of {:,} nodes", "jeans4k": "jeans of {:,} nodes, draped"}.items():
     folder = "garment" if scene.startswith("jeans") else "table1" if scene.startswith("cloth") else "table3"
-    nodes = {int(row["nodes"]) for row in rows(f"results/{folder}/granite-rapids/timings.csv") if row["scene"] == scene}
+    nodes = {int(row["nodes"]) for row in rows(f"results/{folder}/zen4/timings.csv") if row["scene"] == scene}
     readme.append(words.format(nodes.pop()))
 
 without_gpu = [machine for machine in machines if machine != gpu]
@@ -160,7 +160,7 @@ readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (E
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
 slower = [machine for machine in machines if outcome(locks, machine)["outcome"] == "not held"]
 readme.append(f"made some cloth slower on {len(slower)} of {len(machines)} machines")
-readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'granite-rapids', 'openmp'))} times as fast as `serial`")
+readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`")
 peers = {threads: rows(f"results/peers/zen4/{threads}/peers.csv") for threads in ("1-thread", "2-threads")}
 times_of = lambda table: {(row["scene"], row["peer"]): float(row["ms_per_step"]) for row in table if row["status"] == "ok"}
 shares = [ms[scene, "cpp-list"] / ms[scene, "serial"] for ms in map(times_of, peers.values()) for scene, peer in ms if peer == "cpp-list"]
