@@ -70,6 +70,12 @@ std::vector<const BackendInfo*> all_methods() {
 /// The other backends are rows that say that they cannot dress.
 std::vector<const BackendInfo*> all_that_dress() { return with_garment_backends(table_backends()); }
 
+/// Algorithm 1 as printed is not dressed in the finest jeans, which takes it many minutes.
+bool is_dressed_soon(std::string_view scene, std::string_view backend) {
+  return scene != jeans.back() ||
+         std::ranges::find(garment_backends(), backend, &BackendInfo::name) == garment_backends().end();
+}
+
 /// What peers and ranks are compared with: the plain list and the fastest of the host's.
 std::vector<const BackendInfo*> baseline_and_best() { return {&baseline_backend(), &best_host_backend()}; }
 
@@ -174,7 +180,7 @@ constexpr auto table = std::to_array<Suite>({
      false,
      true,
      jeans,
-     {all_that_dress, cheapest_method, garment_tables}},
+     {all_that_dress, cheapest_method, garment_tables, false, nullptr, is_dressed_soon}},
     {guide_suite,
      "which integrator, backend and step for cloths and bodies: mssim guide, scene by scene",
      false,

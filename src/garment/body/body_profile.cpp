@@ -294,8 +294,9 @@ double BodyProfile::crotch_length(double y) const {
 double BodyProfile::leg_girth(double y, int side) const { return hull_perimeter(leg_section(y, side)); }
 
 PlanPoint BodyProfile::leg_middle(double y) const {
-  constexpr double below_the_crotch = 0.005;
-  const std::vector<PlanPoint> points = leg_section(std::min(y, crotch_height() - below_the_crotch), 1);
+  constexpr double from_its_ends = 0.005;
+  const std::vector<PlanPoint> points =
+      leg_section(std::clamp(y, lowest() + from_its_ends, crotch_height() - from_its_ends), 1);
   const auto [inner, outer] = std::ranges::minmax_element(points, {}, &PlanPoint::x);
   const auto [behind, before] = std::ranges::minmax_element(points, {}, &PlanPoint::z);
   return {(inner->x + outer->x) / 2, (behind->z + before->z) / 2};

@@ -59,7 +59,7 @@ class BodyProfile {
   /// legs, and for a height below the crotch.
   double crotch_length(double y) const;
   /// The middle of the leg at x > 0, half way between the outermost points of its section; above the crotch
-  /// that of the leg just below it.
+  /// that of the leg just below it, and below the body that of the leg just above its end.
   PlanPoint leg_middle(double y) const;
   /// The largest z of the section, m.
   double front(double y) const;

@@ -116,7 +116,7 @@ TEST(BodyProfile, TheCrotchIsWhereTheSectionFallsApart) {
   const Surface legs = both(cylinder(-0.2, 0.1, 0.1, 0, 0.9), cylinder(0.2, 0.1, 0.1, 0, 0.9));
   const Surface trunk = cylinder(0, 0.35, 0.2, 0.8, 1.4);
   EXPECT_NEAR(BodyProfile(both(legs, trunk)).crotch_height(), 0.8, 1e-12);
-  for (const double y : {0.3, 0.795, 1.2}) {
+  for (const double y : {-0.1, 0.3, 0.795, 1.2}) {
     EXPECT_NEAR(BodyProfile(both(legs, trunk)).leg_middle(y).x, 0.2, 1e-9) << y;
     EXPECT_NEAR(BodyProfile(both(legs, trunk)).leg_middle(y).z, 0, 1e-9) << y;
   }
