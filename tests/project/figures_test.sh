@@ -160,7 +160,7 @@ readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (E
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
 slower = [machine for machine in machines if outcome(locks, machine)["outcome"] == "not held"]
 readme.append(f"made some cloth slower on {len(slower)} of {len(machines)} machines")
-readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`")
+readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`, a plain spring list (Zen 4, as in the chart)")
 peers = {threads: rows(f"results/peers/zen4/{threads}/peers.csv") for threads in ("1-thread", "2-threads")}
 times_of = lambda table: {(row["scene"], row["peer"]): float(row["ms_per_step"]) for row in table if row["status"] == "ok"}
 shares = [ms[scene, "cpp-list"] / ms[scene, "serial"] for ms in map(times_of, peers.values()) for scene, peer in ms if peer == "cpp-list"]

@@ -240,8 +240,16 @@ TEST(Suites, OfClustersMeasureRanksInPowersOfTwoAndWideClothsWithOneNumberOfThem
   EXPECT_TRUE(cluster.is_compared("cloth10k-x4", "mpi:4"));
   for (const std::string_view backend : {"serial", "mpi:1", "mpi:2", "mpi-copies:4", "openmp"})
     EXPECT_FALSE(cluster.is_compared("cloth10k-x4", backend)) << backend;
-  for (const Suite& suite : suites())
-    EXPECT_EQ(suite.comparison.is_compared == nullptr, suite.name != "cluster") << suite.name;
+}
+
+TEST(Suites, LeaveAlgorithm1AsPrintedOutOnTheFinestJeans) {
+  const Comparison& garment = comparison_of_suite("garment");
+  for (const BackendInfo& backend : garment_backends()) {
+    EXPECT_TRUE(garment.is_compared("jeans16k", backend.name)) << backend.name;
+    EXPECT_FALSE(garment.is_compared("jeans64k", backend.name)) << backend.name;
+  }
+  for (const BackendInfo& backend : backends())
+    EXPECT_TRUE(garment.is_compared("jeans64k", backend.name)) << backend.name;
 }
 
 }  // namespace
