@@ -86,16 +86,16 @@ inline Provenance made_up_provenance() {
 
 inline const PaperLegend legend{
     {{"serial", "cpu-only"},
-      {"threads-mutex", "multi-thread-cpu", true},
-      {"threads-mutex:10", "multi-thread-cpu", true},
-      {"threads-mutex:each", "multi-thread-cpu", true},
-      {"openmp", "multi-thread-cpu", true},
-      {"opencl", "gpu"},
-      {"hybrid", "gpu+multi-thread-cpu", true},
-      {"hybrid:each", "gpu+multi-thread-cpu", true},
-      {"algorithm1", ""},
-      {"algorithm1-simd", ""},
-      {"algorithm1-threads-simd", "", true}},
+     {"threads-mutex", "multi-thread-cpu", true},
+     {"threads-mutex:10", "multi-thread-cpu", true},
+     {"threads-mutex:each", "multi-thread-cpu", true},
+     {"openmp", "multi-thread-cpu", true},
+     {"opencl", "gpu"},
+     {"hybrid", "gpu+multi-thread-cpu", true},
+     {"hybrid:each", "gpu+multi-thread-cpu", true},
+     {"algorithm1", ""},
+     {"algorithm1-simd", ""},
+     {"algorithm1-threads-simd", "", true}},
     {{"semi-euler", "semi-euler", 1}, {"rk4", "rk4", 4}, {"rk4-frozen", "rk4", 1}}};
 
 /// Rows of two published scenes and of one that is not.
