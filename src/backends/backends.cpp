@@ -102,7 +102,7 @@ std::span<const BackendInfo> garment_backends() {
     // Springs and joints are kept in an order of their own, beside nodes of three vectors and two masses.
     constexpr MemoryUse loops{.node = 72, .spring = 28};
     std::vector<BackendInfo> of_garments;
-    for (const PublishedDressing& dressing : published_dressings())
+    for (const PublishedDressing& dressing : published_dressings)
       of_garments.push_back(
           {.name = dressing.name,
            .paper_configuration = "",
@@ -112,7 +112,7 @@ std::span<const BackendInfo> garment_backends() {
            .make = nullptr,
            .grid_memory = loops,
            .mesh_memory = loops,
-           .make_dressing = dressing.make,
+           .make_dressing = maker_of(dressing),
            .make_dressing_reference = make_published_reference});
     return of_garments;
   }();

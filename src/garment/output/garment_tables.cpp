@@ -60,9 +60,9 @@ struct Layout {
 
 /// Null for other backends. After a colon a backend's number of threads may stand.
 const PublishedDressing* published_dressing(std::string_view backend) {
-  const auto row = std::ranges::find(published_dressings(), backend.substr(0, backend.find(':')),
-                                     &PublishedDressing::name);
-  return row == published_dressings().end() ? nullptr : &*row;
+  const auto row =
+      std::ranges::find(published_dressings, backend.substr(0, backend.find(':')), &PublishedDressing::name);
+  return row == published_dressings.end() ? nullptr : &*row;
 }
 
 /// As the first cell of a line says it.

@@ -329,19 +329,12 @@ std::unique_ptr<DressingBackend> make(const System& system, const Integrator& in
   return std::make_unique<PublishedLoops<Vector, parallel>>(system, dt_s, options.threads);
 }
 
-constexpr auto table = std::to_array<PublishedDressing>({
-    {"algorithm1", "garments, as published: the six loops of Vassilev's Algorithm 1, one after the other",
-     false, make<Vec3<float>, false>},
-    {"algorithm1-simd", "algorithm1 with SIMD instructions for vectors of three components", false,
-     make<Vec3InRegister, false>},
-    {"algorithm1-threads", "algorithm1, each loop a `parallel for`", true, make<Vec3<float>, true>},
-    {"algorithm1-threads-simd", "algorithm1-threads with SIMD instructions", true,
-     make<Vec3InRegister, true>},
-});
-
 }  // namespace
 
-std::span<const PublishedDressing> published_dressings() { return table; }
+MakePublishedDressing maker_of(const PublishedDressing& dressing) {
+  if (dressing.simd) return dressing.parallel ? make<Vec3InRegister, true> : make<Vec3InRegister, false>;
+  return dressing.parallel ? make<Vec3<float>, true> : make<Vec3<float>, false>;
+}
 
 std::unique_ptr<DressingBackend> make_published_reference(const System& system, const Integrator& integrator,
                                                           double dt_s) {

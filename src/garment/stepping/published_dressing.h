@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <memory>
-#include <span>
 #include <string_view>
 
 #include "garment/stepping/dressing_backend.h"
@@ -38,14 +38,25 @@ namespace mssim {
 struct PublishedDressing {
   std::string_view name;
   std::string_view description;  ///< one line for `mssim list backends`
+  bool simd = false;             ///< with the paper's SIMD instructions
   bool parallel = false;         ///< the paper's "with parallelization"
-  /// Throws Unsupported for another integrator than semi-euler, and for layers that touch each other.
-  std::unique_ptr<DressingBackend> (*make)(const System& system, const Integrator& integrator, double dt_s,
-                                           const ExecutionOptions& options);
 };
 
-/// The TABLE, in the order of every listing.
-std::span<const PublishedDressing> published_dressings();
+/// The TABLE, in the order of every listing. In this header, because readers of results are linked without
+/// the loops.
+inline constexpr auto published_dressings = std::to_array<PublishedDressing>({
+    {"algorithm1", "garments, as published: the six loops of Vassilev's Algorithm 1, one after the other"},
+    {"algorithm1-simd", "algorithm1 with SIMD instructions for vectors of three components", true},
+    {"algorithm1-threads", "algorithm1, each loop a `parallel for`", false, true},
+    {"algorithm1-threads-simd", "algorithm1-threads with SIMD instructions", true, true},
+});
+
+/// Makes the loops of a row. Throws Unsupported for another integrator than semi-euler, and for layers that
+/// touch each other.
+using MakePublishedDressing = std::unique_ptr<DressingBackend> (*)(const System& system,
+                                                                   const Integrator& integrator, double dt_s,
+                                                                   const ExecutionOptions& options);
+MakePublishedDressing maker_of(const PublishedDressing& dressing);
 
 /// The same loops in double precision: what the rows are verified against.
 std::unique_ptr<DressingBackend> make_published_reference(const System& system, const Integrator& integrator,

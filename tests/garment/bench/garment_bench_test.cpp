@@ -216,8 +216,8 @@ TEST(GarmentVerification, ComparesAPublishedAlgorithmWithItself) {
   const GarmentReference published =
       run_garment_reference(*exact, scene.system, semi_euler, scene.dt_s, scene.draped);
   ASSERT_FALSE(published.failure) << *published.failure;
-  for (const PublishedDressing& dressing : published_dressings()) {
-    const auto backend = dressing.make(scene.system, semi_euler, scene.dt_s, {.threads = 2});
+  for (const PublishedDressing& dressing : published_dressings) {
+    const auto backend = maker_of(dressing)(scene.system, semi_euler, scene.dt_s, {.threads = 2});
     const Verification found = verify_garment(*backend, scene.system, published, scene.dt_s);
     EXPECT_FALSE(found.failure) << dressing.name << ": " << *found.failure;
     EXPECT_TRUE(verify_garment(*backend, scene.system, scene.reference, scene.dt_s).failure)
@@ -225,7 +225,7 @@ TEST(GarmentVerification, ComparesAPublishedAlgorithmWithItself) {
   }
   System weaker = scene.system;
   std::get<Garment>(weaker.topology).dressing.correction_threshold = 0.06;
-  const auto backend = published_dressings().front().make(weaker, semi_euler, scene.dt_s, {.threads = 1});
+  const auto backend = maker_of(published_dressings.front())(weaker, semi_euler, scene.dt_s, {.threads = 1});
   EXPECT_TRUE(verify_garment(*backend, scene.system, published, scene.dt_s).failure);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,7 +102,7 @@ TEST(PublishedDressing, TakesFromTheEndsOfALongSpringWhatLengthensIt) {
 
 TEST(PublishedDressing, ClosesASeamAndHoldsItByASpring) {
   const System system = two_squares();
-  const auto backend = published_dressings().front().make(system, semi_euler, dressing_dt_s, {});
+  const auto backend = maker_of(published_dressings.front())(system, semi_euler, dressing_dt_s, {});
   const DressingResult result =
       dress(*backend, system, dressing_dt_s, {}, [](const State&, std::int64_t) { return true; });
   ASSERT_TRUE(result.seamed_at);
@@ -114,17 +115,17 @@ TEST(PublishedDressing, ClosesASeamAndHoldsItByASpring) {
 TEST(PublishedDressing, HasTheSameBitsInRegistersAndInThreads) {
   for (const System& system : {stretched_sheets(), sack_around_a_ball()}) {
     const auto stepped = [&](const PublishedDressing& dressing, int threads, int steps) {
-      auto backend = dressing.make(system, semi_euler, dressing_dt_s, {.threads = threads});
+      auto backend = maker_of(dressing)(system, semi_euler, dressing_dt_s, {.threads = threads});
       EXPECT_EQ(backend->threads(), dressing.parallel ? threads : 1);
       backend->step(steps);
       return backend;
     };
     // Three threads take long where two processors are: through the six loops, but not until it is draped.
     for (const auto& [threads, steps] : {std::pair(2, 1500), std::pair(3, 50)}) {
-      const auto plain = stepped(published_dressings().front(), 1, steps);
+      const auto plain = stepped(published_dressings.front(), 1, steps);
       EXPECT_EQ(plain->progress().draping, steps == 1500);
       EXPECT_FALSE(first_bad_node(plain->state()));
-      for (const PublishedDressing& dressing : published_dressings().subspan(1))
+      for (const PublishedDressing& dressing : std::span(published_dressings).subspan(1))
         EXPECT_TRUE(same_state(stepped(dressing, threads, steps)->state(), plain->state()))
             << dressing.name << ", " << threads;
     }
@@ -137,8 +138,8 @@ TEST(PublishedDressing, IsTheReferenceButForRounding) {
   const auto reference = make_published_reference(system, semi_euler, dressing_dt_s);
   reference->step(steps_with_open_joints);
   ASSERT_GT(reference->progress().open_joints, 0U);
-  for (const PublishedDressing& dressing : published_dressings()) {
-    const auto backend = dressing.make(system, semi_euler, dressing_dt_s, {.threads = 2});
+  for (const PublishedDressing& dressing : published_dressings) {
+    const auto backend = maker_of(dressing)(system, semi_euler, dressing_dt_s, {.threads = 2});
     backend->step(steps_with_open_joints);
     EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6)
         << dressing.name;
@@ -148,7 +149,7 @@ TEST(PublishedDressing, IsTheReferenceButForRounding) {
 TEST(PublishedDressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
   const System system = stretched_sheets();
   expect_goes_on_when_draped(
-      *published_dressings().back().make(system, semi_euler, dressing_dt_s, {.threads = 2}), system);
+      *maker_of(published_dressings.back())(system, semi_euler, dressing_dt_s, {.threads = 2}), system);
 }
 
 TEST(PublishedDressing, RefusesWhatThePaperDoesNotHave) {
