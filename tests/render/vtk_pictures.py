@@ -67,9 +67,10 @@ class Rays:
             require(step >= self.step * (1 - 1e-9), f"{name}: a picture with ground has no room for the subject")
             self.step = step
             width, height = SAMPLES * columns * step, SAMPLES * rows * step
-            require(self.left + MARGIN * width <= left + 1e-9 and right - 1e-9 <= self.left + (1 - MARGIN) * width
-                    and self.bottom + MARGIN * height <= bottom + 1e-9 and top - 1e-9 <= self.bottom + (1 - MARGIN) * height,
-                    f"{name}: the subject reaches into the margin")
+            into = max(self.left + MARGIN * width - left, right - self.left - (1 - MARGIN) * width,
+                       self.bottom + MARGIN * height - bottom, top - self.bottom - (1 - MARGIN) * height)
+            # The reader's points are in single precision.
+            require(into <= 1e-6 * self.extent, f"{name}: the subject reaches {into / self.extent:.2g} of its extent into the margin")
         self.hit = vtk.reference(0.0), [0.0] * 3, [0.0] * 3, vtk.reference(0), vtk.reference(0)
 
     def depth(self, column, row):
