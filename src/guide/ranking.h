@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "guide/guide.h"
+
+namespace mssim {
+
+/// A method that keeps an error, and its cost there.
+struct Ranked {
+  const GuidedMethod* method;
+  CostAtError cost;
+};
+
+/// The methods that keep the error, the cheapest first.
+std::vector<Ranked> by_cost(const SceneGuide& guide, double error);
+
+/// The cheapest method after the first, with another integrator, else on another backend; null without one.
+const Ranked* second_of(std::span<const Ranked> ranked);
+
+/// The method's longest step that keeps the error, else its cheapest stable point; null without any.
+const WorkPoint* point_for_sizes(const SceneGuide& guide, const GuidedMethod& method);
+
+/// The integrator's limit of stability; null if it was not looked for.
+const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator);
+
+/// The longest step, s, with which the integrator should keep the wished error; none if nothing that was
+/// measured tells.
+std::optional<double> expected_step(const SceneGuide& guide, const Integrator& integrator);
+
+}  // namespace mssim

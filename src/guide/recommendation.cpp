@@ -1,0 +1,483 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "guide/ranking.h"
+#include "integrators/all_integrators.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// The point of the least measure among those that count and that `takes` takes.
+template <class Takes, class Measure>
+std::optional<std::size_t> least(std::span<const WorkPoint> points, const Takes& takes,
+                                 const Measure& measure) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].counts() && takes(points[i]) && (!found || measure(points[i]) < measure(points[*found])))
+      found = i;
+  return found;
+}
+
+double cost_of(const WorkPoint& point) { return point.seconds_a_second(); }
+double error_of(const WorkPoint& point) { return *point.position_error; }
+
+std::string named(const WorkPoint& point) {
+  return fmt::format("{} on {}", point.integrator->name, point.backend);
+}
+
+/// The points of the method that count, from the longest step on.
+std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const GuidedMethod& method) {
+  std::vector<const WorkPoint*> curve;
+  for (const WorkPoint& point : points)
+    if (point.counts() && is_of(point, method)) curve.push_back(&point);
+  std::ranges::stable_sort(curve, std::ranges::greater(), &WorkPoint::dt_s);
+  return curve;
+}
+
+/// Wall time of a frame, s.
+double frame_seconds(const WorkPoint& point, double frames_per_second) {
+  return steps_a_frame(point.dt_s, frames_per_second) * point.seconds_a_step;
+}
+
+std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
+  const double seconds = frame_seconds(point, wish.frames_per_second), rate = 1 / seconds;
+  const std::string asked = decimal(wish.frames_per_second);
+  return seconds * wish.frames_per_second <= 1
+             ? fmt::format("and {} frames per second hold ({} would)", asked, three_digits(rate))
+             : fmt::format("so that {} frames per second do not hold ({} would)", asked, three_digits(rate));
+}
+
+std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const CostAtError& cost) {
+  const double rate = guide.wish.frames_per_second;
+  const auto method = std::ranges::find_if(
+      guide.methods, [&](const GuidedMethod& candidate) { return is_of(point, candidate); });
+  const auto steps = steps_to_try(guide, *method);
+  const StepLimit* limit = limit_of(guide, point.integrator);
+  const bool is_limited = !steps && cost.at_longest_step && limit != nullptr &&
+                          limit->measured.unstable_s > 0 && limit->measured.finished;
+  std::string text =
+      fmt::format("Take {} with a step of {} s{}, which is {} per frame at {} frames per second.",
+                  named(point), two_digits(point.dt_s), is_limited ? ", the longest that is stable" : "",
+                  pluralize(steps_a_frame(point.dt_s, rate), "step"), decimal(rate));
+  if (steps)
+    text += fmt::format(" A step of about {} s should do, too, but was not measured.",
+                        two_digits(guide.trusted.horizon_s / *steps));
+  return text;
+}
+
+std::string what_is_nearest(const WorkPoint& point, const Wish& wish) {
+  return fmt::format(
+      "Nothing that was measured keeps the error within {} of a mean rest length: the most accurate is {} "
+      "with a step of {} s.",
+      two_digits(wish.error), named(point), two_digits(point.dt_s));
+}
+
+std::string what_it_costs(const WorkPoint& point, const SceneGuide& guide) {
+  return fmt::format(
+      "A simulated second takes {} s, {}; {} s after the start no node is off by more than {} of a mean rest "
+      "length, and the energy by {} of what is kinetic and elastic.",
+      three_digits(cost_of(point)), frames_sentence(point, guide.wish), two_digits(guide.trusted.horizon_s),
+      two_digits(error_of(point)), two_digits(std::abs(point.energy_error.value_or(0))));
+}
+
+/// Errors that a user can bear, from one on up to another, which is not one of them; or without an end.
+struct ErrorRange {
+  double from = 0;
+  std::optional<double> to;
+};
+
+/// How much cheaper `other` is than `winner` at an error, as the logarithm of the ratio: infinite where
+/// only one of them keeps it, and negative where neither does.
+double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winner, const GuidedMethod& other,
+                    double error) {
+  const auto mine = cost_at_error(points, other, error), its = cost_at_error(points, winner, error);
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  if (!mine) return -endless;
+  return its ? std::log(its->seconds_a_second / mine->seconds_a_second) : endless;
+}
+
+/// For which errors `other` is cheaper than `winner`, in order. Between the errors of their points the
+/// advantage is linear in the logarithm of the error.
+std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const GuidedMethod& winner,
+                                      const GuidedMethod& other) {
+  std::vector<double> errors;
+  for (const GuidedMethod* method : {&winner, &other})
+    for (const WorkPoint* point : counting(points, *method)) errors.push_back(error_of(*point));
+  std::ranges::sort(errors);
+  // Between two equal errors there is nothing to turn at.
+  errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
+  std::vector<ErrorRange> ranges;
+  bool cheaper = false;
+  const auto turn_at = [&](double error) {
+    cheaper = !cheaper;
+    if (cheaper)
+      ranges.push_back({error, std::nullopt});
+    else
+      ranges.back().to = error;
+  };
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double here = advantage_at(points, winner, other, errors[i]);
+    if ((here > 0) != cheaper) turn_at(errors[i]);
+    if (i + 1 == errors.size()) break;
+    const double below_next = advantage_at(points, winner, other, errors[i + 1] * (1 - 1e-9));
+    if ((below_next > 0) != cheaper && std::isfinite(here))
+      turn_at(errors[i] * std::pow(errors[i + 1] / errors[i], here / (here - below_next)));
+  }
+  return ranges;
+}
+
+/// Three of them at most, in words.
+std::string in_words(std::span<const ErrorRange> ranges) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> texts;
+  for (const ErrorRange& range : ranges.first(std::min(most, ranges.size()))) {
+    const std::string from = two_digits(range.from);
+    if (!range.to)
+      texts.push_back(from + " or more");
+    else if (const std::string to = two_digits(*range.to); to != from)
+      texts.push_back(fmt::format("{} to below {}", from, to));
+    else
+      texts.push_back("about " + from);
+  }
+  if (ranges.size() > most) texts.emplace_back("some larger ones");
+  return listed(texts);
+}
+
+std::string who_comes_second(const SceneGuide& guide, const Ranked& winner, const Ranked* second,
+                             const WorkPoint* point) {
+  if (second == nullptr) return "No other method that was measured is accurate enough.";
+  const std::vector<ErrorRange> wins = ranges_to_win(guide.points, *winner.method, *second->method);
+  const double ratio = second->cost.seconds_a_second / winner.cost.seconds_a_second;
+  return fmt::format(
+      "The runner-up is {} with a step of {} s, which takes {} times as long at an error of {}{}",
+      named(*point), two_digits(point->dt_s), three_digits(ratio), decimal(guide.wish.error),
+      wins.empty() ? "; it is cheaper at no error."
+                   : fmt::format("; it would win at errors of {}.", in_words(wins)));
+}
+
+/// Whether more time would have given the method a cost at the wished error.
+bool lacks_time(const SceneGuide& guide, const GuidedMethod& method) {
+  if (cost_at_error(guide.points, method, guide.wish.error)) return false;
+  // Errors grow with the horizon, and a better reference lets smaller ones count.
+  const auto is_beyond = [&](const WorkPoint& point) { return is_of(point, method) && point.beyond_trust; };
+  return method.lack == Lack::time ||
+         (guide.trusted.short_of_s > 0 && std::ranges::any_of(guide.points, is_beyond));
+}
+
+/// Whether its integrator has come to the end of a curve, on another backend, short of the wished error.
+bool ends_short(const SceneGuide& guide, const GuidedMethod& method) {
+  return std::ranges::any_of(guide.methods, [&](const GuidedMethod& other) {
+    return other.integrator == method.integrator && other.lack == Lack::nothing &&
+           !lacks_time(guide, other) && !counting(guide.points, other).empty() &&
+           !cost_at_error(guide.points, other, guide.wish.error);
+  });
+}
+
+/// Integrators by backends: "rk4 and verlet on serial and openmp; rk4 on opencl".
+std::string names_of(std::span<const GuidedMethod* const> methods) {
+  using Names = std::vector<std::string_view>;
+  std::vector<std::pair<std::string_view, Names>> integrators;  // by backend
+  for (const GuidedMethod* method : methods) {
+    const std::string_view backend = method->backend->name;
+    auto its = std::ranges::find(integrators, backend, &std::pair<std::string_view, Names>::first);
+    if (its == integrators.end()) its = integrators.insert(its, {backend, {}});
+    its->second.push_back(method->integrator->name);
+  }
+  std::vector<std::pair<Names, Names>> backends;  // by integrators
+  for (const auto& [backend, names] : integrators) {
+    auto its = std::ranges::find(backends, names, &std::pair<Names, Names>::first);
+    if (its == backends.end()) its = backends.insert(its, {names, {}});
+    its->second.push_back(backend);
+  }
+  std::vector<std::string> groups;
+  for (const auto& [names, where] : backends)
+    groups.push_back(fmt::format("{} on {}", listed(names), listed(where)));
+  return join(groups, "; ");
+}
+
+std::string seconds_of(const SceneGuide& guide) { return decimal(std::round(10 * guide.seconds) / 10); }
+
+/// Without `needed_s` it names no time that would do.
+std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
+                        std::span<const GuidedMethod* const> missed) {
+  std::string text = guide.stopped
+                         ? "Nothing is recommended: the guide was stopped"
+                         : fmt::format("Nothing is recommended: {} s are not enough", seconds_of(guide));
+  if (!missed.empty())
+    text += fmt::format(", and any of these methods could be the cheapest at an error of {}: {}",
+                        decimal(guide.wish.error), names_of(missed));
+  return needed_s
+             ? text + fmt::format(". About {} s for this scene would do (--time-budget).", decimal(*needed_s))
+             : text + '.';
+}
+
+constexpr std::array<std::string_view, 3> paper_integrators{"semi-euler", "midpoint", "rk4"};
+
+/// The integrator's time of a step and, where it reaches the error, its cost there.
+struct Compared {
+  std::string_view integrator;
+  double seconds_a_step = 0;
+  std::optional<CostAtError> cost;
+};
+
+std::string integrators_of(std::span<const Compared> compared) {
+  std::vector<std::string> names;
+  for (const Compared& one : compared) names.emplace_back(one.integrator);
+  return listed(names);
+}
+
+/// What becomes of the order of the integrators at the wished error; empty where fewer than two were
+/// measured.
+std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
+  std::vector<Compared> all;
+  for (const std::string_view name : paper_integrators) {
+    const GuidedMethod method{find_integrator(name), &backend, {}};
+    const auto curve = counting(guide.points, method);
+    if (!curve.empty())
+      all.push_back(
+          {name, curve.back()->seconds_a_step, cost_at_error(guide.points, method, guide.wish.error)});
+  }
+  if (all.size() < 2) return {};
+  std::ranges::stable_sort(all, {}, &Compared::seconds_a_step);
+  std::vector<std::string> milliseconds, seconds;
+  std::vector<Compared> reaching, others;
+  for (const Compared& one : all) {
+    milliseconds.push_back(three_digits(1000 * one.seconds_a_step));
+    (one.cost ? reaching : others).push_back(one);
+  }
+  std::string text =
+      fmt::format("On {} a step of {} takes {} ms", backend.name, integrators_of(all), listed(milliseconds));
+  const std::string error = decimal(guide.wish.error);
+  if (reaching.empty()) return fmt::format("{}; none of them reaches an error of {}.", text, error);
+  for (const Compared& one : reaching) seconds.push_back(three_digits(one.cost->seconds_a_second));
+  const auto cost = [](const Compared& one) { return one.cost->seconds_a_second; };
+  const bool same = others.empty() && std::ranges::is_sorted(reaching, {}, cost);
+  text += fmt::format("; at an error of {} a simulated second takes {} s with {}", error, listed(seconds),
+                      others.empty() ? "them" : integrators_of(reaching));
+  if (!others.empty()) text += fmt::format(", and {} did not reach it", integrators_of(others));
+  std::ranges::stable_sort(reaching, {}, cost);
+  return text + (same ? ": the order is the same."
+                      : fmt::format(": {} is the cheapest.", reaching.front().integrator));
+}
+
+std::string explicit_euler_beside(const SceneGuide& guide) {
+  const auto stable = [&](std::string_view name) {
+    const StepLimit* limit = limit_of(guide, find_integrator(name));
+    return limit == nullptr ? 0 : limit->measured.stable_s;
+  };
+  const double euler = stable("explicit-euler"), semi = stable("semi-euler");
+  if (euler <= 0 || semi <= 0) return {};
+  std::optional<double> cheapest, its;
+  for (const GuidedMethod& method : guide.methods)
+    if (const auto cost = cost_at_error(guide.points, method, guide.wish.error)) {
+      const double seconds = cost->seconds_a_second;
+      cheapest = std::min(cheapest.value_or(seconds), seconds);
+      if (method.integrator == find_integrator("explicit-euler"))
+        its = std::min(its.value_or(seconds), seconds);
+    }
+  return "explicit-euler was stable with " + three_digits(euler / semi) + " of semi-euler's largest step" +
+         (its ? fmt::format(", and takes {} times as long as the cheapest method at an error of {}.",
+                            three_digits(*its / *cheapest), decimal(guide.wish.error))
+              : fmt::format(", and did not reach an error of {}.", decimal(guide.wish.error)));
+}
+
+}  // namespace
+
+const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator) {
+  const auto limit = std::ranges::find(guide.limits, integrator, &StepLimit::integrator);
+  return limit == guide.limits.end() ? nullptr : &*limit;
+}
+
+std::optional<double> expected_step(const SceneGuide& guide, const Integrator& integrator) {
+  const double error = guide.wish.error;
+  std::optional<double> longest;
+  const auto take = [&](double dt_s) { longest = std::max(longest.value_or(dt_s), dt_s); };
+  for (const GuidedMethod& method : guide.methods) {
+    if (method.integrator != &integrator) continue;
+    if (const auto cost = cost_at_error(guide.points, method, error))
+      take(cost->dt_s);
+    else if (const auto curve = counting(guide.points, method); !curve.empty())
+      take(curve.back()->dt_s * std::pow(error / error_of(*curve.back()), 1.0 / integrator.order));
+  }
+  const StepLimit* limit = limit_of(guide, &integrator);
+  if (limit == nullptr || limit->measured.stable_s <= 0) return longest;
+  return std::min(longest.value_or(limit->usable_s()), limit->usable_s());
+}
+
+const WorkPoint* point_for_sizes(const SceneGuide& guide, const GuidedMethod& method) {
+  if (const auto place = point_at_error(guide.points, method, guide.wish.error)) return &guide.points[*place];
+  const WorkPoint* cheapest = nullptr;
+  for (const WorkPoint& point : guide.points)
+    if (is_of(point, method) && !point.diverged && point.within_limit &&
+        (cheapest == nullptr || cost_of(point) < cost_of(*cheapest)))
+      cheapest = &point;
+  return cheapest;
+}
+
+std::vector<Ranked> by_cost(const SceneGuide& guide, double error) {
+  std::vector<Ranked> ranked;
+  for (const GuidedMethod& method : guide.methods)
+    if (const auto cost = cost_at_error(guide.points, method, error)) ranked.push_back({&method, *cost});
+  std::ranges::stable_sort(ranked, {}, [](const Ranked& one) { return one.cost.seconds_a_second; });
+  return ranked;
+}
+
+const Ranked* second_of(std::span<const Ranked> ranked) {
+  const auto is_other = [&](const Ranked& one) {
+    return one.method->integrator != ranked.front().method->integrator;
+  };
+  const auto other = std::ranges::find_if(ranked, is_other);
+  if (other != ranked.end()) return &*other;
+  return ranked.size() > 1 ? &ranked[1] : nullptr;
+}
+
+std::optional<std::size_t> point_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
+                                          double error) {
+  return least(
+      points, [&](const WorkPoint& point) { return is_of(point, method) && error_of(point) <= error; },
+      [](const WorkPoint& point) { return -point.dt_s; });
+}
+
+std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& method) {
+  const auto cost = cost_at_error(guide.points, method, guide.wish.error);
+  if (!cost) return std::nullopt;
+  double dt_s = cost->dt_s;
+  const StepLimit* limit = limit_of(guide, method.integrator);
+  if (cost->at_longest_step && limit != nullptr) dt_s = std::max(dt_s, limit->usable_s());
+  const double horizon_s = guide.trusted.horizon_s;
+  const int steps = std::max(1, static_cast<int>(std::ceil(horizon_s / dt_s - 1e-6)));
+  const int known = guide.points[*point_at_error(guide.points, method, guide.wish.error)].steps;
+  if (steps * step_resolution > known) return std::nullopt;
+  // One that does not count, or is not accurate enough, whatever the curve says.
+  const bool was_tried = std::ranges::any_of(guide.points, [&](const WorkPoint& point) {
+    return is_of(point, method) && point.steps >= steps && point.steps < known;
+  });
+  return was_tried ? std::nullopt : std::optional(steps);
+}
+
+std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide) {
+  const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
+  const double cheapest =
+      ranked.empty() ? std::numeric_limits<double>::infinity() : ranked.front().cost.seconds_a_second;
+  std::vector<const GuidedMethod*> missed, implicit;
+  for (const GuidedMethod& method : guide.methods) {
+    if (!lacks_time(guide, method) || ends_short(guide, method)) continue;
+    const auto step = expected_step(guide, *method.integrator);
+    if (is_implicit(*method.integrator))
+      implicit.push_back(&method);
+    else if (!step || method.step_seconds == 0 || method.step_seconds / *step < cheapest)
+      missed.push_back(&method);
+  }
+  const bool any_counts = std::ranges::any_of(guide.points, &WorkPoint::counts);
+  return missed.empty() && !any_counts ? implicit : missed;
+}
+
+Recommendation recommend(const SceneGuide& guide) {
+  Recommendation chosen;
+  const std::vector<const GuidedMethod*> missed = missed_methods(guide);
+  const bool without_reference = !guide.trusted.failure.empty() && guide.trusted.short_of_s > 0;
+  if (!missed.empty() || without_reference) {
+    // What a stopped guide had no time for says nothing of its budget.
+    if (!guide.stopped) chosen.needed_s = needed_seconds(guide, missed);
+    chosen.sentences = {why_nothing(guide, chosen.needed_s, missed)};
+    return chosen;
+  }
+  if (!guide.trusted.failure.empty()) return chosen;
+  if (guide.points.empty()) {
+    chosen.sentences = {"Nothing was measured: the remark of each method says why."};
+    return chosen;
+  }
+  const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
+  if (ranked.empty()) {
+    chosen.nearest = least(
+        guide.points, [](const WorkPoint&) { return true; }, error_of);
+    if (chosen.nearest) {
+      const WorkPoint& point = guide.points[*chosen.nearest];
+      chosen.sentences = {what_is_nearest(point, guide.wish), what_it_costs(point, guide)};
+    } else {
+      chosen.sentences = {
+          "Nothing that was measured can be recommended: no point is both stable and far enough from the "
+          "reference's error."};
+    }
+    return chosen;
+  }
+  const auto place = [&](const Ranked& one) {
+    return point_at_error(guide.points, *one.method, guide.wish.error);
+  };
+  const Ranked *winner = &ranked.front(), *second = second_of(ranked);
+  chosen.best = place(*winner);
+  if (second != nullptr) chosen.runner_up = place(*second);
+  const WorkPoint& best = guide.points[*chosen.best];
+  chosen.sentences = {what_to_take(guide, best, winner->cost), what_it_costs(best, guide),
+                      who_comes_second(guide, *winner, second,
+                                       chosen.runner_up ? &guide.points[*chosen.runner_up] : nullptr)};
+  return chosen;
+}
+
+std::vector<std::string> what_was_measured(const SceneGuide& guide) {
+  std::vector<const GuidedMethod*> measured, late, unavailable, unstable, uncompared, late_at_error, others;
+  for (const GuidedMethod& method : guide.methods) {
+    const bool counts = !counting(guide.points, method).empty();
+    if (counts) measured.push_back(&method);
+    if (counts && cost_at_error(guide.points, method, guide.wish.error)) continue;
+    auto& group = counts                             ? method.lack == Lack::time ? late_at_error : others
+                  : method.lack == Lack::time        ? late
+                  : method.lack == Lack::backend     ? unavailable
+                  : method.lack == Lack::stable_step ? unstable
+                                                     : uncompared;
+    group.push_back(&method);
+  }
+  std::vector<std::string> sentences{
+      fmt::format("Measured: {} of {}.", measured.size(), pluralize(guide.methods.size(), "method"))};
+  const auto say = [&](std::string_view what, const std::vector<const GuidedMethod*>& methods) {
+    if (!methods.empty()) sentences.push_back(fmt::format("{}: {}.", what, names_of(methods)));
+  };
+  const std::string error = decimal(guide.wish.error);
+  say("Not measured, for lack of time", late);
+  say("Not measured, because the backend cannot run them here", unavailable);
+  say("Not measured, because no step that was tried is stable", unstable);
+  say("Not compared, because no point is both stable and far enough from the reference's error", uncompared);
+  say("Not measured down to an error of " + error + ", for lack of time", late_at_error);
+  say("Not within an error of " + error + " at any step that was tried", others);
+  return sentences;
+}
+
+std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
+                                         double error) {
+  const WorkPoint* coarser = nullptr;
+  for (const WorkPoint* point : counting(points, method)) {
+    if (error_of(*point) > error) {
+      coarser = point;
+      continue;
+    }
+    if (coarser == nullptr) return CostAtError{cost_of(*point), point->dt_s, true};
+    const double share =
+        std::log(error_of(*coarser) / error) / std::log(error_of(*coarser) / error_of(*point));
+    const auto between = [&](double from, double to) { return from * std::pow(to / from, share); };
+    return CostAtError{between(cost_of(*coarser), cost_of(*point)), between(coarser->dt_s, point->dt_s),
+                       false};
+  }
+  return std::nullopt;
+}
+
+std::array<double, 4> errors_around(const Wish& wish) {
+  return {10 * wish.error, 3 * wish.error, wish.error, wish.error / 3};
+}
+
+std::vector<std::string> beside_the_paper(const SceneGuide& guide) {
+  std::vector<std::string> sentences;
+  std::vector<const BackendInfo*> backends;
+  for (const GuidedMethod& method : guide.methods)
+    if (std::ranges::find(backends, method.backend) == backends.end()) {
+      backends.push_back(method.backend);
+      sentences.push_back(order_on(guide, *method.backend));
+    }
+  sentences.push_back(explicit_euler_beside(guide));
+  std::erase(sentences, "");
+  return sentences;
+}
+
+}  // namespace mssim
