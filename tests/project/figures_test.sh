@@ -106,15 +106,17 @@ def shown(match):
 
 
 def cell(claim, machine):
-    found = outcome(claim, machine)
-    if not found:
-        return "–"
-    text = f"{found['outcome']}: {shown(interval(found))}"
-    for folder in sorted(glob.glob(f"results/{suite_of(claim)}/{machine}-*/")):
-        other = outcome(claim, os.path.basename(folder[:-1]))
-        if other and other["outcome"] != found["outcome"]:
-            text += f" ({os.path.basename(folder[:-1])[len(machine) + 1:].replace('-', ' ')}: {other['outcome']})"
-    return text
+    """The outcome on the machine, and another one in a second folder NAME-... of it."""
+    text, said = "", set()
+    for folder in sorted(glob.glob(f"results/{suite_of(claim)}/{machine}*/")):
+        name = os.path.basename(folder[:-1])
+        found = outcome(claim, name)
+        if found and found["outcome"] not in said:
+            said.add(found["outcome"])
+            remark = name[len(machine) + 1:].replace("-", " ")
+            shown_here = f"{found['outcome']}: {shown(interval(found))}" if not text else found["outcome"]
+            text += (f" ({remark}: {shown_here})" if text else f"{shown_here} ({remark})" if remark else shown_here)
+    return text or "–"
 
 
 def speedups(table, machine, backend):
