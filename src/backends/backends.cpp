@@ -196,7 +196,7 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
   if (backend.program != nullptr) return backend.program->missing;
   try {
     if (backend.uses_device) find_opencl_device(options.device);
-    require_threads(backend, options);
+    require_threads(backend, execution_of(backend, options));
   } catch (const Unavailable& reason) {
     return reason.what();
   }

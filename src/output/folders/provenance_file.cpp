@@ -70,6 +70,14 @@ class Place {
             fmt::format("a whole number from 0 to {}", std::numeric_limits<Number>::max()));
     return value_.get<Number>();
   }
+  /// Throws if the document states a later format than `newest`.
+  void require_format(int newest) const {
+    const auto version = find("format_version");
+    if (version && version->count<int>() > newest)
+      fail(file_,
+           fmt::format("/format_version is {}, and this mssim reads versions up to {}: use a newer mssim",
+                       version->count<int>(), newest));
+  }
   /// 16 hexadecimal digits, as to_hex() writes them.
   std::uint64_t hash() const {
     const auto number = from_hex(value_.is_string() ? value_.get<std::string>() : std::string());
@@ -175,6 +183,7 @@ json programs_json(const std::vector<BackendProgramRecord>& programs) {
 Provenance read_document(const Place& document) {
   const auto text_of = [](const Place& place) { return place.text(); };
   const Place threads = document["threads"];
+  document.require_format(folder_format_version);
   Provenance provenance;
   provenance.build = read_build(document["build"]);
   provenance.machine = read_machine(document);
@@ -208,6 +217,7 @@ json to_json(const Provenance& provenance) {
   for (const auto& [name, value] : provenance.thread_environment) environment[name] = value;
   for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = to_hex(scene.fnv1a_64);
   return {
+      {"format_version", folder_format_version},
       {"started_utc", provenance.started_utc},
       {"earlier_starts_utc", provenance.earlier_starts_utc},
       {"command_line", provenance.command_line},

@@ -19,12 +19,17 @@ struct ProvenanceError : ErrorWith<exit_bad_input> {
 /// memory nor a message.
 inline constexpr std::size_t largest_provenance_bytes = std::size_t{256} << 10;
 
+/// The version of result folders: a program refuses a folder of a later one. It grows when a program that
+/// does not know the change would misread a file (not for a new column or member). Folders without it are
+/// older.
+inline constexpr int folder_format_version = 1;
+
 /// The text of provenance.json, indented, without a final newline. Numbers must be finite; unknown values are
 /// absent or null.
 std::string provenance_text(const Provenance& provenance);
 
 /// Reads the output of provenance_text. Checks every value. Members that all versions of mssim have written
-/// are required; unknown members of newer versions are ignored. Throws ProvenanceError.
+/// are required; unknown members are ignored. Throws ProvenanceError, also for a later format version.
 Provenance read_provenance(const std::filesystem::path& file);
 
 /// Reads a text; messages name `file`. Throws like read_provenance.

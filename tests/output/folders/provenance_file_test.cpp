@@ -100,6 +100,16 @@ TEST_F(ProvenanceFile, MayHoldMoreThanIsKnownHere) {
   EXPECT_EQ(json_of(read_provenance(put("new.json", document.dump()))), json_of(full_provenance()));
 }
 
+TEST_F(ProvenanceFile, OfALaterFormatIsRefused) {
+  json document = json_of(full_provenance());
+  EXPECT_EQ(document["format_version"], 1);
+  document.erase("format_version");
+  EXPECT_EQ(json_of(read_provenance(put("older.json", document.dump()))), json_of(full_provenance()));
+  EXPECT_THAT(refusal_with("/format_version", 2),
+              AllOf(HasSubstr("/format_version is 2"), HasSubstr("up to 1"), HasSubstr("newer mssim")));
+  EXPECT_THAT(refusal_with("/format_version", "1"), HasSubstr("/format_version is \"1\""));
+}
+
 TEST_F(ProvenanceFile, IsRefusedWithThePlaceAndTheValue) {
   EXPECT_EQ(refusal_with("/cpu/logical_cpus", "two"),
             "/cpu/logical_cpus is \"two\" instead of a whole number from 0 to 2147483647: give a "
