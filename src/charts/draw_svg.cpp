@@ -9,7 +9,7 @@
 namespace mssim {
 namespace {
 
-/// Shapes of points, from the point on: circle, square, triangles and diamond, pentagon, plus, star.
+/// Shapes of points, starting at the point: circle, square, triangles and diamond, pentagon, plus, star.
 constexpr std::array<std::string_view, 8> point_shapes{
     "m-4.7,0a4.7,4.7 0 1,0 9.4,0a4.7,4.7 0 1,0 -9.4,0z",
     "m-4.4,-4.4h8.8v8.8h-8.8z",
@@ -20,12 +20,12 @@ constexpr std::array<std::string_view, 8> point_shapes{
     "m-1.9,-5.7h3.8v3.8h3.8v3.8h-3.8v3.8h-3.8v-3.8h-3.8v-3.8h3.8z",
     "m0,-7l2.1,4.9l4.9,2.1l-4.9,2.1l-2.1,4.9l-2.1,-4.9l-4.9,-2.1l4.9,-2.1z"};
 
-/// Those of PointMark.
+/// Shapes of PointMark.
 constexpr std::array<std::string_view, 4> mark_shapes{
     "", "m-9.4,0a9.4,9.4 0 1,0 18.8,0a9.4,9.4 0 1,0 -18.8,0z", "m-9.4,-9.4h18.8v18.8h-18.8z",
     "m-5.8,-5.8l11.6,11.6m0,-11.6l-11.6,11.6"};
 
-/// Dashes: the second where shapes of points repeat, so that sixteen lines differ without colours.
+/// Dashes; later ones are for repeated shapes of points, so that sixteen lines differ without colours.
 constexpr std::array<std::string_view, 2> measured_dashes{"", "9,4"}, published_dashes{"4,3", "4,3,1,3"};
 constexpr std::array<std::string_view, 4> reference_dashes{"", "2,3", "10,3,2,3", "14,4"};
 
@@ -57,7 +57,7 @@ class Drawing {
   }
 
  private:
-  /// The element, and its name and description for those who cannot see it.
+  /// The start tag, with a title and a description for screen readers.
   void head(const std::vector<std::string>& notes) {
     constexpr std::size_t most = 4000;
     std::vector<std::string> names;
@@ -88,7 +88,7 @@ class Drawing {
 
   static std::string at(double x, double y) { return number(x) + ',' + number(y); }
 
-  /// `middle` is half the height of its capitals above where it stands.
+  /// `middle`: y of the middle of its capitals.
   void text(const std::string& shown, double x, double middle, const std::string& attributes = "") {
     svg_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", number(x), number(middle + 0.35 * font_size),
                         attributes, xml_text(shown));
@@ -130,7 +130,7 @@ class Drawing {
     text(layout_.x_label, (layout_.left + layout_.right) / 2, layout_.x_label_middle, middle);
   }
 
-  /// A series and its row of the legend, which fills its columns one after the other.
+  /// A series and its entry in the legend, whose columns are filled one after the other.
   void series(std::size_t s, std::size_t row) {
     const double column_width = (chart_width - 2 * chart_edge) / static_cast<double>(layout_.legend_columns);
     const double x = chart_edge + column_width * static_cast<double>(row / layout_.legend_rows),

@@ -21,8 +21,8 @@ void require_matching_sizes(const Series& series) {
   const bool intervals = !series.low.empty() || !series.high.empty();
   if (series.x.size() != values ||
       (intervals && (series.low.size() != values || series.high.size() != values)))
-    throw std::invalid_argument(fmt::format("the series \"{}\" of a chart has not as many values everywhere",
-                                            printable(series.name)));
+    throw std::invalid_argument(
+        fmt::format("the lists of the series \"{}\" of a chart differ in length", printable(series.name)));
 }
 
 std::optional<ChartRange> range_of(const PlottedValues& values) {
@@ -59,9 +59,9 @@ std::string cut(std::string_view text, std::size_t most) {
 }
 
 constexpr int most_ticks = 6;
-constexpr double room = 0.05;  // beside the values, as a fraction of what they span
+constexpr double room = 0.05;  // margin, as a fraction of the span of the values
 
-/// A digit times a power of ten: as a number where it is `short`, else with an exponent as people write it.
+/// A digit times a power of ten: as a plain number if `is_short`, else with an exponent.
 std::string tick_label(int digit, int exponent, bool is_short) {
   if (is_short && exponent < 0) return fixed_decimal(digit * std::pow(10, exponent), -exponent);
   if (is_short) return grouped(static_cast<std::uint64_t>(std::llround(digit * std::pow(10, exponent))));
@@ -72,7 +72,7 @@ std::string tick_label(int digit, int exponent, bool is_short) {
   return text;
 }
 
-/// At the given multiples of every `step`-th power of ten.
+/// Ticks at the given multiples of every `step`-th power of ten.
 std::vector<Tick> decade_ticks(double low, double high, std::initializer_list<int> digits, int step) {
   const int first = static_cast<int>(std::floor(std::log10(low))),
             last = static_cast<int>(std::ceil(std::log10(high)));
@@ -87,7 +87,7 @@ std::vector<Tick> decade_ticks(double low, double high, std::initializer_list<in
 }
 
 constexpr double plot_height = 260;
-constexpr double letter_width = 8.5;  // on the safe side: the fonts of pages differ
+constexpr double letter_width = 8.5;  // a wide estimate: the fonts of pages differ
 constexpr double inner_width = chart_width - 2 * chart_edge;
 
 double drawn_width(const std::string& text) { return letter_width * static_cast<double>(width_of(text)); }
@@ -113,8 +113,8 @@ std::vector<Tick> ticks_at(const PlottedValues& values) {
   return ticks;
 }
 
-/// Labels that stand too close go to a second row, and those that find no room there are left out; the last
-/// one, which says how far the axis goes, is placed before the others.
+/// The row of each label: labels that would overlap go to a second row, and those without room there are left
+/// out. The last one, which shows where the axis ends, is placed first.
 std::vector<std::optional<int>> rows_of_labels(const AxisScale& scale, double width) {
   constexpr double apart = 3;
   std::vector<std::optional<int>> rows(scale.ticks.size());
@@ -154,14 +154,14 @@ void lay_out_plot(ChartLayout& layout, const Chart& chart, const PlottedValues& 
   std::vector<std::string> labels;
   for (const Tick& tick : layout.y.ticks) labels.push_back(tick.label);
   layout.left = chart_edge + widest(labels) + 12;
-  // The last label of the x axis may stand half beside it.
+  // Half of the last label of the x axis may extend beyond the plot.
   const double beside = layout.x.ticks.empty() ? 0 : drawn_width(layout.x.ticks.back().label) / 2;
   layout.right = chart_width - chart_edge - beside;
   layout.bottom = layout.top + plot_height;
   layout.tick_rows = rows_of_labels(layout.x, layout.right - layout.left);
 }
 
-/// What stands below the x axis: ticks and its label.
+/// The parts below the x axis: ticks and its label.
 void lay_out_foot(ChartLayout& layout, const Chart& chart) {
   layout.tick_labels = layout.bottom + line_height / 2 + 5;
   const bool second_row = std::ranges::find(layout.tick_rows, 1) != layout.tick_rows.end();
@@ -214,7 +214,7 @@ PlottedValues plotted_values(const Chart& chart) {
         values.notes.push_back(fmt::format("{} of {} of {} cannot be drawn{}", some, pluralize(all, what),
                                            name,
                                            chart.x.logarithmic || chart.y.logarithmic
-                                               ? " on a logarithmic axis, which has positive numbers only"
+                                               ? " on a logarithmic axis, which needs positive numbers"
                                                : ": not finite numbers"));
     };
     if (series.y.empty()) values.notes.push_back(name + " has no values");
@@ -275,7 +275,7 @@ AxisScale linear_scale(double low, double high) {
   if (low > 0 && low < high / 2) low = 0;
   if (high < 0 && high > low / 2) high = 0;
   double beside = room * (high - low);
-  // Of one value, the axis shows what is around it.
+  // For a single value, the axis extends around it.
   if (!(beside > 1e-8 * std::max(std::abs(low), std::abs(high)))) beside = low == 0 ? 1 : std::abs(low) / 2;
   const double from = low == 0 ? 0 : low - beside, to = high == 0 && low < 0 ? 0 : high + beside;
   return {from, to, ticks_between(from, to, most_ticks)};

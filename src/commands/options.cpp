@@ -159,7 +159,7 @@ void declare_listing_format(Arguments& arguments, ListingFormat& target) {
 
 void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads) {
   const std::string meaning =
-      "Threads, and compute units of an OpenCL device that is a processor (default: one per available CPU)";
+      "Threads, and compute units of an OpenCL device that is a CPU (default: one per available CPU)";
   if (threads == nullptr)
     arguments.add_number("--threads N", options.threads, meaning, whole_number(1, most_threads));
   else

@@ -13,7 +13,7 @@
 namespace mssim {
 namespace {
 
-/// All of a scale with the same digits behind the point (as many as 10^exponent has), and a minus as wide as
+/// All labels of a scale have the same number of decimals, as many as 10^exponent has, and a minus as wide as
 /// a plus.
 std::string tick_label(double value, int exponent) {
   if (value == 0) return "0";
@@ -23,21 +23,21 @@ std::string tick_label(double value, int exponent) {
                       : grouped(static_cast<std::uint64_t>(std::llround(value)));
 }
 
-/// mantissa * 10^exponent, the nearest number where both factors are exact.
+/// mantissa * 10^exponent, correctly rounded if both factors are exact.
 double decimal_product(double mantissa, int exponent) {
   return exponent < 0 ? mantissa / std::pow(10.0, -exponent) : mantissa * std::pow(10.0, exponent);
 }
 
 /// Lightness L* of CIE 1976, from 0 (black) to 100 (white), which is what remains in black and white. Chroma
 /// (0 is grey) and hue of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020), which
-/// keep their look when it changes.
+/// look the same at every lightness.
 struct Lch {
   double lightness, chroma, hue_degrees;
 };
 
 using LinearRgb = std::array<double, 3>;
 
-/// By the matrices of that publication.
+/// Uses the matrices of that publication.
 LinearRgb linear_rgb(double oklab_lightness, double chroma, double hue_degrees) {
   const double angle = hue_degrees * std::numbers::pi / 180;
   const double a = chroma * std::cos(angle), b = chroma * std::sin(angle);
@@ -50,13 +50,13 @@ LinearRgb linear_rgb(double oklab_lightness, double chroma, double hue_degrees) 
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-/// The share of white's light that `colour` has, from its L* by the standard's two formulas.
+/// The luminance of `colour` relative to white, from L* by the standard's two formulas.
 double luminance_of(const Lch& colour) {
   const double root = (colour.lightness + 16) / 116;
   return colour.lightness > 8 ? root * root * root : colour.lightness * 27 / 24389;
 }
 
-/// The number between `low` and `high` where `above` begins to hold.
+/// The number between `low` and `high` at which `above` becomes true.
 template <class Above>
 double bisected(double low, double high, const Above& above) {
   for (int halvings = 0; halvings < 20; ++halvings) {
@@ -66,7 +66,7 @@ double bisected(double low, double high, const Above& above) {
   return low;
 }
 
-/// With that chroma instead of its own.
+/// The colour with this chroma.
 LinearRgb with_chroma(const Lch& colour, double chroma) {
   const double wanted = luminance_of(colour);
   const double lightness = bisected(0, 1, [&](double value) {
@@ -76,7 +76,7 @@ LinearRgb with_chroma(const Lch& colour, double chroma) {
   return linear_rgb(lightness, chroma, colour.hue_degrees);
 }
 
-/// The colour, or the most colourful one of its lightness and hue that sRGB has.
+/// The colour, or the most colourful one of its lightness and hue in sRGB.
 Rgb srgb(const Lch& colour) {
   const auto is_outside = [&](double chroma) {
     return std::ranges::any_of(with_chroma(colour, chroma),
@@ -90,7 +90,7 @@ Rgb srgb(const Lch& colour) {
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }
 
-/// The map whose colour at a share is `colour_at(share)`.
+/// The map with the colour `colour_at(share)` at each share.
 template <class ColourAt>
 ColourMap map_of(const ColourAt& colour_at) {
   ColourMap map{};
@@ -99,12 +99,12 @@ ColourMap map_of(const ColourAt& colour_at) {
   return map;
 }
 
-/// The sizes of what is written on a picture, in pixels.
+/// Sizes of a legend, in pixels.
 struct LegendSizes {
   Letters letters;
-  /// Around the content of a panel, and between panel and edge of the picture.
+  /// Between the content and the edge of a panel, and between panel and edge of the picture.
   int margin;
-  /// What a content may take up, so that most of the picture stays free.
+  /// Limits of the content, so that most of the picture stays free.
   int most_width, most_height;
 
   explicit LegendSizes(const Picture& picture)
@@ -114,7 +114,7 @@ struct LegendSizes {
         most_height(std::max(0, static_cast<int>(0.8 * picture.height) - 4 * margin)) {}
 };
 
-/// Draws a slightly translucent panel for a content of this size. Returns where the content goes.
+/// Draws a slightly translucent panel for content of this size. Returns the box of the content.
 PixelBox draw_panel(Picture& picture, int content_width, int content_height) {
   constexpr Rgb edge{190, 193, 200};
   constexpr std::uint8_t coverage = 225;
@@ -129,7 +129,7 @@ PixelBox draw_panel(Picture& picture, int content_width, int content_height) {
   return {left + margin, top + margin, content_width, content_height};
 }
 
-/// The pixel of a bar of `length` pixels at which `value` lies, from its low end.
+/// Distance of `value` from the low end of a bar of `length` pixels, in pixels.
 int place_of(double value, const ColourBar& bar, int length) {
   if (bar.low == bar.high) return length / 2;
   return static_cast<int>(std::lround((value - bar.low) / (bar.high - bar.low) * (length - 1)));
@@ -140,11 +140,11 @@ int place_of(double value, const ColourBar& bar, int length) {
 std::vector<Tick> ticks_between(double low, double high, int most) {
   const double distance = high - low;
   if (!std::isfinite(distance) || distance < 0)
-    throw std::invalid_argument("a scale goes from a number to one that is not less");
+    throw std::invalid_argument("a scale needs finite ends in increasing order");
   // Multiples of smaller steps could not be counted, nor could steps below the smallest numbers.
   if (distance <= 1e-9 * std::max(std::abs(low), std::abs(high)) || distance < 1e-290)
     return {{low, (low < 0 ? "−" : "") + decimal(std::abs(low))}};
-  // Ends that a rounding has moved across a multiple still have it.
+  // Includes multiples that rounding has moved beyond an end.
   const double slack = 1e-9;
   const int largest = static_cast<int>(std::floor(std::log10(distance)));
   for (int exponent = largest - 2;; ++exponent)
@@ -196,7 +196,7 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
   const int capital = letters.capital_height(), line = letters.line_distance();
   const int swatch = capital + 2, names_from = swatch + static_cast<int>(std::lround(0.6 * letters.size_px));
 
-  // The last line is a count where the list is too long, so that two entries make room for one count.
+  // If the list is too long, the last line is a count; so there are at least two lines.
   const auto most_lines = static_cast<std::size_t>(std::max(2, (sizes.most_height - swatch) / line + 1));
   const std::size_t shown = entries.size() <= most_lines ? entries.size() : most_lines - 1;
   std::vector<std::string> names;
@@ -222,14 +222,14 @@ void draw_colour_bar(Picture& picture, const ColourBar& bar) {
   const std::vector<Tick> ticks = ticks_between(bar.low, bar.high, 6);
   const int capital = letters.capital_height();
   const int thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
-  // Of the line beside a number, and the space after it.
+  // Width of the line next to a number, and of the space after it.
   const int dash = static_cast<int>(std::lround(0.3 * letters.size_px)), labels_from = thickness + 2 * dash;
   int width = text_width(title, letters);
   for (const Tick& tick : ticks) width = std::max(width, labels_from + text_width(tick.label, letters));
   const int title_height = title.empty() ? 0 : letters.line_distance();
   const int free = sizes.most_height - title_height - capital;
   const int length = std::max(8, std::min(free, static_cast<int>(std::lround(11 * letters.size_px))));
-  // A number at an end reaches half its height beyond the bar.
+  // A number at an end extends half its height beyond the bar.
   const int bar_from = title_height + capital / 2;
   const PixelBox content = draw_panel(picture, width, bar_from + length + capital / 2);
   draw_text(picture, title, content.left, content.top + capital, letters);

@@ -17,7 +17,7 @@
 namespace mssim {
 namespace {
 
-/// Where Debian, Fedora and Arch have the font.
+/// The font's files in Debian, Fedora and Arch.
 constexpr std::array<const char*, 3> font_files{"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
                                                 "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
                                                 "/usr/share/fonts/TTF/DejaVuSans.ttf"};
@@ -27,15 +27,15 @@ const char* font_file() {
     std::error_code error;
     if (std::filesystem::exists(file, error)) return file;
   }
-  throw MissingProgram(std::string("the font of letters in pictures is missing, ") + font_files.front() +
+  throw MissingProgram(std::string("the font for text in pictures is missing, ") + font_files.front() +
                        ": install Debian's package fonts-dejavu-core");
 }
 
-/// How much of each pixel a character covers, of 255, in rows from the top.
+/// Coverage of each pixel by a character, 0 to 255, in rows from the top.
 struct GlyphMask {
-  int left = 0, above = 0;  ///< of its first column from where it begins; rows above the baseline
+  int left = 0, above = 0;  ///< offset of its first column; rows above the baseline
   int width = 0, height = 0;
-  int advance = 0;  ///< to where the next character begins
+  int advance = 0;  ///< distance to the next character
   std::vector<std::uint8_t> coverage;
 };
 
@@ -43,7 +43,7 @@ void require_success(FT_Error error, const char* what) {
   if (error) throw std::runtime_error(fmt::format("FreeType failed at {}: error {}", what, error));
 }
 
-/// The font, with the characters that were drawn before.
+/// The font, with a cache of characters.
 class Font {
  public:
   Font() {
@@ -54,7 +54,7 @@ class Font {
   }
   Font(const Font&) = delete;
   Font& operator=(const Font&) = delete;
-  ~Font() { FT_Done_FreeType(library_); }  // and what belongs to it
+  ~Font() { FT_Done_FreeType(library_); }  // and its face
 
   const GlyphMask& mask_of(char32_t character, double size_px) {
     const auto size = static_cast<FT_F26Dot6>(std::lround(64 * size_px));
@@ -66,7 +66,7 @@ class Font {
  private:
   GlyphMask drawn(char32_t character, FT_F26Dot6 size) {
     require_success(FT_Set_Char_Size(face_, 0, size, 0, 0), "a size of letters");
-    // No hinting: what FreeType makes of it differs from one release to the next, outlines do not.
+    // No hinting: its result differs between releases of FreeType; outlines do not.
     require_success(FT_Load_Char(face_, character, FT_LOAD_RENDER | FT_LOAD_NO_HINTING), "a letter");
     const FT_GlyphSlot slot = face_->glyph;
     GlyphMask mask{slot->bitmap_left,
@@ -87,13 +87,13 @@ class Font {
   std::map<std::pair<char32_t, FT_F26Dot6>, GlyphMask> masks_;
 };
 
-/// FreeType allows one thread for each library.
+/// FreeType allows one thread per library object.
 Font& font() {
   thread_local Font loaded;
   return loaded;
 }
 
-/// The bytes of the UTF-8 character at the beginning of `text`: one if there is none.
+/// Size in bytes of the UTF-8 character at the start of `text`; one if there is none.
 std::size_t character_size(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
   const std::size_t size = first < 0x80   ? 1
@@ -115,8 +115,8 @@ char32_t character_at(std::string_view text, std::size_t size) {
   return character;
 }
 
-/// Calls `use` with each character and the pixels between the left edge of the text and where it begins.
-/// Returns the right edge.
+/// Calls `use` with each character and its start in pixels from the left edge of the text. Returns the right
+/// edge.
 template <class Use>
 int walk_along(std::string_view text, const Letters& letters, const Use& use) {
   int x = 0, right = 0;

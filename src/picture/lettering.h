@@ -8,8 +8,8 @@
 
 namespace mssim {
 
-/// Letters of one size and colour, of the font DejaVu Sans. `size_px` is that of the font: capitals are about
-/// 0.73 of it high, and x 0.55. Letters are fit for reading from 10 px on.
+/// Size and colour of text in DejaVu Sans. `size_px` is the size of the font: capitals are about 0.73 and x
+/// 0.55 of it. Text is readable from 10 px on.
 struct Letters {
   double size_px = 14;
   Rgb colour = black;
@@ -18,22 +18,22 @@ struct Letters {
   int capital_height() const;
   /// Whole pixels below the baseline that letters like g reach.
   int descent() const;
-  /// From one baseline to the next of a text of several lines.
+  /// Distance between the baselines of two lines.
   int line_distance() const;
 };
 
-/// The size in pixels of letters on a picture of this height: 2.5 % of it, at least 11.
+/// The size of letters in pixels for a picture of this height: 2.5 % of it, at least 11.
 double letter_size_for(std::uint32_t picture_height);
 
 /// Pixels from the left edge of the first character to the right edge of the last. `text` is UTF-8; a byte
 /// that is not part of a character counts as U+FFFD.
 int text_width(std::string_view text, const Letters& letters);
 
-/// Draws a line of text that begins at column `x`; the last row of letters without descender is the one above
-/// `baseline`. A character that the font lacks is an empty box. What lies outside of the picture is cut off.
+/// Draws a line of text that begins at column `x`; letters without descender end in the row above `baseline`.
+/// A character that the font lacks is an empty box. Text outside the picture is cut off.
 void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters);
 
-/// `text`, or as much of its beginning as leaves room for "…" within `width` pixels.
+/// `text`, or as much of its beginning as fits with "…" into `width` pixels.
 std::string shortened(std::string_view text, int width, const Letters& letters);
 
 }  // namespace mssim

@@ -6,24 +6,24 @@
 
 #include "picture/picture.h"
 
-struct WebPAnimEncoder;  // of libwebp
+struct WebPAnimEncoder;  // in libwebp
 
 namespace mssim {
 
-/// An animated WebP that repeats for ever, made frame by frame; it holds the compressed frames only. The same
+/// An animated WebP that repeats for ever, made frame by frame; only compressed frames are stored. The same
 /// frames give the same bytes with the same libwebp.
 class Movie {
  public:
-  /// Frame i is shown from i / `frames_per_second` on, rounded to milliseconds. Throws std::invalid_argument
-  /// unless there are 0.1 to 1000 frames a second.
+  /// Frame i is shown from time i / `frames_per_second` on, rounded to milliseconds. Throws
+  /// std::invalid_argument unless there are 0.1 to 1000 frames per second.
   explicit Movie(double frames_per_second);
 
   /// Throws std::runtime_error for a picture that libwebp refuses (one without pixels, or more than 16,383
-  /// across), and std::invalid_argument for one of another size than the first one's.
+  /// across), and std::invalid_argument if its size differs from that of the first frame.
   void add(const Picture& frame);
 
-  /// The bytes of the file, which ends the movie: nothing can be added or asked for after it. Throws
-  /// std::logic_error if there are no frames.
+  /// The bytes of the file. Ends the movie: no other call is allowed after it. Throws std::logic_error
+  /// if there are no frames.
   std::string take_bytes();
 
  private:

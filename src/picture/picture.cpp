@@ -21,12 +21,12 @@ struct PixelRange {
   std::int64_t begin, end;
 };
 
-/// Keeps those of `count` pixels from `first` on that lie within 0 to `size`.
+/// The part of `count` pixels from `first` on that lies within 0 to `size`.
 PixelRange pixels_inside(std::int64_t first, std::int64_t count, std::int64_t size) {
   return {std::clamp<std::int64_t>(first, 0, size), std::clamp<std::int64_t>(first + count, 0, size)};
 }
 
-/// What libpng said last before it gave up.
+/// libpng's last error message.
 using PngMessage = std::array<char, 200>;
 
 [[noreturn]] void give_up(png_structp png, png_const_charp text) {
@@ -42,14 +42,14 @@ void append_bytes(png_structp png, png_bytep data, std::size_t size) {
   try {
     static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
     appended = true;
-  } catch (const std::exception&) {  // It must not pass through libpng, which is C.
+  } catch (const std::exception&) {  // Exceptions must not pass through libpng, which is C.
   }
   if (!appended) png_error(png, "out of memory");
 }
 
 void flush_nothing(png_structp) {}
 
-/// libpng's structures, freed with this.
+/// libpng's structures, freed by the destructor.
 struct PngWriter {
   PngMessage message{};
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, give_up, ignore_warning);
@@ -61,16 +61,16 @@ struct PngWriter {
   ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
-/// Whether libpng wrote all. It leaves by longjmp where it does not: to here, and nothing that lies between
-/// has a destructor.
+/// Whether libpng wrote everything. On an error it returns here by longjmp, so no variable in between may
+/// have a destructor.
 bool write_png(png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_IHDR(png, info, picture.width, picture.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-  // Measured on frames of 640 x 480 pixels of a shaded, coloured surface with lines: 5 ms and 52 KiB. Level 1
-  // took 4 ms and 55 KiB, level 4 7.6 ms and 46, level 6 12 ms and 43; level 3 without filters 3 ms and 100
-  // KiB, with all of them more time and no fewer bytes.
+  // On frames of 640 x 480 pixels of a shaded, coloured surface with lines, level 3 takes 5 ms for 52 KiB;
+  // level 1 4 ms for 55, level 4 7.6 ms for 46, level 6 12 ms for 43. Without filters it is 3 ms and 100 KiB;
+  // all filters take longer for no fewer bytes.
   png_set_compression_level(png, 3);
   png_set_compression_strategy(png, Z_DEFAULT_STRATEGY);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
@@ -129,23 +129,23 @@ std::string png_of(const Picture& picture) {
 
 Picture sheet_of(std::span<const CaptionedPicture> pictures, std::uint32_t columns) {
   if (pictures.empty() || columns == 0)
-    throw std::invalid_argument("a sheet has at least one picture and one column");
+    throw std::invalid_argument("a sheet must have at least one picture and one column");
   const std::uint32_t width = pictures.front().picture.width, height = pictures.front().picture.height;
   for (const CaptionedPicture& cell : pictures)
     if (cell.picture.width != width || cell.picture.height != height)
-      throw std::invalid_argument("the pictures of a sheet have one size");
+      throw std::invalid_argument("the pictures of a sheet must have the same size");
 
   const auto count = static_cast<std::uint32_t>(pictures.size());
   columns = std::min(columns, count);
   const std::uint32_t rows = (count + columns - 1) / columns;
-  // Pages show a sheet as wide as they are, however many pictures are in it.
+  // Pages scale a sheet to their width, however many pictures it has.
   constexpr double of_sheet = 0.017;
   const Letters letters{std::max(letter_size_for(height), of_sheet * columns * width), Rgb{32, 34, 40}};
   const auto margin = static_cast<std::uint32_t>(std::lround(letters.size_px));
   const bool captioned =
       std::ranges::any_of(pictures, [](const auto& cell) { return !cell.caption.empty(); });
   const auto capital = static_cast<std::uint32_t>(captioned ? letters.capital_height() : 0);
-  // Between a picture and its caption: half of a margin.
+  // Half a margin between a picture and its caption.
   const std::uint32_t caption_height =
       captioned ? margin / 2 + capital + static_cast<std::uint32_t>(letters.descent()) : 0;
   const std::uint32_t column_width = width + margin, row_height = height + caption_height + margin;

@@ -14,7 +14,7 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// The code of light (both 0 to 1) in sRGB (IEC 61966-2-1), and the light of a code.
+/// The sRGB code of an intensity of light (both 0 to 1; IEC 61966-2-1), and the inverse.
 double srgb_code(double light);
 double srgb_light(double code);
 
@@ -35,12 +35,12 @@ struct Picture {
   friend bool operator==(const Picture&, const Picture&) = default;
 };
 
-/// Whole pixels, from column `left` and row `top` on. It may lie beyond a picture, which cuts it off.
+/// A box of whole pixels from column `left` and row `top` on. Parts outside a picture are cut off.
 struct PixelBox {
   int left = 0, top = 0, width = 0, height = 0;
 };
 
-/// `over` on `under` where it covers `coverage` of 255, channel by channel and rounded to the nearest.
+/// `over` on `under` with a coverage of `coverage` / 255, per channel and rounded to the nearest.
 constexpr Rgb blended(Rgb under, Rgb over, std::uint8_t coverage) {
   const auto channel = [coverage](unsigned below, unsigned above) {
     return static_cast<std::uint8_t>((below * (255u - coverage) + above * coverage + 127) / 255);
@@ -51,17 +51,17 @@ constexpr Rgb blended(Rgb under, Rgb over, std::uint8_t coverage) {
 /// Blends `colour` over every pixel of `box`; by default it replaces them.
 void fill(Picture& picture, const PixelBox& box, Rgb colour, std::uint8_t coverage = 255);
 
-/// Copies `pasted` into `picture`, its top left pixel to column `left` of row `top`. What lies outside is cut
+/// Copies `pasted` into `picture`, its top left pixel to column `left` of row `top`. Parts outside are cut
 /// off.
 void paste(Picture& picture, const Picture& pasted, int left, int top);
 
-/// The bytes of a PNG file of `picture`: 8 bits a channel, sRGB, no alpha. The same picture gives the same
+/// The bytes of a PNG file of `picture`: 8 bits per channel, sRGB, no alpha. The same picture gives the same
 /// bytes with the same libpng and zlib. Throws std::runtime_error for a picture without pixels or one that
 /// libpng refuses.
 std::string png_of(const Picture& picture);
 
-/// All that writes letters on pictures (sheets with captions, legends, colour bars) throws MissingProgram
-/// where their font is not installed, with a sentence that says how to get it. This asks for it in advance.
+/// Throws MissingProgram, with the remedy, if the font for text in pictures is not installed. All functions
+/// that write text on pictures (sheets with captions, legends, colour bars) do so; this checks in advance.
 void require_font();
 
 struct CaptionedPicture {
@@ -69,10 +69,10 @@ struct CaptionedPicture {
   std::string caption;
 };
 
-/// The pictures in rows of `columns`, from left to right, each with its caption below it, on white. A row may
-/// be incomplete; fewer pictures than columns are one row. A caption wider than its picture is shortened;
-/// where all captions are empty, there is no room for them. Throws std::invalid_argument without columns,
-/// without pictures, and for pictures of several sizes.
+/// The pictures in rows of `columns`, from left to right, each with its caption below it, on white. The last
+/// row may be incomplete; fewer pictures than columns are one row. Long captions are shortened; if all
+/// captions are empty, they take no room. Throws std::invalid_argument without columns or pictures, and for
+/// pictures of different sizes.
 Picture sheet_of(std::span<const CaptionedPicture> pictures, std::uint32_t columns);
 
 }  // namespace mssim

@@ -52,30 +52,29 @@ double round_length(double length) {
   return power;
 }
 
-/// How much of the stretch `width` around `at`, a distance from a line, the line covers.
+/// The fraction of an interval (`width`, centred `at` from the middle of a line) that the line covers.
 double covered(double at, double width, double line) {
   const double low = std::max(at - width / 2, -line / 2), high = std::min(at + width / 2, line / 2);
   return std::max(high - low, 0.0) / width;
 }
 
-constexpr double lines_across = 8;   // what stands on the ground
+constexpr double lines_across = 8;   // lines of the grid across the subject
 constexpr double line_pixels = 1.2;  // width of a line
 constexpr float line_darkness = 0.22F, shadow_darkness = 0.45F;
 
 constexpr float key_strength = 0.6F, fill_strength = 0.22F, sky_strength = 0.42F, ground_strength = 0.26F;
 constexpr std::uint32_t shadow_pixels = 1024;
-/// Pixels of the shadow's grid that a surface may lie behind itself, so that it does not shade itself where
-/// it is slanted.
+/// Offset of depths in pixels of the shadow map, so that slanted surfaces do not shade themselves.
 constexpr double bias = 2.5;
 
-/// How two lights and the sky fall on the points of a subject, for each of its sides.
+/// Light of two lamps and the sky on a point, for each of its sides.
 struct PointLight {
   float key_front = 0, rest_front = 0;  ///< from the key light, which casts shadows; from all others
   float key_back = 0, rest_back = 0;
 };
 
-/// The lights of a picture taken from `direction`: the key light stands high to the left of the camera, the
-/// fill light low to its right, and the sky is brighter than the ground.
+/// The lights of a picture taken from `direction`: the key light is high to the left of the camera, the fill
+/// light low to its right, and the sky is brighter than the ground.
 class Lights {
  public:
   explicit Lights(const ViewDirection& direction)
@@ -83,7 +82,7 @@ class Lights {
 
   const Camera& key() const { return key_; }
 
-  /// What falls on a surface with this normal.
+  /// The light on a surface with this normal.
   PointLight on(const Vec3d& normal) const {
     const auto key = static_cast<float>(dot(normal, key_.near()));
     const auto fill = static_cast<float>(dot(normal, fill_.near()));
@@ -106,7 +105,7 @@ Surface seen_by(const Camera& camera, const Surface& surface) {
   return seen;
 }
 
-/// What the key light reaches: the nearest surface to it, on a grid of its own.
+/// The shadow map of the key light: the nearest surface to it, on its own grid.
 class Shadow {
  public:
   /// Maps the shadow of the subject's triangles. `threads` as in rasterise().
@@ -123,9 +122,9 @@ class Shadow {
               });
   }
 
-  /// How much of the key light reaches a point: 0 in the shadow to 1, between them at its edge.
+  /// The fraction of the key light that reaches a point; between 0 and 1 at the edge of a shadow.
   float reaching(const Vec3d& point) const {
-    constexpr double reach = 0.75;  // pixels, from where the edge is smoothed
+    constexpr double reach = 0.75;  // pixels over which the edge is smoothed
     const Vec3d seen = key_.seen(point);
     const double depth = seen.z + bias * grid_.pixel;
     const double x = (seen.x - grid_.left) / grid_.pixel - 0.5,
@@ -143,7 +142,7 @@ class Shadow {
                : 1.0F;
   }
 
-  /// Between the four pixels around (x, y).
+  /// Interpolates between the four pixels around (x, y).
   float smoothed(double x, double y, double depth) const {
     const auto column = static_cast<std::int64_t>(std::floor(x)),
                row = static_cast<std::int64_t>(std::floor(y));
@@ -155,16 +154,16 @@ class Shadow {
 
   const Camera& key_;
   PixelGrid grid_;
-  std::vector<float> depth_;  ///< [rows][columns], m towards the light; -infinity where nothing is
+  std::vector<float> depth_;  ///< [rows][columns], m towards the light; -infinity if empty
 };
 
-/// Points of a pixel in each direction.
+/// Samples per pixel in each direction.
 constexpr std::uint32_t samples = 4;
 static_assert(band_rows % samples == 0, "a band is whole rows of pixels");
 
 constexpr Light backdrop{0.91F, 0.92F, 0.94F};
 
-/// Everything that the light of a sample depends on.
+/// Everything on which the light of a sample depends.
 struct Stage {
   const Subject& subject;
   const Shot& shot;
@@ -216,8 +215,8 @@ struct PixelFragments {
   const Fragment& at(std::uint32_t i, std::uint32_t j) const { return first[j * row_pitch + i]; }
 };
 
-/// The pixel's light, the mean of its points. A pixel of nothing but ground, or of one smooth surface, is
-/// shaded at fewer points than it is drawn at.
+/// The mean light of a pixel's samples. Pixels with only ground, or one smooth surface, are shaded at fewer
+/// points.
 Light mean_light(const Stage& stage, const PixelFragments& pixel) {
   std::uint32_t hits = 0;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -269,7 +268,7 @@ Camera::Camera(const ViewDirection& direction) {
 }
 
 PixelGrid grid_around(const Box<double>& seen, std::uint32_t columns, std::uint32_t rows, double margin) {
-  constexpr double smallest = 1e-9;  // m, of a picture of one point
+  constexpr double smallest = 1e-9;  // m, for a picture of one point
   const double inside = 1 - 2 * margin;
   const Vec3d size = seen.size(), middle = seen.middle();
   PixelGrid grid;
@@ -291,16 +290,16 @@ Ground::Ground(const Box<double>& box, double height) : height_(height), middle_
 std::optional<Vec3d> Ground::met_by(const Camera& camera, double x, double y) const {
   constexpr double least_slope = 0.01;
   if (camera.near().y < least_slope) return std::nullopt;
-  const double z = (height_ - y * camera.up().y) / camera.near().y;  // the camera's right is level
+  const double z = (height_ - y * camera.up().y) / camera.near().y;  // the camera's right is horizontal
   return x * camera.right() + y * camera.up() + z * camera.near();
 }
 
 Light Ground::colour_at(const Vec3d& point, const Light& background, float light, const Camera& camera,
                         double pixel) const {
   const double far = std::hypot(point.x - middle_.x, point.z - middle_.z) / radius_;
-  const auto fade = static_cast<float>(std::clamp(2 - far, 0.0, 1.0));  // 1 near by, 0 from two radii on
+  const auto fade = static_cast<float>(std::clamp(2 - far, 0.0, 1.0));  // 1 nearby, 0 beyond two radii
   if (fade == 0) return background;
-  // How far a pixel reaches on the ground: it is stretched where the camera looks along it.
+  // The size of a pixel on the ground, which grows towards the horizon.
   const Vec3d down = camera.up() - (camera.up().y / camera.near().y) * camera.near();
   const auto line_at = [&](double at, double right, double up) {
     return covered(at - spacing_ * std::round(at / spacing_), pixel * (std::abs(right) + std::abs(up)),

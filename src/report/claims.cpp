@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_claims = 100;
 constexpr std::array<std::string_view, 2> paper_words{"Hong et al. (2016)", "Vassilev"};
-/// What stands for the shipped garments, of which no numbers are published.
+/// Stands for the shipped garments, for which no numbers are published.
 constexpr std::string_view table_of_garments = "figure6";
 constexpr std::array<std::string_view, 2> device_words{"any", "GPU"}, of_words{"each", "average"};
 
@@ -28,33 +28,34 @@ std::vector<std::string_view> deciding_tables() {
 void visit_test(FieldVisitor& fields, ClaimTest& test) {
   const std::vector<std::string_view> tables = deciding_tables();
   std::uint32_t table = 0;
-  fields.choice({"scenes", "The table whose scenes decide."}, Presence::required, tables, table);
+  fields.choice({"scenes", "The table whose scenes decide the claim."}, Presence::required, tables, table);
   test.scenes = tables.at(table);
   fields.text({"fast", "The backend that is said to be faster."}, Presence::required, test.fast);
   fields.text({"slow", "The backend that it is compared with."}, Presence::required, test.slow);
-  fields.texts({"integrators", "Those that decide (default: the paper's three)."}, Presence::optional, 1, 3,
-               test.integrators);
-  fields.text({"slow_integrator", "That of `slow` (default: that of `fast`)."}, Presence::optional,
+  fields.texts({"integrators", "The integrators that decide (default: the paper's three)."},
+               Presence::optional, 1, 3, test.integrators);
+  fields.text({"slow_integrator", "Integrator of `slow` (default: that of `fast`)."}, Presence::optional,
               test.slow_integrator);
-  fields.text({"gains_more_than", "Compared are speed-ups: with each of `integrators` and with this one."},
-              Presence::optional, test.gains_more_than);
-  visit_choice(fields, {"device", "Where OpenCL must have run (default: any)."}, Presence::optional,
-               device_words, test.on_gpu);
+  fields.text(
+      {"gains_more_than", "If given, each ratio is a speed-up divided by the speed-up with this integrator."},
+      Presence::optional, test.gains_more_than);
+  visit_choice(fields, {"device", "The device on which OpenCL must have run (default: any)."},
+               Presence::optional, device_words, test.on_gpu);
   visit_choice(fields, {"of", "Which ratios are tested: each (default), or their geometric mean."},
                Presence::optional, of_words, test.of_average);
-  fields.number({"at_least", "The ratio that the claim needs."}, test.at_least, above(0, 1000));
+  fields.number({"at_least", "The ratio that must be exceeded."}, test.at_least, above(0, 1000));
 }
 
 void visit_claim(FieldVisitor& fields, Claim& claim) {
-  fields.text({"name", "What it is called here."}, Presence::required, claim.name);
+  fields.text({"name", "Its name in mssim."}, Presence::required, claim.name);
   std::uint32_t paper = 0;
-  fields.choice({"paper", "Whose it is."}, Presence::required, paper_words, paper);
+  fields.choice({"paper", "The paper that makes the claim."}, Presence::required, paper_words, paper);
   claim.paper = paper_words.at(paper);
   fields.text({"place", "Section, table, figure, equation."}, Presence::required, claim.place);
-  fields.text({"says", "What the paper says, in a line of our own."}, Presence::required, claim.says);
-  fields.text({"needs", "What deciding it takes beside rows of the backends."}, Presence::optional,
+  fields.text({"says", "What the paper says, paraphrased in one line."}, Presence::required, claim.says);
+  fields.text({"needs", "What a decision needs besides rows of the backends."}, Presence::optional,
               claim.needs);
-  fields.object({"test", "How rows decide it; left out where no rows can."}, Presence::optional,
+  fields.object({"test", "How rows decide it; omitted if no rows can."}, Presence::optional,
                 [&](FieldVisitor& test) { visit_test(test, claim.test.emplace()); });
 }
 
@@ -68,13 +69,13 @@ std::string configuration_of(const PaperLegend& legend, std::string_view backend
   return found == legend.backends.end() ? std::string() : found->configuration;
 }
 
-/// Does the paper run on several threads what the backend stands for?
+/// Whether the paper's configuration of this backend has several threads.
 bool has_threads(const PaperLegend& legend, std::string_view backend) {
   const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
   return found != legend.backends.end() && found->has_threads;
 }
 
-/// Did the row run on what the claim is about? A device of OpenCL that is this processor is no GPU, and one
+/// Whether the row ran on the hardware that the claim is about. OpenCL on this CPU is not a GPU, and one
 /// thread is not several.
 bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& legend,
                 const Provenance& provenance) {
@@ -88,8 +89,8 @@ std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
   return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low};
 }
 
-/// The ratios of a test, of each scene and integrator of which there are both times. `ratio`: of a scene and
-/// of the integrators of `fast` and `slow`.
+/// The ratios of a test, for each scene and integrator with both times. `ratio` takes a scene and the
+/// integrators of `fast` and `slow`.
 template <class Scenes, class Ratio>
 auto ratios_of(const ClaimTest& test, const PaperLegend& legend, const Scenes& scenes, Ratio ratio) {
   std::vector<typename decltype(ratio(scenes.front(), std::string(), std::string()))::value_type> all;
@@ -108,17 +109,17 @@ auto ratios_of(const ClaimTest& test, const PaperLegend& legend, const Scenes& s
 
 std::string times(double ratio) { return three_digits(ratio) + "×"; }
 
-/// "1.30× to 2.12×", or the one number where both are the same.
+/// "1.30× to 2.12×", or one number if both are equal.
 std::string range_of(double least, double most) {
   return times(least) == times(most) ? times(least) : times(least) + " to " + times(most);
 }
 
-/// The published ratios that stand behind a claim.
+/// The published ratios for a claim.
 std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, const PublishedTable& table) {
   const std::string fast = configuration_of(legend, test.fast), slow = configuration_of(legend, test.slow);
   const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
                            const std::string& of_slow) -> std::optional<double> {
-    if (fast == slow && of_fast == of_slow) return std::nullopt;  // one and the same time
+    if (fast == slow && of_fast == of_slow) return std::nullopt;  // the same time
     const auto fast_ms = table.ms(of_fast, fast, scene.nodes, scene.springs);
     const auto slow_ms = table.ms(of_slow, slow, scene.nodes, scene.springs);
     return fast_ms && slow_ms ? std::optional(*slow_ms / *fast_ms) : std::nullopt;
@@ -137,7 +138,7 @@ std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, c
                      test.of_average ? ", geometric mean " + times(geometric_mean(all)) : "");
 }
 
-/// The scenes that decide, and what was measured.
+/// The scenes that decide a claim, and the measured rows.
 struct Measured {
   const std::vector<PaperScene>& scenes;
   RowPointers rows;
@@ -189,7 +190,7 @@ void judge_ratios(JudgedClaim& judged, const ClaimTest& test, const std::vector<
                                    range_of(tested.front().low, tested.front().high));
   else
     judged.measured +=
-        fmt::format("; of {}, {} above {}, {} below, {} undecided", pluralize(all.size(), "ratio"), above,
+        fmt::format("; {}: {} above {}, {} below, {} undecided", pluralize(all.size(), "ratio"), above,
                     times(test.at_least), below, std::ssize(all) - above - below);
 }
 
@@ -207,7 +208,7 @@ JudgedClaim judge_rows(const Claim& claim, const Measured& measured, std::string
   return judged;
 }
 
-/// The garments of mssim's that any row was dressed in.
+/// The shipped garments in the rows, each once.
 std::vector<PaperScene> shipped_garments(RowPointers rows) {
   std::vector<PaperScene> scenes;
   for (const ResultRow* row : rows)
@@ -232,9 +233,10 @@ std::vector<Claim> published_claims() {
 
 std::string claims_schema() {
   std::vector<Claim> none;
-  return json_schema("Claims of the papers",
-                     "What the two papers say that a measurement could support or contradict (mssim report).",
-                     [&](FieldVisitor& fields) { visit_claims(fields, none); });
+  return json_schema(
+      "Claims of the papers",
+      "Statements of the two papers that a measurement can support or contradict (mssim report).",
+      [&](FieldVisitor& fields) { visit_claims(fields, none); });
 }
 
 std::string_view name_of(ClaimOutcome outcome) {

@@ -65,7 +65,7 @@ std::string subject(std::size_t number, const std::string& noun, const std::stri
   return pluralize(number, noun) + (number == 1 ? one : several);
 }
 
-/// "`opencl` on DEVICE", of every backend that ran on one.
+/// "`opencl` on DEVICE" for each backend that ran on an OpenCL device.
 std::string devices_of(std::span<const ResultRow> rows, const Provenance& provenance) {
   const std::vector<const ResultRow*> pointers = pointers_to(rows);
   std::vector<std::string> labels;
@@ -90,12 +90,13 @@ Finding about_speedups(std::span<const ResultRow> rows) {
       near_one.push_back(
           fmt::format("{} ({} to {})", row_name(row), three_digits(ratio->low), three_digits(ratio->high)));
   }
-  if (all == 0) return {false, "There are no speed-ups: no row that counts stands beside one of `serial`."};
-  return {false, "Of " + pluralize(all, "speed-up") + " over `serial`, " +
+  if (all == 0)
+    return {false, "There are no speed-ups: no row that counts has a row of `serial` to compare with."};
+  return {false, pluralize(all, "speed-up") + " over `serial`: " +
                      (near_one.empty()
-                          ? "all have an interval that does not hold 1."
-                          : subject(near_one.size(), "interval", " holds 1", " hold 1") +
-                                ", so that neither is certainly the faster: " + join(near_one, "; ") + ".")};
+                          ? "no interval includes 1."
+                          : subject(near_one.size(), "interval", " includes 1", " include 1") +
+                                ", so neither backend is certainly faster: " + join(near_one, "; ") + ".")};
 }
 
 }  // namespace
@@ -104,8 +105,8 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
   std::vector<Finding> findings;
   if (rows.empty()) return findings;
   if (const std::string devices = devices_of(rows, provenance); !devices.empty())
-    findings.push_back(
-        {false, fmt::format("The published GPU is that of a {}. Measured here: {}.", paper_device, devices)});
+    findings.push_back({false, fmt::format("The published GPU is that of a {}. Devices of these rows: {}.",
+                                           paper_device, devices)});
   std::vector<std::string> not_verified;
   std::size_t timed = 0, without_time = 0;
   for (const ResultRow& row : rows)
@@ -119,9 +120,9 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
     findings.push_back({false, subject(timed, "row", " has a time, and is", " have a time, and all are") +
                                    " verified against the double-precision reference."});
   else
-    findings.push_back({true, subject(not_verified.size(), "row", " is not verified, and counts",
-                                      " are not verified, and count") +
-                                  " nowhere: " + join(not_verified, "; ") + "."});
+    findings.push_back(
+        {true, subject(not_verified.size(), "row", " is not verified and is", " are not verified and are") +
+                   " excluded from all statistics: " + join(not_verified, "; ") + "."});
   if (without_time > 0)
     findings.push_back({false, subject(without_time, "row", " has", " have") +
                                    " no time; the list below the tables says why."});

@@ -13,7 +13,7 @@
 namespace mssim {
 namespace {
 
-/// A line of a chart: for each step of an integrator, from the longest on, the point of one backend.
+/// A line of a chart: for each step of an integrator, longest first, the point of one backend.
 struct GuideLine {
   std::string integrator;
   std::vector<const GuidePoint*> points;
@@ -23,14 +23,14 @@ double cost_of(const GuidePoint& point) {
   return point.wall_s_per_s.value_or(std::numeric_limits<double>::infinity());
 }
 
-/// Where one backend diverged and another did not, the one that did not.
+/// A point that did not diverge is better than one that did; otherwise the cheaper one is.
 bool is_better(const GuidePoint& point, const GuidePoint& than) {
   return std::pair(point.diverged, cost_of(point)) < std::pair(than.diverged, cost_of(than));
 }
 
 std::vector<GuideLine> lines_of(const FoundGuide& guide, const std::string& scene) {
   std::vector<GuideLine> lines;
-  std::vector<std::map<double, const GuidePoint*, std::greater<>>> best;  // by step, as many as lines
+  std::vector<std::map<double, const GuidePoint*, std::greater<>>> best;  // [lines] by step
   for (const GuidePoint& point : guide.points) {
     if (point.scene != scene) continue;
     const auto line = std::ranges::find(lines, point.integrator, &GuideLine::integrator);
@@ -48,7 +48,7 @@ std::vector<GuideLine> lines_of(const FoundGuide& guide, const std::string& scen
   return lines;
 }
 
-/// What errors are drawn over.
+/// The member on the x axis of a chart of errors.
 using Along = std::optional<double> GuidePoint::*;
 
 /// A power of ten above all errors that are drawn.
@@ -60,7 +60,7 @@ double edge_of(const std::vector<GuideLine>& lines) {
   return largest > 0 ? std::pow(10, std::floor(std::log10(largest)) + 1) : 1;
 }
 
-/// The lines over `along`, and the marks on them. Methods that have nothing along are left out.
+/// The lines over `along`, and their marks. Methods without values of `along` are left out.
 Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::string& id,
                   const std::string& title, const std::string& x_label) {
   Chart chart;
@@ -86,17 +86,18 @@ Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::s
     if (!series.x.empty()) chart.series.push_back(std::move(series));
   }
   if (!diverged.x.empty())
-    chart.remarks.push_back("Crosses at an error of " + decimal(edge) + " diverged, whatever their error");
+    chart.remarks.push_back("Crosses at an error of " + decimal(edge) +
+                            " mark diverged runs, whatever their error");
   if (!uncompared.x.empty())
     chart.remarks.emplace_back(
-        "Points in squares are not compared: their errors are too near that of the reference, or their steps "
-        "longer than the largest stable one");
+        "Points in squares are not compared: the error is too close to that of the reference, or the step "
+        "is longer than the largest stable one");
   for (Series* marks : {&uncompared, &diverged})
     if (!marks->x.empty()) chart.series.push_back(std::move(*marks));
   return chart;
 }
 
-/// Rings around the points that no other one beats in cost and error.
+/// Rings around the points of the front.
 void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   Series front{.name = "on the front", .origin = Origin::reference, .mark = PointMark::ring};
   for (const GuideLine& line : lines)
@@ -106,8 +107,8 @@ void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   if (!front.x.empty()) work.series.push_back(std::move(front));
 }
 
-/// Lines error ~ step^p to compare others with, for the orders p of the chart's integrators: from one point
-/// low on the right, where long steps seldom have small errors, up a part of the way.
+/// Reference lines error ~ step^p for the orders p of the chart's integrators. They start at one point low on
+/// the right, where long steps seldom have small errors.
 void add_orders(Chart& steps) {
   const auto range = range_of(steps);
   if (!range) return;
@@ -128,7 +129,7 @@ void add_orders(Chart& steps) {
   }
 }
 
-/// Integrators that have points, but no number of force evaluations.
+/// Integrators that have points but no number of force evaluations.
 std::vector<std::string> without_evaluations(const std::vector<GuideLine>& lines) {
   std::vector<std::string> names;
   for (const GuideLine& line : lines)
@@ -143,7 +144,7 @@ void add_names(Chart& chart, const std::string& before, const std::vector<std::s
   if (!names.empty()) chart.remarks.push_back(before + join(names, ", "));
 }
 
-/// "openmp (midpoint, verlet)", "openmp and serial (rk4)": which backends the points of lines are of.
+/// "openmp (midpoint, verlet)", "openmp and serial (rk4)": the backends of the points of the lines.
 std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
   std::map<std::string, std::vector<std::string>> integrators;
   for (const GuideLine& line : lines) {
@@ -164,15 +165,15 @@ std::string with_step(const GuidePoint& point) {
   return fmt::format("{} with {} ms", point.integrator, three_digits(*point.dt_s * 1000));
 }
 
-/// Why an integrator has no points, as its first row says.
+/// Why an integrator has no points, from its first row.
 std::string reason_of(const FoundGuide& guide, const std::string& scene, const std::string& integrator) {
   for (const GuidePoint& point : guide.points)
     if (point.scene == scene && point.integrator == integrator) return integrator + " (" + point.status + ")";
   return integrator;
 }
 
-/// What the chart of work and precision leaves to words: backends, the steps of crosses, and what is not
-/// drawn.
+/// Adds what the chart of work and precision does not draw: backends, steps of diverged points, and points
+/// that are left out.
 void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene,
                  const std::vector<GuideLine>& lines) {
   std::vector<std::string> crosses, without;
@@ -187,15 +188,15 @@ void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene
     }
   }
   add_names(chart, "Diverged: ", crosses);
-  add_names(chart, "Each point is that of the cheapest backend with its step: ", by_backends(lines));
+  add_names(chart, "Each point is from the cheapest backend with that step: ", by_backends(lines));
   if (on_front > drawn_on_front)
     chart.remarks.push_back(
-        fmt::format("{} of {} on the front not drawn, as their backends take longer for the same step",
+        fmt::format("{} of {} on the front not drawn, because their backends take longer for the same step",
                     on_front - drawn_on_front, pluralize(on_front, "point")));
   add_names(chart, "No points: ", without);
 }
 
-/// A guide's files do not say on which device a backend ran, except where there is one only.
+/// A guide's files do not name the device of a backend; it is only known if there is just one.
 BackendLook look_in_guide(const std::string& backend, const PaperLegend& legend,
                           const Provenance& provenance) {
   const std::vector<std::string>& devices = provenance.opencl_devices;
@@ -203,7 +204,7 @@ BackendLook look_in_guide(const std::string& backend, const PaperLegend& legend,
                  provenance);
 }
 
-/// Those of an integrator whose backends have two sizes.
+/// The chart of an integrator's backends that have two sizes; none without any.
 std::optional<Chart> size_chart(const FoundGuide& guide, const PaperLegend& legend,
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& integrator) {
@@ -223,7 +224,7 @@ std::optional<Chart> size_chart(const FoundGuide& guide, const PaperLegend& lege
   return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
 }
 
-/// Charts of sizes, of the first explicit and the first implicit integrator that have one.
+/// The charts of sizes of the first explicit and the first implicit integrator that have one.
 std::vector<Chart> size_charts(const FoundGuide& guide, const PaperLegend& legend,
                                const Provenance& provenance, const std::string& scene,
                                const std::string& id) {

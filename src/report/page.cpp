@@ -14,7 +14,7 @@ std::string element(std::string_view name, std::string_view content, std::string
   return fmt::format("<{0}{1}>{2}</{0}>", name, attributes, content);
 }
 
-/// A mark of a Document, which is the same in front and behind, and the element that it stands for.
+/// A mark of a Document, the same before and after the text, and its element.
 struct Mark {
   std::string_view sign, element;
 };
@@ -38,8 +38,8 @@ struct HtmlBlock {
   std::string operator()(const Table& table) const { return html_of(table); }
 };
 
-/// How a report looks: light and dark, narrow and wide, on paper (A4). Wide tables scroll in boxes of their
-/// own on a screen, and are set smaller on paper.
+/// Style of a report: light and dark, narrow and wide, on paper (A4). Wide tables scroll on a screen, and
+/// have smaller text on paper.
 constexpr std::string_view page_style = R"(
 :root { color-scheme: light dark; --text: #1b1f24; --back: #ffffff; --dim: #57606a; --line: #d0d7de; --fill: #f3f5f7;
   --no: #a40e26; }
@@ -95,7 +95,7 @@ footer { margin-top: 2rem; color: var(--dim); font-size: .875rem; }
 }
 )";
 
-/// The points of a guide as charts have them.
+/// The points of a guide, with the columns that charts show.
 Table points_of(const FoundGuide& guide) {
   Table table;
   for (const GuidePoint& point : guide.points)
@@ -212,7 +212,7 @@ std::string html_of(const Document& document, int level) {
 }
 
 std::string html_data(std::string_view id, std::string_view json) {
-  // Nothing may end the element; in JSON a "<" stands in texts alone.
+  // The JSON must not end the element; it has "<" only in strings.
   std::string text = fmt::format("<script type=\"application/json\" id=\"{}\">\n", html_text(id));
   for (const char character : json) character == '<' ? text += "\\u003c" : text += character;
   return text + "</script>\n";
@@ -251,7 +251,7 @@ std::string report_page(const ReportInput& input) {
          title_of(input) + "</title>\n<style>" + std::string(page_style) +
          "</style>\n</head>\n<body>\n<header>\n<h1>mssim report</h1>\n<nav><ul>\n" + links +
          "</ul></nav>\n</header>\n<main>\n" + body + "</main>\n<footer>Made by " + html_text(input.made_by) +
-         ". The data of this page stand in it as JSON, in the element mssim-data.</footer>\n" +
+         ". The element mssim-data has the data of this page as JSON.</footer>\n" +
          html_data("mssim-data", embedded_data(input)) + "</body>\n</html>\n";
 }
 

@@ -13,10 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Larger pictures are not taken into a page, and a larger page is none that mssim guide wrote.
+/// Larger pictures are not embedded; mssim guide writes no larger page.
 constexpr std::size_t largest_picture_bytes = std::size_t{8} << 20, largest_page_bytes = std::size_t{4} << 20;
 
-/// The points of a guide, which say that a folder is one.
+/// The points of a guide; a folder that has this file is a guide's.
 constexpr const char* guide_name = "guide.csv";
 
 bool is_there(const fs::path& path) {
@@ -28,7 +28,7 @@ bool has_results(const fs::path& folder) {
   return is_there(folder / timings_name) || is_there(folder / guide_name);
 }
 
-/// What lies in a folder, by name; nothing where it cannot be listed.
+/// The entries of a folder, by name; empty if it cannot be listed.
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries;
   std::error_code error;
@@ -38,7 +38,7 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return entries;
 }
 
-/// The text of a file; none, with a problem, where it cannot be read.
+/// The text of a file; none, and a problem, if it cannot be read.
 std::optional<std::string> text_of(const fs::path& file, std::size_t most_bytes, const std::string& without,
                                    std::vector<std::string>& problems) {
   try {
@@ -49,8 +49,8 @@ std::optional<std::string> text_of(const fs::path& file, std::size_t most_bytes,
   }
 }
 
-/// The records of a file, as `read` makes them of a table: all, or where that throws CsvError, each line that
-/// can be read alone; then a problem says why, and how many are left out. So does one where there are none.
+/// The records that `read` makes of a file. If it throws CsvError, each line is read separately, and a
+/// problem has the reason and the number of lines lost. A file without records is a problem, too.
 template <class Record>
 std::vector<Record> records_of(const fs::path& file, const std::string& without,
                                std::vector<Record> (*read)(const CsvTable&),
@@ -82,7 +82,7 @@ std::vector<Record> records_of(const fs::path& file, const std::string& without,
   return records;
 }
 
-/// Reads what belongs to the rows from a file beside timings.csv; false where that cannot be read.
+/// Reads further data of the rows from a file next to timings.csv; false if it cannot be read.
 bool read_beside(const fs::path& file, ReportFolder& folder, const std::string& without,
                  void (*read)(const CsvTable& table, std::span<ResultRow> rows)) {
   std::vector<ResultRow> rows = folder.rows;
@@ -96,7 +96,7 @@ bool read_beside(const fs::path& file, ReportFolder& folder, const std::string& 
   }
 }
 
-/// Rows of a samples.csv that ended early have fewer samples than rounds, or none.
+/// Removes the samples of rows that have fewer than rounds, as in a truncated samples.csv.
 void drop_incomplete_samples(const fs::path& file, ReportFolder& folder) {
   std::size_t without = 0;
   for (ResultRow& row : folder.rows) {
@@ -108,7 +108,7 @@ void drop_incomplete_samples(const fs::path& file, ReportFolder& folder) {
     folder.problems.push_back(file.string() + " has no samples of " + pluralize(without, "row"));
 }
 
-/// A time that no clock gives would only spoil what is computed of it.
+/// Removes times that are not positive, which would spoil derived numbers.
 void drop_impossible_times(ReportFolder& folder) {
   const auto is_bad = [](double ms) { return !(ms > 0); };
   for (ResultRow& row : folder.rows) {
@@ -117,7 +117,7 @@ void drop_impossible_times(ReportFolder& folder) {
          {&row.ms_per_step, &row.ms_per_step_low, &row.ms_per_step_high, &row.speedup_vs_serial})
       if (*time && is_bad(**time)) time->reset();
     if (std::ranges::any_of(row.samples_ms, is_bad)) row.samples_ms.clear();
-    if (!row.ms_per_step) row.status = "failed: timings.csv has no time of it";
+    if (!row.ms_per_step) row.status = "failed: timings.csv has no time for it";
   }
 }
 
@@ -134,7 +134,7 @@ void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
     } else if (text->starts_with("\x89PNG\r\n\x1a\n")) {
       folder.pictures.push_back({file.filename().string(), std::move(*text)});
     } else {
-      folder.problems.push_back(file.string() + " is no PNG picture");
+      folder.problems.push_back(file.string() + " is not a PNG picture");
     }
   }
 }
@@ -169,7 +169,7 @@ std::vector<GuideTime> times_in(const CsvTable& table) {
   return times;
 }
 
-/// None where the folder has no guide.csv.
+/// None if the folder has no guide.csv.
 std::optional<FoundGuide> read_guide(const fs::path& folder, std::vector<std::string>& problems) {
   if (!is_there(folder / guide_name)) return std::nullopt;
   FoundGuide guide;
@@ -207,16 +207,17 @@ ReportFolder read_report_folder(const fs::path& path) {
     folder.rows =
         records_of(path / timings_name, "without it there is nothing to show", read_timings, folder.problems);
   if (!folder.rows.empty()) {
-    if (read_beside(path / samples_name, folder, "intervals of ratios are those of the times", read_samples))
+    if (read_beside(path / samples_name, folder, "intervals of ratios follow from those of the times",
+                    read_samples))
       drop_incomplete_samples(path / samples_name, folder);
     if (is_there(path / garment_name))
-      read_beside(path / garment_name, folder, "how garments were dressed is not shown", read_dressings);
+      read_beside(path / garment_name, folder, "the draping of garments is not shown", read_dressings);
   }
   drop_impossible_times(folder);
   try {
     folder.provenance = read_provenance(path / "provenance.json");
   } catch (const ProvenanceError& error) {
-    folder.problems.push_back(std::string(error.what()) + "; machine and settings are not known");
+    folder.problems.push_back(std::string(error.what()) + "; machine and settings are unknown");
   }
   read_pictures_and_curves(path, folder);
   return folder;

@@ -12,28 +12,27 @@
 
 namespace mssim {
 
-/// What a page is made of: comparisons of measured with published times, the sentences that follow from them,
-/// charts, and HTML.
+/// The parts of a report page: claims, findings, charts, and HTML.
 
-/// The exponent p of y ~ x^p: the slope of the line of least squares on logarithmic axes. None for fewer than
-/// two different x. All are above zero.
+/// The exponent p of y ~ x^p by least squares on logarithmic axes; none for fewer than two different x. All
+/// values must be positive.
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
 
-/// A published table and the rows that were measured of its scenes: what verdicts and charts ask of both.
+/// A published table and the measured rows of its scenes.
 class PaperScenes {
  public:
-  /// All must outlive it.
+  /// The arguments must outlive this.
   PaperScenes(std::span<const ResultRow> rows, const PaperLegend& legend, const PublishedTable& published);
 
   const std::vector<PaperScene>& scenes() const { return scenes_; }  ///< by size
   const PaperLegend& legend() const { return legend_; }
   std::span<const ResultRow> rows() const { return rows_; }
-  /// Over one thread; none where either time is missing.
+  /// Speed-up over one thread; none if either time is missing.
   std::optional<double> published_speedup(const PaperScene& scene, std::string_view integrator,
                                           std::string_view configuration) const;
-  /// Null where there is none.
+  /// Null if there is none.
   const ResultRow* row(const PaperScene& scene, std::string_view backend, std::string_view integrator) const;
-  /// The backends that stand for a configuration and have a time.
+  /// The backends of a configuration that have a time.
   std::vector<std::string> backends_of(std::string_view configuration) const;
 
  private:
@@ -43,12 +42,12 @@ class PaperScenes {
   std::vector<PaperScene> scenes_;
 };
 
-/// What rows say of a claim.
+/// Outcome of a claim, judged by rows.
 enum class ClaimOutcome : std::uint8_t {
   held,
-  not_held,      ///< a ratio lies below what the claim needs, with its whole interval
-  undecided,     ///< intervals contain what the claim needs
-  not_testable,  ///< what it needs is missing here
+  not_held,      ///< the whole interval of a ratio is below the limit
+  undecided,     ///< an interval includes the limit
+  not_testable,  ///< required rows or devices are missing
 };
 
 std::string_view name_of(ClaimOutcome outcome);
@@ -56,46 +55,46 @@ std::string_view name_of(ClaimOutcome outcome);
 struct JudgedClaim {
   const Claim* claim = nullptr;
   ClaimOutcome outcome = ClaimOutcome::not_testable;
-  std::string published{};  ///< the published ratios; empty where the paper gives none
+  std::string published{};  ///< the published ratios; empty if the paper has none
   std::string measured{};   ///< the measured ratios, or what is missing
 };
 
-/// What the rows of a folder say of the claims about its scenes, those first that they decide. Claims that no
-/// rows decide are with any scene of their paper.
+/// Judges the claims about the scenes of a folder; those that its rows decide come first. Claims that no rows
+/// can decide are included if the folder has any scene of their paper.
 std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& input);
 
-/// A sentence about rows, computed. With the marks of a Document.
+/// A computed sentence about rows, with the marks of a Document.
 struct Finding {
   bool is_warning = false;
   std::string sentence;
 };
 
-/// On which devices rows were measured, which are not verified or have no time, and which speed-ups cannot be
-/// told from 1. None without rows.
+/// Findings about devices, rows that are not verified or have no time, and speed-ups whose interval
+/// includes 1. None without rows.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
 
-/// What a page calls a backend that ran on a device of OpenCL ("" for none): "opencl on the CPU", "opencl,
-/// DEVICE". `family` decides its look in charts: OpenCL on a GPU shares that of the published GPU, and OpenCL
-/// on the processor has one of its own.
+/// Name of a backend on an OpenCL device ("" for none): "opencl on the CPU", "opencl, DEVICE". `family`
+/// decides its look in charts: OpenCL on a GPU shares that of the published GPU, OpenCL on the CPU has its
+/// own.
 struct BackendLook {
   std::string name, family;
 };
 BackendLook look_on(std::string_view device, std::string_view backend, const Provenance& provenance);
 
-/// The same of the backend of rows, by the device that they ran on.
+/// The look of a backend on the device of its rows.
 BackendLook look_of(std::span<const ResultRow> rows, std::string_view backend, const Provenance& provenance);
 
-/// Does the backend stand for a configuration of the paper with a GPU?
+/// Whether the backend corresponds to a configuration of the paper with a GPU.
 bool is_for_gpus(std::string_view backend, const PaperLegend& legend);
 
-/// The families that look the same in every chart which has no others.
+/// The families of the backends, which fix their looks in charts (Chart::families).
 std::vector<std::string> families_of_backends(const PaperLegend& legend);
 
-/// "Measured on PROCESSOR, N threads"; empty where the provenance does not tell.
+/// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);
 
-/// Charts. `id` begins their ids, so that those of several folders differ. A chart without anything to show
-/// is none. Each says on which processor it was measured, as far as the provenance tells.
+/// Charts. `id` is the prefix of their ids, so that those of several folders differ. Charts without values
+/// are left out. Each names its processor, if known.
 
 /// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
 std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& provenance,
@@ -105,74 +104,71 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& p
 std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                    const std::string& id);
 
-/// The time per step of the first integrator against nodes, for each kind of scene with at least two sizes,
-/// with the slope of every line.
+/// Time per step of the first integrator against nodes, for each kind of scene with at least two sizes, with
+/// the slope of every line.
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
                                   std::span<const PublishedTable> published, const Provenance& provenance,
                                   const std::string& id);
 
-/// For each scene how many times as fast as on the fewest threads the rows with the first integrator are,
-/// against threads.
+/// For each scene, the speed-up of the first integrator over the fewest threads, against threads.
 std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenance& provenance,
                                  const std::string& id);
 
-/// The slopes of all integrators: exponents p of time ~ nodes^p. Without rows where nothing has two sizes.
+/// The slopes of all integrators: exponents p of time ~ nodes^p. Empty if nothing has two sizes.
 Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
                   std::span<const PublishedTable> published);
 
-/// A dot a backend, on the largest scene that has a roofline, with the first integrator, below the roofs that
-/// the timings tell of.
+/// One dot per backend on the largest scene with a roofline, with the first integrator, below the roofs that
+/// follow from the timings.
 std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                     const std::string& id);
 
-/// Total energy against time, with the reference curve of the scene that the curve's name begins with, where
-/// there is one.
+/// Total energy against time, with the reference curve of the scene with whose name the curve's name begins,
+/// if any.
 Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> references, const std::string& id);
 
 /// The charts of a scene of a guide: work and precision (Hairer, Norsett and Wanner, Solving Ordinary
 /// Differential Equations I, section II.10), errors over steps and over force evaluations, and times by size.
-/// A line is an integrator; each of its points is that of the cheapest backend with this step. Diverged
-/// points stand as crosses at the edge, whatever their error.
+/// A line is an integrator; each point is from the cheapest backend with that step. Diverged points are
+/// crosses at the edge, whatever their error.
 std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& legend,
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& id);
 
-/// The values of a chart that has one place, as a table, which shows them better. References, which only help
-/// to read a chart, are left out.
+/// The values of a chart with has_one_place(), as a table; references are left out.
 Table values_of(const Chart& chart);
-/// Whether it is a chart of lines over whole numbers, such as nodes, with all values at one of them.
+/// Whether all values of a chart over whole numbers, such as nodes, are at one of them.
 bool has_one_place(const Chart& chart);
 
-/// Any text (a file's name, a scene's, a message) as HTML shows it, in elements and in quoted attributes. The
-/// one place that escapes: all that stands in a page went through it, or is written in the program.
+/// Escapes any text (a file's name, a scene's, a message) for elements and quoted attributes. All text of a
+/// page passes through it or is written in the program.
 std::string html_text(std::string_view text);
 
-/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that
-/// is not closed, or has a blank behind it, stands for itself.
+/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that is
+/// not closed, or is followed by a blank, is plain text.
 std::string html_prose(std::string_view text);
 
-/// A table in a box of its own, in which it scrolls where the page is narrower. The first column names the
-/// rows.
+/// A table in its own box, which scrolls if the page is narrower. The first column names the rows.
 std::string html_of(const Table& table);
 
-/// Blocks one below the other; the first level of its headings becomes `level`.
+/// The blocks from top to bottom; the first level of headings becomes `level`.
 std::string html_of(const Document& document, int level);
 
-/// Raw data for programs, in an element that no browser runs or shows. `json` is JSON.
+/// JSON for programs, in an element that browsers neither run nor show.
 std::string html_data(std::string_view id, std::string_view json);
 
-/// The bytes in base 64 (RFC 4648), for an address that holds its picture.
+/// The bytes in base 64 (RFC 4648), for data URLs.
 std::string base64(std::string_view bytes);
 
-/// A part of the page under a heading of its own.
+/// A section of the page, with a heading.
 struct PageSection {
   std::string_view id, title;
-  /// Its HTML, which says so where there is nothing to show; empty: the section is left out.
+  /// Its HTML, which says so if there is nothing to show; the section is left out if it is empty.
   std::string (*content)(const ReportInput& input);
-  bool of_rows = true;  ///< it shows what mssim bench has measured: left out where all folders are guides
+  bool of_rows = true;  ///< shows rows of mssim bench; left out if all folders are guides
 };
 
-/// In the order in which they stand.
+/// The sections in their order.
 std::span<const PageSection> report_sections();
 
 }  // namespace mssim

@@ -12,7 +12,7 @@
 namespace mssim {
 namespace {
 
-/// The look of a published configuration is that of the first backend which stands for it.
+/// A published configuration has the look of its first backend.
 Series published_series(std::string_view configuration, const PaperLegend& legend) {
   const auto found = std::ranges::find(paper_configurations, configuration, &PaperConfiguration::name);
   const auto backend =
@@ -55,12 +55,12 @@ constexpr const char* on_the_cpu = " on the CPU";
 
 constexpr std::array<std::string_view, 4> kind_names{"cloths", "bodies", "garments", "other scenes"};
 
-/// The times of a backend with an integrator on scenes of a kind, by size, with what was published of them.
+/// Measured and published times of a backend with an integrator on scenes of a kind, by size.
 struct SizeLines {
   std::vector<const ResultRow*> rows;
-  std::string configuration;  ///< that the backend stands for; empty: none
+  std::string configuration;  ///< of the paper; may be empty
   Series measured, published;
-  /// The exponents of time over nodes; none of fewer than two sizes.
+  /// Exponents of time over nodes; none with fewer than two sizes.
   std::optional<double> measured_slope, published_slope;
 };
 
@@ -95,7 +95,7 @@ Series with_slope(Series series, std::optional<double> slope) {
   return series;
 }
 
-/// Values of the rows, in the order in which they appear, each once.
+/// The different values of a member, in order of appearance.
 std::vector<std::string> distinct(std::span<const ResultRow> rows, std::string ResultRow::*value) {
   std::vector<std::string> values;
   for (const ResultRow& row : rows)
@@ -103,7 +103,7 @@ std::vector<std::string> distinct(std::span<const ResultRow> rows, std::string R
   return values;
 }
 
-/// Where a row stands in a roofline: operations a byte, and 1e9 operations a second.
+/// A row in a roofline: operations per byte, and 1e9 operations per second.
 struct RoofDot {
   double intensity = 0, gigaflops = 0;
   std::optional<double> roof;  ///< at this intensity
@@ -114,7 +114,7 @@ std::optional<RoofDot> dot_of(const ResultRow& row) {
   if (!integrator || is_implicit(*integrator) || !counts(row) || !row.gigabytes_per_second ||
       !(*row.gigabytes_per_second > 0))
     return std::nullopt;
-  // Operations do not depend on how springs lie in memory or how often a backend passes over the state.
+  // Operations depend neither on the layout of springs nor on how often a backend passes over the state.
   const double flops = step_cost(*integrator, {row.nodes, row.springs_unique, 0}).flops;
   RoofDot dot;
   dot.gigaflops = flops / *row.ms_per_step / 1e6;
@@ -123,8 +123,8 @@ std::optional<RoofDot> dot_of(const ResultRow& row) {
   return dot;
 }
 
-/// The roof that dots of as many threads lie under: bandwidth times intensity, up to a ceiling where any dot
-/// shows that there is one. Such dots were compared with the same peaks.
+/// The roof for this number of threads: bandwidth times intensity, up to a ceiling if any dot shows one. All
+/// dots with the same number of threads have the same peaks.
 Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, double to) {
   double bandwidth = 0, ceiling = 0;
   for (const RoofDot& dot : dots) {
@@ -284,7 +284,7 @@ std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenan
           of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
           where_measured(provenance, false),
           {.label = "threads", .logarithmic = true, .ticks_at_values = true}, {"times as fast", true}));
-      charts.back().series.push_back({.name = "as many times as threads", .origin = Origin::reference});
+      charts.back().series.push_back({.name = "linear speed-up", .origin = Origin::reference});
     }
     last = of.row;
     std::vector<Series>& all = charts.back().series;

@@ -12,8 +12,8 @@
 namespace mssim {
 namespace {
 
-/// What `content` makes of each folder and the beginning of its ids, below its name where there are several;
-/// `without` where all of it is empty.
+/// Joins the results of `content`, which takes a folder and a prefix of ids, under the folder's name if there
+/// are several; `without` if all are empty.
 template <class Content>
 std::string of_each_folder(const ReportInput& input, const std::string& without, Content content) {
   std::string text;
@@ -27,8 +27,8 @@ std::string of_each_folder(const ReportInput& input, const std::string& without,
   return text.empty() ? without : text;
 }
 
-/// What made the times of a folder less certain, as mssim saw it when it started to measure; its remedies
-/// come too late. Empty where there was nothing.
+/// The sources of noise that mssim found when it started to measure, without the remedies. Empty if there
+/// were none.
 std::string noise_note(const ReportFolder& folder) {
   std::vector<std::string> noise;
   for (const std::string& sentence : folder.where_from().noise)
@@ -58,7 +58,7 @@ std::string rounds_of(const ReportFolder& folder) {
   return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
-/// The devices as people know them, without their platforms, which the names of PoCL's say.
+/// The names of devices without their platforms; PoCL's include theirs.
 std::vector<std::string> devices_of(const Provenance& provenance) {
   std::vector<std::string> devices;
   for (const std::string& device : provenance.opencl_devices) {
@@ -68,18 +68,18 @@ std::vector<std::string> devices_of(const Provenance& provenance) {
   return devices;
 }
 
-/// What is missing or damaged; empty where nothing is.
+/// Missing or damaged parts; empty if there are none.
 std::string problem_section(const ReportInput& input) {
   std::vector<std::string> problems = input.problems;
   for (const ReportFolder& folder : input.folders)
     problems.insert(problems.end(), folder.problems.begin(), folder.problems.end());
-  // These name files, in which no mark is meant.
+  // Problems name files, whose characters are not marks.
   std::string items;
   for (const std::string& problem : problems) items += "<li>" + html_text(problem) + ".</li>\n";
   return items.empty() ? items : "<ul class=\"problems\">\n" + items + "</ul>\n";
 }
 
-/// What ran in which folder.
+/// Machine and settings of each folder.
 std::string machine_section(const ReportInput& input) {
   Table table;
   for (const ReportFolder& folder : input.folders) {
@@ -98,7 +98,7 @@ std::string machine_section(const ReportInput& input) {
                {"rounds", rounds_of(folder)}});
   }
   for (Column& column : table.columns) column.align = Align::left;
-  return table.rows.empty() ? "<p>No folder says on which machine it was measured.</p>\n" : html_of(table);
+  return table.rows.empty() ? "<p>The machine of the folders is unknown.</p>\n" : html_of(table);
 }
 
 std::string list_of(const Provenance& provenance) {
@@ -121,7 +121,7 @@ std::string list_of(const Provenance& provenance) {
   line("frequency", three_digits(machine.cpu_mhz / 1000) + " GHz");
   line("governor", machine.governor ? Cell(*machine.governor) : Cell());
   line("turbo", machine.turbo ? Cell(*machine.turbo) : Cell());
-  line("several logical CPUs a core (SMT)", machine.smt ? Cell(*machine.smt) : Cell());
+  line("several logical CPUs per core (SMT)", machine.smt ? Cell(*machine.smt) : Cell());
   line("NUMA nodes", machine.numa_nodes > 0 ? Cell(machine.numa_nodes) : Cell());
   line("kernel", machine.kernel);
   line("load average", or_nothing(join(load, ", ")));
@@ -129,18 +129,19 @@ std::string list_of(const Provenance& provenance) {
   line("memory of devices", or_nothing(provenance.device_memory));
   line("TetGen", or_nothing(provenance.tetgen));
   line("hashes of scenes", or_nothing(join(scenes, ", ")));
-  Document page{Paragraph{"Sources of noise that mssim saw when it started:"}, BulletList{provenance.noise}};
-  if (provenance.noise.empty()) page = {Paragraph{"mssim saw no source of noise when it started."}};
+  Document page{Paragraph{"Sources of noise that mssim found when it started:"},
+                BulletList{provenance.noise}};
+  if (provenance.noise.empty()) page = {Paragraph{"mssim found no source of noise when it started."}};
   page.emplace_back(std::move(table));
   return html_of(page, 4);
 }
 
-/// What one needs to judge the numbers and to measure them again.
+/// The data needed to judge the numbers and to repeat the measurement.
 std::string provenance_section(const ReportInput& input) {
   return of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) {
     return folder.provenance ? list_of(*folder.provenance)
-                             : "<p>provenance.json is missing or damaged: where these numbers come from is "
-                               "not known.</p>\n";
+                             : "<p>provenance.json is missing or damaged: the origin of these numbers is "
+                               "unknown.</p>\n";
   });
 }
 
@@ -156,12 +157,12 @@ std::string list_of(const std::vector<Finding>& findings) {
 }
 
 std::string table_of(const std::vector<JudgedClaim>& claims) {
-  if (claims.empty()) return "<p>No row is of a scene of the papers.</p>\n";
+  if (claims.empty()) return "<p>No row has a scene of the papers.</p>\n";
   const auto number = [&](ClaimOutcome outcome) {
     return std::ranges::count(claims, outcome, &JudgedClaim::outcome);
   };
   std::string text = fmt::format(
-      "<p>Of {} of the papers, {} held, {} did not, {} undecided, and {} not testable here.</p>\n",
+      "<p>{} of the papers: {} held, {} not held, {} undecided, {} not testable here.</p>\n",
       pluralize(claims.size(), "claim"), number(ClaimOutcome::held), number(ClaimOutcome::not_held),
       number(ClaimOutcome::undecided), number(ClaimOutcome::not_testable));
   Table table{{{"what the paper says"}, {"where"}, {"published"}, {"measured"}, {"outcome"}}, {}};
@@ -172,8 +173,8 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
   return text + html_of(table);
 }
 
-/// The outcomes of all folders side by side: a line for each claim that one of them decides or leaves
-/// undecided, a column for each folder.
+/// The outcomes of all folders: a line for each claim that any of them decides or leaves undecided, a column
+/// for each folder.
 std::string outcomes_of(const ReportInput& input) {
   Table table{{{"what the paper says"}, {"where"}}, {}};
   std::map<const Claim*, std::vector<Cell>> outcomes;
@@ -204,23 +205,23 @@ std::string outcomes_of(const ReportInput& input) {
     line.resize(table.columns.size());
   }
   std::string text =
-      table.rows.empty() ? "" : html_of(table) + "<p>A dash: not testable with that folder.</p>\n";
+      table.rows.empty() ? "" : html_of(table) + "<p>A dash means: not testable with that folder.</p>\n";
   if (!untested.empty())
-    text += fmt::format("<p>{} can be tested with none of the folders.</p>\n",
+    text += fmt::format("<p>{} cannot be tested with any of the folders.</p>\n",
                         pluralize(untested.size(), table.rows.empty() ? "claim" : "further claim"));
   return text;
 }
 
 std::string verdict_section(const ReportInput& input) {
   const std::string ratios = of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
-    if (folder.rows.empty()) return std::string("<p>There is no row to judge.</p>\n");
+    if (folder.rows.empty()) return std::string("<p>There are no rows to judge.</p>\n");
     return table_of(judge(folder, input)) + list_of(row_findings(folder.rows, folder.where_from()));
   });
   return fmt::format(
-      "<p>What the papers say, and whether it held here. Hong et al. measured on a {}; their Figure 5 shows "
-      "ten threads. A claim <strong>held</strong> if every ratio lies above what it needs with its whole "
-      "interval, and is <strong>not held</strong> if one lies below. Rows that are not verified do not "
-      "count. OpenCL on the processor decides nothing about a GPU.</p>\n{}",
+      "<p>Claims of the papers, and whether they held here. Hong et al. measured on a {}; their Figure 5 "
+      "shows ten threads. A claim <strong>held</strong> if the whole interval of every ratio is above the "
+      "ratio that the claim needs. It is <strong>not held</strong> if the whole interval of one is below. "
+      "Rows that are not verified do not count. OpenCL on the CPU decides nothing about a GPU.</p>\n{}",
       paper_device,
       input.folders.size() < 2
           ? ratios
@@ -228,7 +229,7 @@ std::string verdict_section(const ReportInput& input) {
                 "</details>\n");
 }
 
-/// The rows that can be compared: those that count have samples.
+/// The rows without those that count but have no samples, which cannot be compared.
 std::vector<ResultRow> with_samples(const ReportFolder& folder) {
   std::vector<ResultRow> rows;
   std::ranges::copy_if(folder.rows, std::back_inserter(rows),
@@ -236,13 +237,13 @@ std::vector<ResultRow> with_samples(const ReportFolder& folder) {
   return rows;
 }
 
-/// What changed from the first of two folders to the second, as `mssim compare` says it, or why they cannot
-/// be compared; empty for any other number of folders.
+/// The changes from the first of two folders to the second, as in `mssim compare`, or why they cannot be
+/// compared; empty unless there are two folders.
 std::string changes_section(const ReportInput& input) {
   if (input.folders.size() != 2) return {};
   const ReportFolder &base = input.folders[0], &next = input.folders[1];
   std::string text = "<p>BASE is " + html_text(base.name) + ", NEW is " + html_text(next.name) + ".</p>\n";
-  std::vector<std::string> unlike{"not both folders say where they come from"};
+  std::vector<std::string> unlike{"provenance.json of a folder is missing or damaged"};
   if (base.provenance && next.provenance) unlike = differences(*base.provenance, *next.provenance);
   std::ranges::move(differences(base.rows, next.rows), std::back_inserter(unlike));
   if (!unlike.empty())
@@ -263,13 +264,13 @@ std::string changes_section(const ReportInput& input) {
 
 // Tables
 
-/// The words say it, the sign only helps to see it.
+/// The sign only repeats the word.
 std::string verified_mark(const ResultRow& row) {
   if (counts(row)) return "✓ yes";
   return row.status == "ok" ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
 }
 
-/// Times come second, so that a narrow screen shows them.
+/// Times are the second column, so that a narrow screen shows them.
 Table times_of(const std::vector<const ResultRow*>& rows, const ReportFolder& folder) {
   const std::vector<const ResultRow*> all = pointers_to(folder.rows);
   const Provenance provenance = folder.where_from();
@@ -322,10 +323,10 @@ std::vector<const ResultRow*> headline_rows(RowPointers rows) {
 }
 
 std::string headline_section(const ReportInput& input) {
-  return "<p>The largest scene of each kind; <em>ms per step</em> are medians over the rounds. Intervals "
-         "contain the true median in 95 % of all cases. With fewer than six rounds they are the smallest "
-         "and the largest sample. Speed-ups are over <code>serial</code>: medians of the ratios within each "
-         "round.</p>\n" +
+  return "<p>Rows of the largest scene of each kind. <em>ms per step</em> is the median over the rounds. "
+         "Intervals contain the true median in 95 % of all cases. With fewer than six rounds they are the "
+         "smallest and the largest sample. Speed-ups are over <code>serial</code>: medians of the ratios "
+         "within each round.</p>\n" +
          of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) -> std::string {
            if (folder.rows.empty()) return "<p>There are no rows.</p>\n";
            const std::vector<const ResultRow*> all = pointers_to(folder.rows);
@@ -335,7 +336,7 @@ std::string headline_section(const ReportInput& input) {
          });
 }
 
-/// The tables of the papers, published beside measured.
+/// The tables of the papers, published and measured.
 std::string published_section(const ReportInput& input) {
   return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
     std::string text;
@@ -352,15 +353,15 @@ std::string in_figures(const std::string& figures) {
   return figures.empty() ? figures : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
 }
 
-/// Where nothing else decides how series look, each backend looks the same in every chart, whatever variants
-/// of backends are beside it.
+/// Gives each backend the same look in every chart, whatever the other backends, unless the chart has its own
+/// families.
 std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
   for (Chart& chart : charts)
     if (chart.families.empty()) chart.families = families_of_backends(legend);
   return charts;
 }
 
-/// A chart of one place: with the title, subtitle and notes that it would have when drawn.
+/// A chart with has_one_place() as a table, with its title, subtitle and notes.
 std::string table_of(const Chart& chart, const std::string& notes) {
   const std::string subtitle =
       chart.subtitle.empty() ? "" : fmt::format("<p>{}</p>\n", html_text(chart.subtitle));
@@ -368,7 +369,7 @@ std::string table_of(const Chart& chart, const std::string& notes) {
                      notes.empty() ? "" : fmt::format("<p>{}</p>\n", notes));
 }
 
-/// Charts with their notes, or the sentence why there is none; first those of one place, as tables.
+/// Charts with their notes, or why there is none; tables of charts with one place come first.
 std::string figures_of(const std::vector<Chart>& charts) {
   std::string tables, text;
   for (const Chart& chart : charts) {
@@ -378,7 +379,7 @@ std::string figures_of(const std::vector<Chart>& charts) {
       tables += table_of(chart, said);
       continue;
     }
-    // The chart has its title in it.
+    // The chart contains its title.
     const std::string notes = said.empty() ? "" : "<figcaption>" + said + "</figcaption>";
     text += drawn.svg.empty() ? "<p class=\"problems\">" + html_text(chart.title) +
                                     ": no chart, because there is no value to draw.</p>\n"
@@ -396,9 +397,9 @@ std::string pictures_of(const std::vector<FoundPicture>& pictures) {
 }
 
 std::string speedup_section(const ReportInput& input) {
-  return "<p>Published lines are dashed and have open points; measured ones have intervals. Both axes of "
-         "speed-ups are logarithmic, neither of Figure 6 of Vassilev is. The paper shows its own times as "
-         "curves without numbers.</p>\n" +
+  return "<p>Published lines are dashed and have open points; measured ones have intervals. Charts of "
+         "speed-ups have logarithmic axes, Figure 6 of Vassilev has linear ones. That paper shows its times "
+         "as curves without numbers.</p>\n" +
          of_each_folder(input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           std::vector<Chart> charts;
@@ -434,7 +435,7 @@ std::string scaling_section(const ReportInput& input) {
 
 std::string roofline_section(const ReportInput& input) {
   return "<p>Operations and bytes are the least that a step needs. Roofs are the machine's peaks, measured "
-         "in the same process; other programs that run then lower them.</p>\n" +
+         "in the same process; other programs that run at that time lower them.</p>\n" +
          of_each_folder(input, "<p>No folder has rows with a roofline; garments have none.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           const auto chart = roofline_chart(folder.rows, folder.where_from(), id);
@@ -459,8 +460,8 @@ std::string energies_of(const std::vector<FoundCurve>& curves, const std::vector
 std::string energy_section(const ReportInput& input) {
   const std::string simulated = input.curves.empty()
                                     ? ""
-                                    : "<p>Simulated anew for this page, beside a reference in double "
-                                      "precision with steps of rk4.</p>\n" +
+                                    : "<p>Simulated for this page, with a reference of rk4 in double "
+                                      "precision.</p>\n" +
                                           energies_of(input.curves, input.references, "simulated");
   return simulated +
          of_each_folder(input,
@@ -477,7 +478,7 @@ std::string picture_section(const ReportInput& input) {
   const std::string drawn =
       input.pictures.empty()
           ? ""
-          : "<p>A scene of each kind, simulated anew for this page by <code>openmp</code>.</p>\n" +
+          : "<p>A scene of each kind, simulated for this page by <code>openmp</code>.</p>\n" +
                 pictures_of(input.pictures);
   return drawn +
          of_each_folder(
@@ -490,8 +491,8 @@ std::string picture_section(const ReportInput& input) {
 
 // Guides
 
-/// The page of a guide from a heading of this level to the next one: what comes before the first is a part of
-/// its own, without a heading.
+/// Splits the page of a guide before each heading of this level; the first part is what comes before, without
+/// a heading.
 std::vector<Document> parts_of(const Document& page, int level) {
   std::vector<Document> parts(1);
   for (const auto& block : page) {
@@ -504,7 +505,7 @@ std::vector<Document> parts_of(const Document& page, int level) {
 
 const std::string& heading_of(const Document& part) { return std::get<Heading>(part.front()).text; }
 
-/// Is the part about the scene? Headings go on with its size.
+/// Whether the part is about the scene; headings end with its size.
 bool is_about(const Document& part, const std::string& scene) {
   return heading_of(part) == scene || heading_of(part).starts_with(scene + ":");
 }
@@ -515,7 +516,7 @@ std::string to_unfold(const std::string& summary, const Document& blocks, int le
                               html_of(blocks, level) + "</details>\n";
 }
 
-/// What the page says of a scene in words, the charts, and the page's tables to unfold.
+/// The sentences of the page about a scene, the charts, and the page's tables, folded.
 std::string guide_of_scene(const Document& scene, const std::vector<Chart>& charts, int level) {
   const std::vector<Document> parts = parts_of(scene, 3);
   Document words, methods;
@@ -530,7 +531,7 @@ std::string guide_of_scene(const Document& scene, const std::vector<Chart>& char
 std::string guide_of(const FoundGuide& guide, const Provenance& provenance, const PaperLegend& legend,
                      const std::string& id, int level) {
   std::vector<Document> parts = parts_of(guide.page, 2);
-  // The title is the section's.
+  // The section has its own title.
   std::erase_if(parts.front(), [](const auto& block) { return std::holds_alternative<Heading>(block); });
   std::string text = html_of(parts.front(), level);
   const std::vector<std::string> scenes = guide.scenes();
@@ -552,7 +553,7 @@ std::string guide_of(const FoundGuide& guide, const Provenance& provenance, cons
   return text;
 }
 
-/// Folders of guides, scene by scene. Empty where there is none.
+/// The folders of guides, scene by scene. Empty if there are none.
 std::string guide_section(const ReportInput& input) {
   const int level = input.folders.size() < 2 ? 3 : 4;
   return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string& id) {
@@ -570,7 +571,7 @@ constexpr auto sections = std::to_array<PageSection>({
     {"guide", "Guide", guide_section, false},
     {"machine", "Machine and settings", machine_section, false},
     {"speed-up", "Speed-up", speedup_section},
-    {"published", "Published beside measured", published_section},
+    {"published", "Published and measured", published_section},
     {"scaling", "Scaling", scaling_section},
     {"roofline", "Roofline", roofline_section},
     {"energy", "Energy", energy_section},

@@ -139,7 +139,7 @@ sed -i 's/"cloth\([0-9a-z]*\)": "[0-9a-f]*"/"cloth\1": "0123456789abcdef"/' "$wo
 ends 0 report "$work/next" --out "$work/page.html"
 grep -q 'is not known as it was measured, and is not simulated' "$work/err" || fail "stderr: $(cat "$work/err")"
 has 'is not known as it was measured, and is not simulated'
-has 'No row is of a scene of the papers'
+has 'No row .* scene of the papers'
 
 # A user's own scene is none of the papers', though it has the nodes, the springs and the name of one.
 mkdir "$work/own"
@@ -148,7 +148,7 @@ sed 's/"stiffness_n_per_m": 200/"stiffness_n_per_m": 100/' "$2/scenes/cloth2500.
 ! grep -q 'ms/step.*published' "$work/out" || fail "a scene of the user's has a published time: $(cat "$work/out")"
 [ ! -e "$work/own/out/table1.md" ] || fail "a scene of the user's is in Table 1"
 report "$work/own/out"
-has 'No row is of a scene of the papers'
+has 'No row .* scene of the papers'
 (cd "$work" && "$mssim" bench --scene own/cloth2500.json,cloth4900 --backend serial,openmp --integrator semi-euler --rounds 2 --resume \
   --out own/out >"$work/out")
 grep -q '^,,,nodes,4900$' "$work/own/out/table1.csv" || fail "--resume puts a scene of the user's into Table 1: $(cat "$work/own/out/table1.csv")"
@@ -190,7 +190,7 @@ lacks 'timings.csv: there is no such file'
 for chart in work-precision error-step error-evaluations sizes-explicit; do
   has "<svg id=\"f1-guide-1-$chart\" class=\"chart\" .*role=\"img\""
 done
-has '<figcaption>Crosses at an error of 1 diverged, whatever their error. Points in squares are not compared: their errors are too near'
+has '<figcaption>Crosses at an error of 1 .*Points in squares are not compared'
 has 'No points: xpbd (no time, and no &lt;b&gt;)'
 report "$guide"
 truncate -s -30 "$guide/guide.csv"

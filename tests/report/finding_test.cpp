@@ -262,8 +262,7 @@ TEST(RowFindings, NameRowsThatAreNotVerified) {
   const Provenance provenance = made_up_provenance();
   EXPECT_FALSE(warns(row_findings(rows, provenance), "2 rows have a time, and all are verified"));
   rows[1].verified = false;
-  EXPECT_TRUE(warns(row_findings(rows, provenance),
-                    "1 row is not verified, and counts nowhere: `openmp` on `cloth2500`, semi-euler"));
+  EXPECT_TRUE(warns(row_findings(rows, provenance), ": `openmp` on `cloth2500`, semi-euler."));
   rows[1] = failed_row("openmp", "unavailable: no device");
   EXPECT_FALSE(warns(row_findings(rows, provenance), "1 row has no time"));
   EXPECT_TRUE(row_findings({}, provenance).empty());
@@ -271,13 +270,9 @@ TEST(RowFindings, NameRowsThatAreNotVerified) {
 
 TEST(RowFindings, NameSpeedUpsThatMayBeOne) {
   std::vector<ResultRow> rows{small("serial", 1), small("openmp", 0.5)};
-  EXPECT_FALSE(warns(row_findings(rows, {}),
-                     "Of 1 speed-up over `serial`, all have an interval that does not hold 1"));
+  EXPECT_FALSE(warns(row_findings(rows, {}), "1 speed-up over `serial`: no interval"));
   rows[1].samples_ms = {3, 0.25, 1};
-  EXPECT_FALSE(warns(
-      row_findings(rows, {}),
-      "1 interval holds 1, so that neither is certainly the faster: `openmp` on `cloth2500`, semi-euler "
-      "(0.667 to 2.00)"));
+  EXPECT_FALSE(warns(row_findings(rows, {}), "`openmp` on `cloth2500`, semi-euler (0.667 to 2.00)"));
   rows.erase(rows.begin());
   EXPECT_FALSE(warns(row_findings(rows, {}), "There are no speed-ups"));
 }

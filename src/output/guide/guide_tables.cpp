@@ -11,7 +11,7 @@
 namespace mssim {
 namespace {
 
-/// Small numbers as text with two digits, which three decimals would show as 0.
+/// Shows small numbers with two significant digits, because three decimals would be 0.
 void show_small_numbers(Table& table) {
   for (std::vector<Cell>& row : table.rows)
     for (Cell& cell : row)
@@ -21,7 +21,7 @@ void show_small_numbers(Table& table) {
     if (column.name.ends_with("_s") || column.name.ends_with("_error")) column.align = Align::right;
 }
 
-/// The rows of a scene, without the first column, which names it.
+/// The rows of a scene, without the first column, its name.
 Table of_scene(const Table& all, const std::string& scene) {
   Table table;
   if (all.columns.empty()) return table;
@@ -61,7 +61,7 @@ void add_table(Document& page, const std::string& heading, const std::string& te
 
 Cell worded(const std::string& text) { return text.empty() ? Cell() : Cell(text); }
 
-/// A row a method, a column a frame rate.
+/// A row per method, a column per frame rate.
 Table cloths_at_rates(const SceneGuide& guide) {
   Table table;
   table.columns = {{"integrator"}, {"backend"}, {"dt_s", Align::right}, {"keeps_error"}};
@@ -89,21 +89,22 @@ Table cloths_at_rates(const SceneGuide& guide) {
 void add_cloths(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
   add_table(
       page, "Largest cloths of the family",
-      "In nodes, as squares with springs, masses and spacing of this scene, at frames per second. The step "
-      "is the longest above that keeps the error, or, if none does, that of the cheapest stable point. "
-      "Between two measured sizes the logarithm of the time is taken as linear in that of the nodes.",
+      "Numbers of nodes of square cloths with the springs, masses and spacing of this scene, by frames per "
+      "second. The step is the longest one above that keeps the error or, if none does, that of the "
+      "cheapest stable point. Times between two measured sizes are interpolated on logarithmic axes.",
       cloths_at_rates(guide));
   Table crossovers = of_scene(table_named(tables, "guide-crossovers"), guide.scene);
   std::erase_if(crossovers.rows, [](const std::vector<Cell>& row) {
     return std::holds_alternative<std::monostate>(row.back().value);
   });
-  add_table(page, "Where backends change places",
-            "Nodes from which `other` is the faster one. Of pairs that are not here one is faster at all "
-            "sizes that both have.",
-            std::move(crossovers));
+  add_table(
+      page, "Crossovers of backends",
+      "Number of nodes from which `other` is the faster one. In pairs that are not listed, one backend is "
+      "faster at all sizes that both have.",
+      std::move(crossovers));
 }
 
-/// The limits without what only programs ask for.
+/// The limits, without columns that are only for programs.
 Table limits_table(const SceneGuide& guide) {
   Table table;
   const auto step = [](double seconds) {
@@ -112,7 +113,7 @@ Table limits_table(const SceneGuide& guide) {
   for (const StepLimit& limit : guide.limits) {
     std::string remark = limit.status.empty() ? limit.why : limit.status;
     if (!limit.measured.finished && limit.measured.stable_s > 0)
-      remark = "between these two, time was short" + (remark.empty() ? "" : "; " + remark);
+      remark = "the limit is between these two; time ran out" + (remark.empty() ? "" : "; " + remark);
     table.add({{"integrator", limit.integrator->name},
                {"stable_dt_s", step(limit.measured.stable_s)},
                {"unstable_dt_s", step(limit.measured.unstable_s)},
@@ -125,7 +126,7 @@ Table limits_table(const SceneGuide& guide) {
   return table;
 }
 
-/// A row a method, a column an error; the cheapest at the wished error first.
+/// A row per method, a column per error; sorted by the cost at the requested error.
 Table costs_at_errors(const SceneGuide& guide) {
   const auto errors = errors_around(guide.wish);
   Table table;
@@ -153,13 +154,13 @@ Table costs_at_errors(const SceneGuide& guide) {
 void add_costs(Document& page, const SceneGuide& guide) {
   add_table(
       page, "At equal error",
-      "Seconds that a simulated second takes if the error may be as large as the column says, by a line "
-      "through the logarithms of two points. ‡: the longest step that was compared is more accurate "
-      "than that; no curve goes beyond it.",
+      "Wall seconds per simulated second at the error of the column, interpolated between two points on "
+      "logarithmic axes. ‡: the longest step that was compared is more accurate than that; times are not "
+      "extrapolated.",
       costs_at_errors(guide));
   const std::vector<std::string> sentences = beside_the_paper(guide);
   if (sentences.empty()) return;
-  page.emplace_back(Paragraph{"Beside milliseconds per step, which Hong et al. compare:"});
+  page.emplace_back(Paragraph{"Compared with milliseconds per step, the measure of Hong et al.:"});
   for (const std::string& sentence : sentences) page.emplace_back(Paragraph{sentence});
 }
 
@@ -180,23 +181,23 @@ void add_scene(Document& page, const SceneGuide& guide, const std::vector<Result
     show_small_numbers(summary);
     page.emplace_back(std::move(summary));
     page.emplace_back(Paragraph{join(about_trusted_state(guide.trusted), " ")});
-    add_table(page, "The front",
-              "No other point that was measured is both as fast and as accurate as one of these.",
+    add_table(page, "The front", "No other measured point is both as fast and as accurate as one of these.",
               front_table(guide));
     add_costs(page, guide);
   }
   add_table(
       page, "Largest stable steps",
-      "Measured by real runs whose energy may not grow, beside linear theory with the spectrum of the "
-      "scene at its start and on the way. Gershgorin's bound, which `mssim check` shows, takes all springs "
-      "of a node for parallel and all its neighbours for moving against it, and is on the safe side.",
+      "Measured in runs, in which the energy must not grow. *theory_dt_s* is from linear theory with the "
+      "spectrum of the scene at its start and during the run. *gershgorin_dt_s*, which `mssim check` shows, "
+      "is a safe bound: it assumes that all springs of a node are parallel and all its neighbours move "
+      "against it.",
       limits_table(guide));
   add_cloths(page, guide, tables);
 }
 
 Cell finite(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
 
-/// Nothing where a search found none.
+/// Empty if a search found no value.
 Cell found(double value) { return value > 0 ? Cell(value) : Cell(); }
 
 std::string_view state_of(const WorkPoint& point) {
@@ -210,7 +211,7 @@ bool is_recommended(const SceneGuide& guide, const WorkPoint& point) {
   return best && &point == &guide.points[*best];
 }
 
-/// A point of the method, or where it has none (null) why.
+/// Adds a point of the method or, if it is null, why the method has none.
 void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method, const WorkPoint* point) {
   const auto of_point = [&](const auto& value) { return point ? Cell(std::invoke(value, *point)) : Cell(); };
   table.add({{"scene", guide.scene},
@@ -342,7 +343,7 @@ Table crossovers_table(std::span<const SceneGuide> guides) {
   return table;
 }
 
-/// The longest step that keeps the error, else the most accurate point; null where none counts.
+/// The longest step that keeps the error, else the most accurate point; null if no point counts.
 const WorkPoint* point_to_show(const SceneGuide& guide, const GuidedMethod& method) {
   if (const auto place = point_at_error(guide.points, method, guide.wish.error)) return &guide.points[*place];
   const WorkPoint* nearest = nullptr;
@@ -353,17 +354,17 @@ const WorkPoint* point_to_show(const SceneGuide& guide, const GuidedMethod& meth
   return nearest;
 }
 
-/// Scene by scene: the recommendation, the methods, the trusted state, the front, the largest stable steps
-/// with why they differ from theory, and the largest cloths. `tables`: guide_tables'.
+/// For each scene: the recommendation, the methods, the reference, the front, the largest stable steps with
+/// the reasons for differences from theory, and the largest cloths. `tables`: those of guide_tables().
 Document guide_page(std::span<const SceneGuide> guides, const std::vector<ResultTable>& tables,
                     const Provenance& provenance) {
   Document page{
       Heading{1, "Which integrator, which backend, which step"}, measured_on({}, provenance),
       Paragraph{
-          "*wall_s_per_s* is what a simulated second takes at the measured step, and *at_error_s_per_s* "
-          "what it takes at the wished error. *position_error* is the largest distance "
-          "of a node from where it should be, in mean rest lengths, and *energy_error* that of the "
-          "total energy over what is kinetic and elastic. How each number is found: docs/guide.md."}};
+          "*wall_s_per_s*: wall seconds per simulated second at the measured step; *at_error_s_per_s*: at "
+          "the requested error. *position_error*: largest distance of a node from its reference position, in "
+          "mean rest lengths. *energy_error*: error of the total energy, relative to kinetic plus elastic "
+          "energy. docs/guide.md describes how each number is found."}};
   for (const SceneGuide& guide : guides) add_scene(page, guide, tables);
   return page;
 }
@@ -372,19 +373,20 @@ Document guide_page(std::span<const SceneGuide> guides, const std::vector<Result
 
 std::vector<std::string> about_trusted_state(const TrustedState& trusted) {
   std::vector<std::string> sentences;
-  sentences.push_back("Errors are those " + two_digits(trusted.horizon_s) + " s after the start (" +
+  sentences.push_back("Errors are measured " + two_digits(trusted.horizon_s) + " s after the start (" +
                       trusted.why_there + "; a neighbouring trajectory is then " +
                       two_digits(trusted.parting) + " times as far away as at the start).");
   std::string reference = "The reference is rk4 in double precision with a step of " +
                           two_digits(trusted.dt_s) + " s, whose own error is " +
-                          two_digits(trusted.own_error) + " of a mean rest length";
+                          two_digits(trusted.own_error) + " mean rest lengths";
   if (trusted.confirmed)
     reference += "; another solver (Bulirsch-Stoer) ends " + two_digits(*trusted.confirmed) + " from it";
   else
-    reference += "; there was no time to confirm it by another solver";
+    reference += "; there was no time to confirm it with another solver";
   sentences.push_back(reference + ".");
-  sentences.push_back("Points whose error is below " + two_digits(trusted_margin * trusted.error()) + ", " +
-                      two_digits(trusted_margin) + " times that, are marked and not compared.");
+  sentences.push_back("Points whose error is below " + two_digits(trusted_margin * trusted.error()) + " (" +
+                      two_digits(trusted_margin) +
+                      " times that of the reference) are marked and not compared.");
   return sentences;
 }
 
@@ -398,7 +400,7 @@ Table guide_summary(const SceneGuide& guide) {
   const auto cost_of = [&](const Line& line) {
     return cost_at_error(guide.points, *line.method, guide.wish.error);
   };
-  // Those that keep the error by their cost there, then the others by their error.
+  // First the methods that keep the error, by their cost; then the others, by their error.
   std::ranges::stable_sort(lines, {}, [&](const Line& line) {
     if (line.point == nullptr) return std::pair(2, 0.0);
     const auto cost = cost_of(line);

@@ -25,12 +25,12 @@ Vec3d normal_of(const Triangle& triangle, const std::vector<Vec3d>& points) {
   return size > 0 ? (1 / size) * normal : Vec3d{};
 }
 
-/// Which corners of triangles share a point: [3 triangle + corner], a number of the set of each. Corners at a
-/// node share one where a way leads from one to the other over edges that bend little.
+/// Sets of corners [3 triangle + corner] that share a point: corners at a node that are connected across
+/// edges that bend little.
 DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::vector<Vec3d>& start) {
   const double least_cosine = std::cos(40 * std::numbers::pi / 180);
   DisjointSets corners(3 * triangles.size());
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_at;  // by edge: its first triangle
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_at;  // first triangle of each edge
   const auto corner_at = [&](std::uint32_t triangle, std::uint32_t node) {
     const auto& nodes = triangles[triangle];
     return 3 * triangle + static_cast<std::uint32_t>(std::ranges::find(nodes, node) - nodes.begin());
@@ -47,7 +47,7 @@ DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::v
   return corners;
 }
 
-/// A point for each smooth side of a node.
+/// Makes one point for each smooth side of a node.
 void divide_at_creases(Skin& skin, const std::vector<Vec3d>& start) {
   std::vector<Vec3d> position;
   position.reserve(skin.node.size());
@@ -69,7 +69,7 @@ void divide_at_creases(Skin& skin, const std::vector<Vec3d>& start) {
 
 constexpr Rgb skin_tone{201, 188, 178}, denim{58, 88, 140};
 
-/// Colour of the side that is turned away: paler.
+/// Colour of the back: paler.
 Light inside_of(const Light& colour) {
   constexpr float kept = 0.72F;
   return kept * colour + (1 - kept) * Light{0.55F, 0.55F, 0.55F};
@@ -82,14 +82,14 @@ std::vector<Rgb> part_colours(const NodeShape& shape, const Skin& skin, ColourBy
   std::vector<Rgb> colours;
   for (std::size_t part = 0; part < skin.parts.size(); ++part) {
     const std::size_t object = by_layer ? shape.sheets[part].layer : part;
-    // A single object has a colour that suits it; several are told apart.
+    // A single object looks like denim; several need different colours.
     colours.push_back(
         object == 0 && (skin.parts.size() == 1 || by_layer) ? denim : categories[object % categories.size()]);
   }
   return colours;
 }
 
-/// What all but the most strained fiftieth of the nodes stay below, in either direction.
+/// Bound of the absolute strain of all but the most strained fiftieth of the nodes.
 double usual_most(std::vector<double> strain) {
   for (double& value : strain) value = std::abs(value);
   const auto place = strain.begin() + static_cast<std::ptrdiff_t>(strain.size() * 49 / 50);
@@ -98,7 +98,7 @@ double usual_most(std::vector<double> strain) {
 }
 
 std::string picture_name(std::size_t number) {
-  constexpr std::size_t digits = 6;  // so that listings have them in order
+  constexpr std::size_t digits = 6;  // so that listings are in order
   return fmt::format("frame-{:0{}}.png", number, digits);
 }
 
@@ -168,8 +168,8 @@ void Painter::write_legend(Picture& picture) const {
 }
 
 Shot Painter::shot() const {
-  // A little below what lies on the ground, so that the two do not show through each other.
-  constexpr double gap = 0.003, far = 1.0;  // of the height, or of the width where that is more
+  // The ground is slightly below the lowest point, so that neither shows through the other.
+  constexpr double gap = 0.003, far = 1.0;  // of the largest extent
   const Vec3d size = world_->size();
   const double extent = std::max({size.x, size.y, size.z});
   const bool near_floor = floor_ && *floor_ <= world_->low.y && world_->low.y - *floor_ < far * extent;

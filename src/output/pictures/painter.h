@@ -16,18 +16,18 @@
 
 namespace mssim {
 
-/// The surface that a picture shows; at a crease several points are the same node.
+/// The surface in a picture; at a crease, several points belong to the same node.
 using Skin = NodeSurface;
 
-/// The skin of nodes of that shape that rest at `start`. Points are divided where a surface of bodies bends
-/// by more than 40 degrees there, so that edges are drawn sharp.
+/// The skin of nodes of that shape with rest positions `start`. Points are duplicated where a surface of
+/// bodies bends by more than 40 degrees, so that edges are drawn sharp.
 Skin skin_of(const NodeShape& shape, const std::vector<Vec3d>& start);
 
-/// What the colours of a picture tell apart.
+/// Meaning of the colours of a picture.
 enum class ColourBy : std::uint8_t {
   object,  ///< the cloth, each body, each layer of a garment
   panel,   ///< each panel of a garment; else as `object`
-  strain   ///< how far springs are stretched or compressed, the mean of those of each node
+  strain   ///< mean strain of the springs at each node
 };
 
 struct PictureOptions {
@@ -37,26 +37,25 @@ struct PictureOptions {
   int threads = 1;
 };
 
-/// Draws moments of a trace, all from the same place.
+/// Draws moments of a trace, all from the same direction.
 class Painter {
  public:
   /// `start`: the positions of the trace's first frame. `content` must outlive it.
   Painter(const TraceContent& content, const std::vector<Vec3d>& start, const PictureOptions& options);
 
-  /// Takes care that every picture shows what is at these positions ([nodes] m), too, and that the colours of
-  /// strain reach that far.
+  /// Extends the region of every picture, and the range of strain colours, to these positions ([nodes] m).
   void make_room_for(const std::vector<Vec3d>& positions);
 
   /// The picture of a moment for which there is room.
   Picture picture_of(const std::vector<Vec3d>& positions, bool with_legend = true) const;
 
-  /// Do colours stand for anything that has to be said?
+  /// Whether the colours need a legend.
   bool has_legend() const;
-  /// That alone, as large as a picture.
+  /// Only the legend, as large as a picture.
   Picture legend() const;
 
-  /// How every picture is taken: with all for which there is room, and the shadows of it where ground is
-  /// seen.
+  /// The shot of every picture: all positions for which there is room and, if ground is visible, their
+  /// shadows.
   Shot shot() const;
 
  private:
@@ -70,16 +69,16 @@ class Painter {
   std::vector<Rgb> colour_;  ///< [parts] unless strain is shown
   std::optional<double> floor_;
   std::optional<Box<double>> seen_, world_;
-  std::optional<Box<double>> shadow_;  ///< as seen, were the ground at height 0
-  double most_strain_ = 0;             ///< in either direction, of the colours' ends
+  std::optional<Box<double>> shadow_;  ///< as seen if the ground were at height 0
+  double most_strain_ = 0;             ///< at the ends of the colours, in both directions
 };
 
-/// A folder of pictures of a run, drawn while it runs: frame-000000.png, frame-000001.png and so on. What
-/// comes is not known: where something leaves the picture, the next ones are taken from farther away.
+/// A folder of pictures drawn during a run: frame-000000.png, frame-000001.png and so on. Later positions are
+/// unknown: if something leaves the picture, the following ones are taken from farther away.
 class PictureFolder {
  public:
-  /// Creates the folder and those above it. Throws WriteError, also where the folder has something in it or
-  /// is another writer's.
+  /// Creates the folder and its parents. Throws WriteError, also if the folder is not empty or another writer
+  /// has it.
   PictureFolder(std::filesystem::path folder, TraceContent content, const PictureOptions& options);
   PictureFolder(const PictureFolder&) = delete;
   PictureFolder& operator=(const PictureFolder&) = delete;
@@ -95,7 +94,7 @@ class PictureFolder {
   FolderLock lock_;
   TraceContent content_;
   PictureOptions options_;
-  std::optional<Painter> painter_;  ///< of content_; from the first moment on
+  std::optional<Painter> painter_;  ///< of content_; none before the first moment
   std::size_t pictures_ = 0;
 };
 

@@ -7,7 +7,7 @@
 namespace mssim {
 namespace {
 
-/// The text before and after the last `mark`; the whole text and nothing if there is none.
+/// The text before and after the last `mark`; without a mark, the whole text and an empty one.
 std::pair<std::string_view, std::string_view> split_at_last(std::string_view text, std::string_view mark) {
   const std::size_t place = text.rfind(mark);
   if (place == std::string_view::npos) return {text, ""};
@@ -114,10 +114,10 @@ constexpr std::string_view how_to_read_clusters =
     "Times are medians. *Computing*, *packing* and *waiting*: shares of the time per step, averaged over the "
     "processes; packing is all work on messages except waiting. *Bytes* and *messages*: sent per step by the "
     "process that sends most. *Efficiency*: nodes per second, divided by those of one process and by the "
-    "number of processes. *Against copies*: nodes per second, divided by those of as many processes that "
-    "each step the whole scene (`mpi-copies`); these share the memory too, but send nothing. *Model*: the "
-    "time of computing as fast as these copies plus that of messages, from the latency and bandwidth "
-    "measured before the first step; in brackets, divided by the measured time.";
+    "number of processes. *Against copies*: nodes per second, divided by those of the same number of "
+    "processes that each step the whole scene (`mpi-copies`); these share the memory too, but send nothing. "
+    "*Model*: the time of computing as fast as these copies plus that of messages, from the latency and "
+    "bandwidth measured before the first step; in brackets, divided by the measured time.";
 
 std::optional<double> computing_share(const ResultRow& row) {
   if (!row.waiting_share || !row.packing_share) return std::nullopt;

@@ -91,7 +91,7 @@ constexpr std::string_view how_springs_count = "Springs are counted as in the pa
 /// For tables with such rows.
 constexpr std::string_view how_to_read_each =
     "Lines with `:each` step one body after the other, as the paper does; all others step all bodies "
-    "together, its further work. ";
+    "together, which the paper names as future work. ";
 constexpr std::string_view which_methods =
     "`semi-euler`, `midpoint` and `rk4` are the textbook methods that Eqs. (2) to (4) of the paper name, and "
     "evaluate the forces again in every stage; `midpoint-frozen` and `rk4-frozen`";
@@ -168,7 +168,7 @@ class PaperTable {
     for (const auto& integrator : legend_.integrators) {
       if (!has(integrator.name)) continue;
       const std::string evaluations = pluralize(integrator.force_evaluations, "force evaluation");
-      text.insert(text.end(), {Heading{2, fmt::format("{}: {} a step, beside the published {}",
+      text.insert(text.end(), {Heading{2, fmt::format("{}: {} per step, compared with the published {}",
                                                       integrator.name, evaluations, integrator.paper_name)},
                                times(integrator)});
     }
@@ -264,7 +264,7 @@ class PaperTable {
 };
 
 constexpr std::string_view how_to_read_structure =
-    "Nodes and springs are what the mesh of the scene has, counted from its tetrahedra. The published counts "
+    "Nodes and springs are counted from the tetrahedra of the scene's mesh. The published counts "
     "of springs are three times the unique edges, by inference: all nine can be divided by three, a third of "
     "each fits a tetrahedral mesh of that many nodes, and the packed unit of the paper's Figure 6 holds "
     "three values for each spring. Inner points and surfaces were chosen so that TetGen meets both published "

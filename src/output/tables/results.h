@@ -195,7 +195,7 @@ std::string_view mark_of_ratio(double ratio, double time, double other);
 /// The mark if only ASCII is shown.
 inline constexpr std::string_view ascii_ratio_mark = "(?)";
 
-/// That mark for the row's speed-up, its time and the time of `serial`.
+/// mark_of_ratio() of the row's speed-up, its time and the time of `serial`.
 std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row);
 
 /// The meaning of that mark; empty if no cell has it or, for a text, if it does not occur.

@@ -26,9 +26,9 @@ constexpr std::string_view how_to_read_races =
     "`openmp`, which have vectors and layouts of their own, step the list of springs that `serial` steps, "
     "with the same layout, force and update, and only differ in the accumulation. Times are medians with "
     "their 95 % interval; *ratio* is how many times as fast as `serial` a method is, the median of paired "
-    "samples. *Same bits* says whether a run repeated gives the very same numbers.";
+    "samples. *Same bits*: whether a repeated run gives bitwise identical numbers.";
 
-/// A cell from the legend of the row's method, which must be there.
+/// A cell from the legend of the row's method, which must exist.
 auto of_legend(const std::vector<RaceLegend>& legend, std::string RaceLegend::*what) {
   return [&legend, what](const ResultRow& row) -> Cell {
     return (*std::ranges::find(legend, row.backend, &RaceLegend::method)).*what;
@@ -132,7 +132,7 @@ Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base,
 
 Document page_of(RowPointers rows, const std::string& base, const Provenance& provenance) {
   Document page{
-      Heading{1, "Scaling: cost of a node in ever larger cloths"}, measured_on(rows, provenance),
+      Heading{1, "Scaling: cost per node of increasingly large cloths"}, measured_on(rows, provenance),
       Paragraph{"Nanoseconds per node and step, medians; in brackets relative to the same backend on `" +
                 base + "`. If a line stays at 1, the cost is proportional to the number of nodes."}};
   const std::vector<std::string> scenes = each_of(rows, &ResultRow::scene);
@@ -159,12 +159,12 @@ Document page_of(RowPointers rows, const std::string& base, const Provenance& pr
 constexpr std::string_view yardstick = "openmp";
 
 constexpr std::string_view how_to_read_peers =
-    "The same scene, integrator and time step in other languages and libraries, each written as its own "
-    "documentation would have it, and each run by mssim as a program of its own: verified against the same "
-    "double-precision reference, timed in the same rounds. Times are medians; *times `openmp`* is how many "
-    "times as long as `openmp` a backend takes, the median of the ratios of each round with its 95 % "
-    "interval. *Threads* is how many a backend says it takes, *processors* how many its steps really kept "
-    "busy. *Error* is the largest distance to the reference in mean rest lengths.";
+    "The same scene, integrator and time step in other languages and libraries, each written as its "
+    "documentation recommends, and run by mssim as a separate program. All are verified against the same "
+    "double-precision reference and timed in the same rounds. Times are medians; *times `openmp`* is how "
+    "many times as long as `openmp` a backend takes, the median of the ratios of each round with its 95 % "
+    "interval. *Threads*: the number that a backend reports; *processors*: the number of CPUs that its steps "
+    "kept busy. *Error* is the largest distance to the reference in mean rest lengths.";
 
 /// Time relative to `openmp`, round by round; none if either does not count or they were not measured in the
 /// same rounds.
@@ -255,15 +255,16 @@ Document page_of(RowPointers rows, const Provenance& provenance) {
   add_sentence(page, legend_of_ratios(page));
   add_sentence(page, legend_of_excess(rows, provenance));
   if (BulletList notes = notes_of(rows); !notes.items.empty())
-    page.insert(page.end(), {Heading{2, "What they say of themselves"}, std::move(notes)});
+    page.insert(page.end(), {Heading{2, "Notes of the backends"}, std::move(notes)});
   add_rows_without_a_time(page, rows);
   return page;
 }
 
 constexpr std::string_view how_to_read_threads =
-    "The same steps on more and more threads. Times are medians. *Times as fast*: as the same backend on the "
-    "fewest threads, the median of the ratios of each round with its 95 % interval. *Efficiency*: that over "
-    "how many times as many threads there are. *Processors*: how many the steps really kept busy.";
+    "The same steps on different numbers of threads. Times are medians. *Times as fast*: as the same backend "
+    "on the fewest threads, the median of the ratios of each round with its 95 % interval. *Efficiency*: "
+    "that divided by the ratio of the numbers of threads. *Processors*: the number of CPUs that the steps "
+    "kept busy.";
 
 ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenance& provenance) {
   std::vector<const ResultRow*> all;

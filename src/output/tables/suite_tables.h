@@ -115,8 +115,8 @@ std::vector<PublishedBody> published_bodies(const CsvTable& table);
 struct PaperLegend {
   struct Backend {
     std::string name;
-    std::string configuration;  ///< a name of paper_configurations; empty where it has none
-    bool has_threads = false;   ///< it stands for several threads
+    std::string configuration;  ///< a name of paper_configurations; empty if there is none
+    bool has_threads = false;   ///< whether the configuration has several threads
   };
   struct Integrator {
     std::string name;
@@ -187,7 +187,7 @@ struct ThreadRow {
 };
 
 /// The rows with several numbers of threads, in order. Rows with more threads than the run are left out, such
-/// as `threads-mutex:10` on two processors: their threads share processors, which is no scaling.
+/// as `threads-mutex:10` on two processors: their threads share CPUs, which is no scaling.
 std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenance);
 
 /// Adds the table `threads` of thread_rows after the tables of `maker`: times, speed-ups over the fewest

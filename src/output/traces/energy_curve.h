@@ -43,7 +43,7 @@ class EnergyCurve {
   double last_time_s_ = 0;
 };
 
-/// What is wrong with a trace's file name, with the remedy; none if it is right. It must be NAME.h5 with
+/// The error in a trace's file name, with the remedy; none if it is valid. It must be NAME.h5 with
 /// characters that an XDMF file can name. XDMF readers take the text after ':' as a dataset's path, '|' as
 /// the end of a name, and '\' as a '/' or an escape. Control characters and text that is not UTF-8 are not
 /// valid XML. The folder does not matter.

@@ -245,11 +245,11 @@ void H5mdTrace::create_series(const System& system) {
 void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy,
                             const std::optional<EnergyLosses>& losses) {
   if (state.position.size() != mesh_.nodes || state.velocity.size() != mesh_.nodes)
-    throw std::invalid_argument("a frame's state has another size than the trace's system");
+    throw std::invalid_argument("a frame's state differs in size from the trace's system");
   if (!times_s_.empty() && !(step > last_step_ && time_s > times_s_.back()))
     throw std::invalid_argument("a trace's steps and times must increase");
   if (losses.has_value() != with_losses_)
-    throw std::invalid_argument("a frame has losses where the trace's header says otherwise, or has none");
+    throw std::invalid_argument("a frame must have losses if and only if the trace's header says so");
   guard([&] { append(step, time_s, state, energy, losses.value_or(EnergyLosses{})); });
   last_step_ = step;
   times_s_.push_back(time_s);
@@ -296,7 +296,7 @@ void H5mdTrace::guard(const std::function<void()>& write) {
     if (kept == 0 && !times_s_.empty()) return message + "; the frames written before could not be saved";
     return message + kept_in_part(name(), "frames", kept);
   };
-  prepare_hdf5();  // another thread than the head's may write a frame
+  prepare_hdf5();  // a different thread may write the frames
   try {
     write();
   } catch (const Hdf5Error& error) {

@@ -145,7 +145,7 @@ void require_file(const fs::path& file) {
 }  // namespace
 
 TraceContent read_trace_content(hid_t file) {
-  if (!exists(file, "/h5md")) throw Hdf5ContentError("it is an HDF5 file, but no H5MD trace");
+  if (!exists(file, "/h5md")) throw Hdf5ContentError("it is an HDF5 file, but not an H5MD trace");
   TraceContent content;
   content.shape.kind = read_kind(file);
   read_series(file, content);

@@ -74,18 +74,19 @@ TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
   EXPECT_THAT(text,
               HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads; device Some device; mssim "
                         "0.1.0, commit 0123456789ab with uncommitted changes; 2026-01-31T12:00:00Z."));
-  EXPECT_THAT(text, HasSubstr("## semi-euler: 1 force evaluation a step, beside the published semi-euler\n"
-                              "\n"
-                              "| nodes<br>springs | 2,500<br>29,004 | 350,000<br>4,188,004 |\n"
-                              "|---|---:|---:|\n"
-                              "| CPU only, *published* | 19.475 | 2733.484 |\n"
-                              "| `serial`, **measured** | **0.100** | **1.50** |\n"
-                              "| Multi-thread CPU, *published* | 6.6 (2.95×) | 586.35 (4.66×) |\n"
-                              "| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"
-                              "| GPU, *published* | 1.827 (10.7×) | 115.015 (23.8×) |\n"
-                              "| `opencl`, **measured** | failed | – |\n"
-                              "| GPU + multi-thread CPU, *not published* | – | – |\n"
-                              "| `hybrid` on Some device, **measured** | **0.0500** (2.00×) | – |\n"));
+  EXPECT_THAT(text,
+              HasSubstr("## semi-euler: 1 force evaluation per step, compared with the published semi-euler\n"
+                        "\n"
+                        "| nodes<br>springs | 2,500<br>29,004 | 350,000<br>4,188,004 |\n"
+                        "|---|---:|---:|\n"
+                        "| CPU only, *published* | 19.475 | 2733.484 |\n"
+                        "| `serial`, **measured** | **0.100** | **1.50** |\n"
+                        "| Multi-thread CPU, *published* | 6.6 (2.95×) | 586.35 (4.66×) |\n"
+                        "| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"
+                        "| GPU, *published* | 1.827 (10.7×) | 115.015 (23.8×) |\n"
+                        "| `opencl`, **measured** | failed | – |\n"
+                        "| GPU + multi-thread CPU, *not published* | – | – |\n"
+                        "| `hybrid` on Some device, **measured** | **0.0500** (2.00×) | – |\n"));
   EXPECT_THAT(text,
               HasSubstr("- `opencl`, `semi-euler`: failed: step 3 \\| node 7 is not finite (`cloth2500`)\n"));
   EXPECT_THAT(text, HasSubstr("`rk4-frozen` (`--integrator all`), which the paper does not have"));
@@ -167,11 +168,11 @@ TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
   rows[0].integrator = "rk4-frozen";
   EXPECT_THAT(csv_of(rows), HasSubstr("rk4-frozen,multi-thread-cpu,openmp,published_ms,7.94\n"));
   EXPECT_THAT(page_of(rows),
-              HasSubstr("## rk4-frozen: 1 force evaluation a step, beside the published rk4\n"));
+              HasSubstr("## rk4-frozen: 1 force evaluation per step, compared with the published rk4\n"));
   EXPECT_THAT(page_of(rows), Not(HasSubstr("--integrator all")));
   rows[0].integrator = "rk4";
   const std::string real = page_of(rows);
-  EXPECT_THAT(real, HasSubstr("## rk4: 4 force evaluations a step, beside the published rk4\n"));
+  EXPECT_THAT(real, HasSubstr("## rk4: 4 force evaluations per step, compared with the published rk4\n"));
   EXPECT_THAT(real, HasSubstr("--integrator all"));
 }
 
