@@ -106,17 +106,19 @@ def shown(match):
 
 
 def cell(claim, machine):
-    """The outcome on the machine, and another one in a second folder NAME-... of it."""
-    text, said = "", set()
-    for folder in sorted(glob.glob(f"results/{suite_of(claim)}/{machine}*/")):
-        name = os.path.basename(folder[:-1])
-        found = outcome(claim, name)
-        if found and found["outcome"] not in said:
-            said.add(found["outcome"])
-            remark = name[len(machine) + 1:].replace("-", " ")
-            shown_here = f"{found['outcome']}: {shown(interval(found))}" if not text else found["outcome"]
-            text += (f" ({remark}: {shown_here})" if text else f"{shown_here} ({remark})" if remark else shown_here)
-    return text or "–"
+    """The outcome on the machine; in brackets the other folders of it (NAME-...) with another one."""
+    found = {os.path.basename(folder)[len(machine) + 1:].replace("-", " "): outcome(claim, os.path.basename(folder))
+             for folder in sorted(glob.glob(f"results/{suite_of(claim)}/{machine}*"))}
+    found = {remark: one for remark, one in found.items() if one}
+    if not found:
+        return "–"
+    first, main = next(iter(found.items()))
+    others = {}
+    for remark, one in found.items():
+        if one["outcome"] != main["outcome"]:
+            others.setdefault(one["outcome"], []).append(remark)
+    return f"{main['outcome']}: {shown(interval(main))}" + (f" ({first})" if first else "") + "".join(
+        f" ({', '.join(remarks)}: {name})" for name, remarks in others.items())
 
 
 def speedups(table, machine, backend):
