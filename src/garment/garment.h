@@ -13,59 +13,59 @@
 
 namespace mssim {
 
-/// How over-elongated springs are kept from growing (Vassilev's loop 5).
+/// The correction of over-elongated springs (Vassilev's loop 5).
 enum class VelocityCorrection : std::uint8_t {
   none,
-  /// As published: what lengthens such a spring is taken from the velocities of its ends.
+  /// As published: the part of its ends' velocities that lengthens such a spring is removed.
   published,
-  /// Such a spring has to shorten, too: its ends may part at -rate * excess / dt at most.
+  /// Such a spring must also shorten: its ends approach at rate * excess / dt or faster.
   bounded
 };
 
-/// What dressing takes beside springs: everything about one step that is no property of the cloth. The step
-/// is Vassilev's Algorithm 1; ARCHITECTURE.md says where it goes beyond what was published.
+/// Parameters of a dressing step that are not properties of the cloth. The step is Vassilev's Algorithm 1;
+/// ARCHITECTURE.md lists what mssim adds to the published one.
 struct DressingSettings {
-  /// While the seams close there is no friction and, by default, no gravity: the panels would fall before
-  /// they hold.
-  double seam_force = 4;               ///< N per metre of seam at first
-  double seam_force_doubling_s = 0.5;  ///< the force grows by its first value in this time
-  double seaming_damping = 8;          ///< 1/s, per mass; draping takes System::viscous_damping
-  double seaming_gravity = 0;          ///< share of gravity that acts meanwhile
-  double longest_seaming_s = 1;        ///< what is open then is sewn as it is
-  /// Meanwhile the upper edge of every panel keeps its height, as hands hold the waistband of trousers.
+  /// While the seams close, there is no friction and, by default, no gravity: the panels would fall before
+  /// the seams hold them.
+  double seam_force = 4;               ///< N per metre of seam, initially
+  double seam_force_doubling_s = 0.5;  ///< time in which the force grows by its initial value
+  double seaming_damping = 8;          ///< 1/s, per mass; draping uses System::viscous_damping
+  double seaming_gravity = 0;          ///< fraction of gravity that acts while the seams close
+  double longest_seaming_s = 1;        ///< seams that are open then are sewn as they are
+  /// While the seams close, the upper edge of every panel keeps its height, as if hands held the waistband.
   bool edge_held = false;
-  /// A joint nearer than this is sewn: from then on its gap closes by an inelastic constraint on velocities.
+  /// A joint with a smaller gap is sewn: from then on, an inelastic constraint on velocities closes its gap.
   double sewn_gap = 0.01;      ///< m
-  double closing_share = 0.2;  ///< of a sewn joint's gap that a step closes at most
-  double closing_speed = 0.5;  ///< m/s, at most
+  double closing_share = 0.2;  ///< largest fraction of a sewn joint's gap that a step closes
+  double closing_speed = 0.5;  ///< m/s, the largest
   double friction = 0.5;       ///< Coulomb's coefficient on the body, while draping
-  double push_speed = 1;       ///< m/s at which a point inside the body is moved out, at most
+  double push_speed = 1;       ///< m/s, the largest at which a point inside the body is moved out
 
   VelocityCorrection correction = VelocityCorrection::bounded;
   double correction_threshold = 0.05;   ///< elongation over rest length
   double correction_rate = 0.5;         ///< see VelocityCorrection::bounded
-  std::uint32_t correction_sweeps = 2;  ///< over all springs, forwards and backwards by turns
+  std::uint32_t correction_sweeps = 2;  ///< over all springs, alternately forwards and backwards
 };
 
-/// How layers of cloth keep apart (garment/layers/cloth_cloth.h).
+/// Settings of collisions between layers of cloth (garment/layers/cloth_cloth.h).
 struct ClothClothSettings {
-  double thickness = 0.003;  ///< m, the distance that layers keep; more than what they approach in a step
+  double thickness = 0.003;  ///< m, distance that layers keep; more than they approach per step
   double friction = 0.3;     ///< Coulomb's coefficient, not negative
-  /// m/s, not negative: layers that are too near, or have crossed, move apart at most so fast. The move is
-  /// one of positions, and leaves no speed behind.
+  /// m/s, not negative: largest speed at which layers that are too near, or have crossed, are moved apart.
+  /// Only positions change, not velocities.
   double push_speed = 1;
   std::uint32_t sweeps =
-      2;  ///< over all contacts in a step, at least 1: more follow stacks of contacts farther
+      2;  ///< over all contacts per step, at least 1; more propagate farther through stacks of contacts
 };
 
-/// A pattern piece as a grid: rows x columns nodes, row-major, row 0 at its lower edge, column 0 at its left
-/// one as the pattern is drawn, joined by the 12-neighbour stencil (grid_stencil). It is drawn as it is seen
-/// from outside: (direction of the columns) x (direction of the rows) points away from the body.
+/// A pattern piece as a grid of rows x columns nodes, row-major, joined by the 12-neighbour stencil
+/// (grid_stencil). In the drawn pattern, row 0 is its lower edge and column 0 its left edge. It is drawn as
+/// seen from outside: (direction of the columns) x (direction of the rows) points away from the body.
 struct GarmentPanel {
   std::string name;
   std::uint32_t rows = 0;
   std::uint32_t columns = 0;
-  std::uint32_t first_node = 0;  ///< of its rows * columns consecutive ones
+  std::uint32_t first_node = 0;  ///< of rows * columns consecutive nodes
   /// Panels of different layers may touch each other; 0 is the innermost.
   std::uint32_t layer = 0;
 
@@ -75,42 +75,42 @@ struct GarmentPanel {
   }
 };
 
-/// What a seam is made of: a node and the point of another panel's boundary that it is sewn to, either a node
-/// or a point on the edge between two (Vassilev, "Cloth simulation").
+/// An element of a seam: a node, and the point of another panel's boundary to which it is sewn. That point is
+/// a node or lies on the edge between two nodes (Vassilev, "Cloth simulation").
 struct Joint {
   std::uint32_t node = 0;
   std::uint32_t edge_first = 0;
-  std::uint32_t edge_second = 0;  ///< the same as edge_first where it is a node
-  double edge_share = 0;          ///< of the way from first to second, 0 to 1; 0 where it is a node
-  double length = 0;              ///< m, the share of the seam that it stands for
+  std::uint32_t edge_second = 0;  ///< equal to edge_first if the point is a node
+  double edge_share = 0;          ///< position on the edge, from 0 (first) to 1 (second); 0 for a node
+  double length = 0;              ///< m, of the seam that the joint represents
   double strength = 1;            ///< factor of the seam's force
   std::uint32_t seam = 0;         ///< index into Garment::seams
 };
 
-/// Nodes whose distance from the body belongs to the fit, where they hang between two heights.
+/// Nodes whose distance from the body is part of the fit if they hang between two heights.
 struct CloseCloth {
   std::vector<std::uint32_t> nodes;
-  double lowest = 0, highest = 0;  ///< m, y, both included
+  double lowest = 0, highest = 0;  ///< m, y, inclusive
 };
 
-/// A garment: how its panels lie in the list of nodes, what joins them, and how it is dressed.
+/// A garment: its panels as ranges of nodes, the joints between them, and the settings of its dressing.
 struct Garment {
   std::vector<GarmentPanel> panels;
   std::vector<std::string> seams;  ///< names
   std::vector<Joint> joints;
-  std::vector<Vec3d> flat;  ///< [nodes] m, z = 0: in the pattern, where y is the height at which it is worn
+  std::vector<Vec3d> flat;  ///< [nodes] m, z = 0: positions in the pattern; y is the height when worn
   DressingSettings dressing;
-  /// [layers] The body as the panels of each layer meet it; layers beyond the last one meet it as that does.
-  /// Empty: nothing to dress.
+  /// [layers] Maps of the body that the panels of each layer collide with; layers beyond the last use the
+  /// last. Empty: there is no body.
   std::vector<std::shared_ptr<const BodyMaps>> body_maps;
-  CloseCloth close;  ///< to the body; no nodes: anywhere else it may hang as it likes
-  std::optional<ClothClothSettings> touching;  ///< none: layers go through each other
+  CloseCloth close;                            ///< to the body; no nodes: the fit measures no such distance
+  std::optional<ClothClothSettings> touching;  ///< none: layers pass through each other
 
   /// The panel that a node belongs to.
   const GarmentPanel& panel_of(std::uint32_t node) const {
     return *(std::ranges::upper_bound(panels, node, {}, &GarmentPanel::first_node) - 1);
   }
-  /// The body as a panel meets it, or nullptr where there is none.
+  /// Maps of the body for a panel, or nullptr if there are none.
   const BodyMaps* body_met_by(const GarmentPanel& panel) const {
     if (body_maps.empty()) return nullptr;
     return body_maps[std::min<std::size_t>(panel.layer, body_maps.size() - 1)].get();

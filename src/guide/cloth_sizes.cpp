@@ -7,13 +7,13 @@
 namespace mssim {
 namespace {
 
-/// Wall time of a frame over the time that there is for it.
+/// Wall time of a frame over the duration of a frame.
 double share_of_frame(const SizeCurve& curve, const SizeCurve::Sample& sample, double frames_per_second) {
   return steps_a_frame(curve.dt_s, frames_per_second) * sample.seconds_a_step * frames_per_second;
 }
 
-/// Does the sample of this number or a later one hold the slowest frame rate? One that does not may have met
-/// another program.
+/// Whether any sample from this number on keeps the lowest frame rate. One that does not may have been slowed
+/// by another program.
 bool holds_any(const SizeCurve& curve, std::size_t first) {
   return std::any_of(curve.samples.begin() + static_cast<std::ptrdiff_t>(first), curve.samples.end(),
                      [&](const SizeCurve::Sample& sample) {
@@ -21,22 +21,22 @@ bool holds_any(const SizeCurve& curve, std::size_t first) {
                      });
 }
 
-/// Where the line through (a, log y_a) and (b, log y_b) over the logarithm of x is at y = 1.
+/// The x at which the line through both points, on logarithmic axes, has y = 1.
 double where_one(double x_a, double y_a, double x_b, double y_b) {
   const double t = std::log(y_a) / (std::log(y_a) - std::log(y_b));
   return x_a * std::pow(x_b / x_a, t);
 }
 
-/// A sample of this cloth; none where the backend does not run, and curve.status says why.
+/// A sample of this cloth; none if the backend does not run, and curve.status gives the reason.
 std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& cloth,
                                            ExecutionOptions execution) {
   constexpr double enough_s = 0.02;
   constexpr int most_steps = 200;
   execution.scene_file = cloth.file;
-  // As many steps as a frame has, so that solvers meet what they meet there.
+  // As many steps as in a frame, so that solvers have the same work as there.
   const int steps = std::min(most_steps, steps_a_frame(curve.dt_s, frame_rates.front()));
   SizeCurve::Sample sample{cloth.system.nodes(), 0};
-  std::vector<LateProgram> late;  // whose curve ends here
+  std::vector<LateProgram> late;  // unused: the curve ends in any case
   const auto measure = [&] {
     const auto backend = make_backend(*curve.backend, cloth.system, *curve.integrator, curve.dt_s, execution);
     sample.seconds_a_step = time_steps(*backend, cloth.system, steps, enough_s).seconds;
@@ -48,7 +48,7 @@ std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& 
 }  // namespace
 
 int steps_a_frame(double dt_s, double frames_per_second) {
-  // A step that fits but for its last digits fits.
+  // A step that is too long only by rounding fits.
   return std::max(1, static_cast<int>(std::ceil(1 / (frames_per_second * dt_s) - 1e-9)));
 }
 

@@ -13,22 +13,23 @@
 namespace mssim {
 namespace {
 
-/// Shares of the wall time. A part that ends early leaves its time to the next, and one that takes longer
-/// takes none of theirs: on a busy machine the whole then takes longer.
+/// Fractions of the wall time. A part that ends early leaves its time to the next. One that takes longer does
+/// not shorten the others: on a busy machine the whole guide takes longer.
 constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.45, share_of_points = 0.3,
                  share_of_longest_steps = 0.05, share_of_sizes = 0.2, share_of_exact_steps = 0.1;
 
-/// How much of a guide's time is over.
+/// The clock of a guide.
 class GuideClock {
  public:
   explicit GuideClock(double seconds) : seconds_(seconds) {}
   double spent() const { return watch_.seconds() - forgiven_; }
-  /// What was lost in waiting for programs is not taken from the others.
+  /// Does not count time lost in waiting for these programs.
   void forgive(const std::vector<LateProgram>& programs) {
     for (const LateProgram& program : programs) forgiven_ += program.seconds;
   }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
-  /// Seconds after the guide's start at which a part ends that begins now: it leaves `later` to what follows.
+  /// End of a part that starts now, in seconds of this clock, with the fraction `later` left for the
+  /// following parts.
   double end_of_part(double share, double later) const {
     return std::max(spent() + share * seconds_, (1 - later) * seconds_);
   }
@@ -41,7 +42,7 @@ class GuideClock {
 void find_trusted_state(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch) {
   const double limit =
       step_theory(*find_integrator("rk4"), *request.system, guide.at_start, guide.at_start).at_start_s;
-  // A third of the stability limit of rk4 by theory: well within its order.
+  // A third of the stability limit of rk4 by theory: there, the order of its error is 4.
   const double first_dt_s = std::isfinite(limit) && limit > 0 ? limit / 3 : request.longest_horizon_s / 100;
   guide.trusted = trusted_state(*request.system, {.longest_s = request.longest_horizon_s,
                                                   .first_dt_s = first_dt_s,
@@ -50,7 +51,7 @@ void find_trusted_state(SceneGuide& guide, const GuideRequest& request, const Gu
 }
 
 void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch, GuideClock& clock) {
-  constexpr double patience = 1.5;  // shares that an integrator may take until it has a stable step
+  constexpr double patience = 1.5;  // multiple of its time that an integrator may take to find a stable step
   LimitRequest limits{.system = request.system,
                       .backends = request.backends,
                       .execution = request.execution,
@@ -79,8 +80,8 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
   }
 }
 
-/// Measures the longest steps with which the two cheapest methods should keep the error. What they turn out
-/// to be off by says more of the curves, and may change which two these are.
+/// Measures the longest steps with which the two cheapest methods should keep the error. Their errors refine
+/// the curves, which may change which methods are the cheapest.
 void measure_longest_steps(SceneGuide& guide, std::span<WorkCurve> curves, const GuideWatch& watch,
                            GuideClock& clock, double end) {
   constexpr int most = 10;
@@ -105,8 +106,8 @@ void measure_longest_steps(SceneGuide& guide, std::span<WorkCurve> curves, const
   }
 }
 
-/// The point that takes the least time goes first: fast methods reach the wished error whatever the slow ones
-/// take, and all curves have begun before one goes on.
+/// Measures the point that takes the least time first: so slow methods do not keep fast ones from reaching
+/// the requested error, and every curve starts before one continues.
 void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
                     GuideClock& clock) {
   const double later = request.make_cloth ? share_of_sizes : 0;
@@ -157,7 +158,7 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
   guide.seconds_on_points = clock.spent() - begin;
   const double end_of_steps = clock.end_of_part(share_of_longest_steps, later + share_of_exact_steps);
   measure_longest_steps(guide, curves, watch, clock, end_of_steps);
-  // A step takes far less than a point, and says what the method would have cost.
+  // A step takes far less time than a point, and shows what the method would have cost.
   for (WorkCurve& curve : curves) {
     GuidedMethod& method = guide.methods[static_cast<std::size_t>(&curve - curves.data())];
     if (!method.next || curve.is_timed() || is_implicit(*method.integrator)) continue;
@@ -207,13 +208,13 @@ double rounded_up(double seconds) {
 }  // namespace
 
 double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed) {
-  constexpr double steps_of_a_limit = 80;  // eight runs of ten steps, the least that a search needs
+  constexpr double steps_of_a_limit = 80;  // eight runs of ten steps, the minimum for a search
   const bool asks_reference =
       !guide.trusted.failure.empty() ||
       std::ranges::any_of(missed, [](const GuidedMethod* method) { return method->lack != Lack::time; });
   double needed = 2 * guide.seconds;
   if (asks_reference) needed = std::max(needed, guide.trusted.short_of_s / share_of_trust);
-  // The points of a curve take twice as long each time.
+  // Each point of a curve takes twice as long as the one before.
   double longest = 0;
   for (const GuidedMethod* method : missed) {
     if (method->next) {

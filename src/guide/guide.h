@@ -18,77 +18,76 @@
 
 namespace mssim {
 
-/// Whole steps a frame that are no longer than dt_s.
+/// Smallest number of equal steps per frame that are no longer than dt_s.
 int steps_a_frame(double dt_s, double frames_per_second);
 
-/// Frame rates that cloths are asked for, a second.
+/// Frame rates for which the largest cloths are determined, 1/s.
 inline constexpr std::array<double, 3> frame_rates{30, 60, 120};
 
-/// What a method's step costs on cloths of one family, and the largest that it holds a frame rate with.
+/// Cost per step of a method on cloths of one family.
 struct SizeCurve {
   const Integrator* integrator = nullptr;
   const BackendInfo* backend = nullptr;
-  double dt_s = 0;  ///< the step that stability and, where one keeps it, the error ask for
-  bool keeps_error =
-      true;  ///< else no step that was measured is accurate enough, and this one is only stable
+  double dt_s = 0;          ///< a step that is stable and, if possible, keeps the error
+  bool keeps_error = true;  ///< else no measured step is accurate enough, and this one is only stable
   struct Sample {
     std::uint64_t nodes = 0;
     double seconds_a_step = 0;
   };
   std::vector<Sample> samples;  ///< by nodes
-  std::string status;           ///< why there is none, or no larger one; or empty
+  std::string status;           ///< why there are no samples, or no larger ones; or empty
 
   /// The largest cloth for a frame rate.
   struct Largest {
-    double nodes = 0;       ///< between two samples by a line through their logarithms; 0: the smallest fails
-    bool at_least = false;  ///< the largest sample still holds it
+    double nodes = 0;       ///< interpolated on logarithmic axes; 0: the smallest sample is too slow
+    bool at_least = false;  ///< the largest sample still keeps the frame rate
   };
   /// None without samples.
   std::optional<Largest> largest(double frames_per_second) const;
 };
 
-/// At how many nodes two backends with the same integrator take the same time a step, by lines through the
-/// logarithms of the samples that both have; none where one is faster at all of these.
+/// The number of nodes at which two backends with the same integrator take the same time per step,
+/// interpolated on logarithmic axes between samples that both have; none if one is always faster.
 std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b);
 
-/// The number of nodes along a side of the cloths that are measured: each but the last has
-/// four times the nodes of the one before.
+/// The number of nodes along a side of the measured cloths: each but the last has four times the nodes of the
+/// one before.
 inline constexpr std::array<std::uint32_t, 7> cloth_sides{16, 32, 64, 128, 256, 512, 724};
 
-/// A cloth of a family, and the file of its scene, from which processes build it for themselves.
+/// A cloth of a family, and the file of its scene, from which other processes build it.
 struct FamilyCloth {
   System system;
   std::filesystem::path file = {};
 };
 
-/// Makes a square cloth of the family, with so many nodes along a side. The file stays while the maker does.
+/// Makes a square cloth of the family with `side` nodes along a side. The file exists as long as the maker.
 using ClothMaker = std::function<FamilyCloth(std::uint32_t side)>;
 
-/// Times every curve's method on ever larger cloths, each until two in a row do not hold the slowest frame
-/// rate.
-/// `go_on` is asked before every sample, with the share that is done; curves that it ends say so.
+/// Times every curve's method on cloths of increasing size, until two consecutive ones do not keep the lowest
+/// frame rate. `go_on` is called before every sample with the fraction done; if it returns false, the curve
+/// ends and its status gives the reason.
 void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const ExecutionOptions& execution,
                    const std::function<bool(const std::string& activity, double done)>& go_on);
 
-/// What a user can bear.
+/// The user's requirements.
 struct Wish {
   double frames_per_second = 60;
   double error = 1e-3;  ///< of positions at the horizon, in mean rest lengths
 };
 
-/// What to take, as places in the points that it was chosen from.
+/// The recommended method, as indices into the points.
 struct Recommendation {
-  std::optional<std::size_t> best;  ///< of the cheapest method at the wished error: its point_at_error
-  /// That of the cheapest method with another integrator, else on another backend.
+  std::optional<std::size_t> best;  ///< point_at_error of the cheapest method at the requested error
+  /// point_at_error of the cheapest method with another integrator, else on another backend.
   std::optional<std::size_t> runner_up;
-  std::optional<std::size_t> nearest;  ///< the most accurate, where none is accurate enough
-  /// Wall time, s, with which the guide of the scene would have recommended something; none: it has the time
-  /// that it needs, or was stopped. With it, none of the above is set.
+  std::optional<std::size_t> nearest;  ///< the most accurate point, if none is accurate enough
+  /// Wall time, s, with which the guide would have recommended a method; none: the time sufficed, or the
+  /// guide was stopped. If set, none of the above is.
   std::optional<double> needed_s;
-  std::vector<std::string> sentences;  ///< three, or one where nothing is recommended, with full stops
+  std::vector<std::string> sentences;  ///< up to three, with full stops; one if nothing is recommended
 };
 
-/// What a scene's guide is asked for. All that it points to must outlive the guide.
+/// A request for the guide of a scene. All that it points to must outlive the guide.
 struct GuideRequest {
   std::string scene;
   const System* system = nullptr;
@@ -96,91 +95,95 @@ struct GuideRequest {
   std::vector<const Integrator*> integrators;
   ExecutionOptions execution;
   Wish wish;
-  double seconds = 120;            ///< wall time that it may take, about
-  double longest_horizon_s = 0.1;  ///< simulated time after which errors are measured, at most
+  double seconds = 120;            ///< approximate wall time
+  double longest_horizon_s = 0.1;  ///< longest simulated time after which errors are measured
   ClothMaker make_cloth;           ///< of the scene's family; none: no sizes are measured
 };
 
-/// What it tells and asks on the way.
+/// Callbacks of a guide.
 struct GuideWatch {
   std::function<void(const std::string& activity, double done)> progress = [](const std::string&, double) {};
-  std::function<bool()> stop = [] { return false; };  ///< ends the guide with what it has
+  std::function<bool()> stop = [] { return false; };  ///< ends the guide with its results so far
 };
 
-/// Everything that was measured of a scene, and what follows.
+/// All measurements of a scene, and the recommendation.
 struct SceneGuide {
   std::string scene;
-  double seconds = 0;            ///< wall time that it was given
-  double seconds_on_points = 0;  ///< wall time that its points took
-  bool stopped = false;          ///< before it had all that it had time for
+  double seconds = 0;            ///< wall time of the request
+  double seconds_on_points = 0;  ///< wall time of its points
+  bool stopped = false;          ///< ended by GuideWatch::stop
   std::uint64_t nodes = 0, springs = 0;
   Wish wish;
   Spectrum at_start, on_the_way;
-  TrustedState trusted;  ///< where it has a failure, there are no points
+  TrustedState trusted;  ///< if it failed, there are no points
   std::vector<StepLimit> limits;
   std::vector<GuidedMethod> methods;
-  std::vector<WorkPoint> points;  ///< by method, from coarse to fine, the front marked
+  std::vector<WorkPoint> points;  ///< by method, from coarse to fine, with the front marked
   std::vector<SizeCurve> sizes;
   Recommendation recommendation;
 };
 
-/// Measures a scene, which is no garment: the trusted state, the largest stable steps, the work-precision
-/// curves from coarse to fine by turns, the longest steps of the two cheapest methods that keep the error,
-/// and the sizes of cloths. What the time does not suffice for is left out, and the method's status says so.
+/// Measures a scene other than a garment: the trusted state, the largest stable steps, the work-precision
+/// curves from coarse to fine, interleaved, the longest steps of the two cheapest methods that keep the
+/// error, and the sizes of cloths. Omits measurements for which the time does not suffice; the method's
+/// status gives that reason.
 SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch);
 
-/// What a method takes where its error may be this large.
+/// Cost of a method at a given error.
 struct CostAtError {
   double seconds_a_second = 0;  ///< wall time of a simulated second
   double dt_s = 0;              ///< the longest step
-  /// They are those of the coarsest point that counts, which is more accurate than asked: a longer step was
-  /// not stable, or not tried.
+  /// Both are of the coarsest point that counts, which is more accurate than requested: a longer step was
+  /// unstable, or not tried.
   bool at_longest_step = false;
 };
 
-/// Where the method's curve, from long steps to short ones, first comes to the error. Between two points the
-/// logarithms of the cost and of the step are taken as linear in that of the error; none where no point is
-/// accurate enough. Points that do not count are left out.
+/// The cost at which the method's curve, from long to short steps, first reaches the error. Cost and step are
+/// interpolated between two points on logarithmic axes. None if no point is accurate enough. Ignores points
+/// that do not count.
 std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
                                          double error);
 
-/// The place of the method's longest step that was measured, counts and keeps the error.
+/// The index of the method's measured point with the longest step that counts and keeps the error.
 std::optional<std::size_t> point_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
                                           double error);
 
-/// In how many steps over the horizon the method should keep the wished error, where that is with a step
-/// that is longer than its point_at_error by more than step_resolution: as its curve says, or where that is
-/// accurate enough with the longest step, as long a step as is stable. None where no point keeps the error.
+/// The number of steps over the horizon with which the method should keep the requested error, if their
+/// length exceeds that of its point_at_error by more than step_resolution. It follows from the curve, or is
+/// that of the largest usable step if the curve is accurate enough at its longest step. None if no point
+/// keeps the error.
 std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& method);
 
-/// Explicit methods that could be the cheapest at the wished error, if there had been time for their curves
-/// to reach it. The step that such a method needs is taken from its integrator's finest point that counts, on
-/// any backend, and its order; it is no longer than the longest usable one. With it and the measured time per
-/// step the method is cheaper than all that were measured. Where no step or no time is known, it could be;
-/// where its integrator came to the end of a curve short of the error, on another backend, it could not.
-/// Implicit methods, whose steps have no cost that is known before, are missed where there are no such
-/// explicit ones and no point counts.
+/// Explicit methods that could be the cheapest at the requested error, but whose curves had no time to reach
+/// it. The step that such a method needs follows from its integrator's finest point that counts, on any
+/// backend, and its order; it is at most the largest usable step. With that step and the measured time per
+/// step, the method is cheaper than all measured ones. A method also counts if its step or time is unknown,
+/// but not if its integrator's curve on another backend is complete and does not reach the error. Implicit
+/// methods, whose cost per step is not known in advance, count only if there are no such explicit methods and
+/// no point counts.
 std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide);
 
-/// Wall time, s, with which the curves of these methods would have reached the wished error, and those of the
-/// others with points that take no longer: rounded up to two digits, twice what there was at least.
+/// Wall time, s, with which the curves of these methods would have reached the requested error, with the
+/// points of other methods that take no longer. Rounded up to two digits, and at least twice the time of the
+/// request.
 double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed);
 
-/// The cheapest method at the wished error, with the longest step that was measured and keeps it; how it
-/// stands to real time; and when the runner-up would be cheaper. Nothing where missed_methods() says so.
+/// Recommends the cheapest method at the requested error, with the longest measured step that keeps it, its
+/// speed relative to real time, and the errors at which the runner-up is cheaper. Recommends nothing if there
+/// are missed_methods().
 Recommendation recommend(const SceneGuide& guide);
 
-/// How many methods were measured, and which were not, or not to the wished error, and why: sentences with
-/// their full stops.
+/// Sentences with full stops: the number of measured methods, those not measured or not down to the requested
+/// error, and the reasons.
 std::vector<std::string> what_was_measured(const SceneGuide& guide);
 
-/// Errors at which costs are shown, from large to small: the wished one and three around it.
+/// Errors at which costs are shown, from large to small: the requested one and three around it.
 std::array<double, 4> errors_around(const Wish& wish);
 
-/// What Hong et al. say of integrators by milliseconds a step, beside what was measured at the wished error:
-/// sentences with their full stops. For each backend the order of semi-euler, midpoint and rk4; and what
-/// becomes of explicit Euler, which they leave out because it "can be readily blow-up". Empty where none of
-/// it was measured.
+/// Compares Hong et al.'s ranking of integrators by milliseconds per step with the costs at the requested
+/// error: sentences with full stops. For each backend, these rank semi-euler, midpoint and rk4; the last is
+/// about explicit Euler, which they omit because it "can be readily blow-up". Empty if none of it was
+/// measured.
 std::vector<std::string> beside_the_paper(const SceneGuide& guide);
 
 }  // namespace mssim

@@ -17,7 +17,7 @@ constexpr std::size_t few_runs = 5;  // of which the fastest is taken
 
 std::string percent_more(double ratio) { return three_digits(100 * (ratio - 1)) + " %"; }
 
-/// A step that the explicit methods are near to: the limit of semi-implicit Euler in the same theory.
+/// A typical step of explicit methods: the limit of semi-implicit Euler by theory.
 double usual_limit(const LimitRequest& request) {
   const double limit =
       step_theory(integrators[0], *request.system, request.at_start, request.on_the_way).shortest_s();
@@ -39,8 +39,8 @@ StepSearch search_for(const Integrator& integrator, const StepTheory& theory, co
   return search;
 }
 
-/// Shortens runs to what there is time for: some eight of them find a limit. False if not even one run ends
-/// in it.
+/// Shortens runs to the available time: about eight of them find a limit. False if there is no time for one
+/// run.
 bool fit(StepSearch& search, double seconds_a_step, double seconds) {
   constexpr int runs = 8, fewest_steps = 10;
   const double steps = seconds / runs / seconds_a_step;
@@ -49,7 +49,7 @@ bool fit(StepSearch& search, double seconds_a_step, double seconds) {
   return runs * steps >= fewest_steps;
 }
 
-/// Finds the limit with this backend, whose failures it throws.
+/// Finds the limit with this backend. Throws the backend's failures.
 void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& request, StepLimit& limit) {
   const Integrator& integrator = *limit.integrator;
   const Stopwatch watch;
@@ -119,7 +119,7 @@ StableStep largest_stable_step(const System& system, const StepMaker& make, cons
   };
   double dt_s = std::clamp(search.first_s, search.shortest_s, search.longest_s);
   const bool first_is_stable = try_step(dt_s);
-  // Away from the first until both kinds are known.
+  // Away from the first step until a stable and an unstable step are known.
   for (double stride = first_stride; found.stable_s == 0 || found.unstable_s == 0; stride *= first_stride) {
     const double next =
         std::clamp(first_is_stable ? dt_s * stride : dt_s / stride, search.shortest_s, search.longest_s);
@@ -158,34 +158,33 @@ std::string why_they_differ(const Integrator& integrator, const StableStep& meas
                             const StepTheory& theory, bool floor_is_why) {
   if (measured.stable_s == 0 && !measured.finished) return "no time was left to find the limit";
   if (is_shorter_than_theory(measured, theory) && floor_is_why)
-    return "the floor: a node that a step takes below it is put onto it, which strains its springs the more, "
-           "the longer the step is; without the floor longer steps are stable";
+    return "the floor: a node that ends a step below it is moved onto it, which strains the node's springs, "
+           "and more so with longer steps; without the floor longer steps are stable";
   if (is_implicit(integrator)) {
     if (measured.unstable_s == 0) return {};
-    return "backward Euler damps every linear mode at every step; a solver that stops before it has "
-           "converged, and springs that fold, are not linear";
+    return "backward Euler damps every linear mode with every step; solvers that stop before convergence, "
+           "and springs that fold, are not linear";
   }
   const double limit = theory.shortest_s();
   if (limit == 0 && measured.stable_s == 0) return {};
   if (limit == 0)
-    return "theory finds modes that grow at every step, those that nothing but the air damps; they "
-           "grow so slowly below the measured step that a run of " +
-           three_digits(measured.span_s) +
-           " s does not show it; a longer one is stable with shorter steps only";
-  if (measured.stable_s == 0) return "no step that was tried was stable, though theory has one";
+    return "theory finds modes that grow with every step, those that only the air damps; below the measured "
+           "step they grow so slowly that a run of " +
+           three_digits(measured.span_s) + " s does not show it; a longer run needs shorter steps";
+  if (measured.stable_s == 0) return "no step that was tried was stable, but theory has one";
   if (measured.stable_s > worth_a_word * limit) {
     std::string why = "the measured step is " + percent_more(measured.stable_s / limit) + " longer: ";
     if (theory.on_the_way_s < limit * 1.0001 && theory.on_the_way_s * worth_a_word < theory.at_start_s)
       return why +
-             "the strained state that theory is asked about has stiffer modes (springs stiffen sideways), "
-             "which last too short for a run to blow up";
+             "the strained state for which theory computes it has stiffer modes (springs stiffen sideways), "
+             "but for too short a time for a run to blow up";
     return why +
-           "theory counts a growth of one part in a million a step, which the undamped sideways modes "
-           "reach first; a run shows only what grows faster";
+           "theory counts a growth of one part in a million per step, which the undamped sideways modes "
+           "reach first; a run shows only faster growth";
   }
   if (is_shorter_than_theory(measured, theory))
     return "the measured step is " + percent_more(limit / measured.stable_s) +
-           " shorter: springs that strain on the way stiffen sideways, where nothing damps them";
+           " shorter: springs that strain during the run stiffen sideways, where they have no damping";
   return {};
 }
 

@@ -8,7 +8,7 @@
 
 namespace mssim {
 
-/// A method that keeps an error, and its cost there.
+/// A method and its cost at an error that it keeps.
 struct Ranked {
   const GuidedMethod* method;
   CostAtError cost;
@@ -26,8 +26,8 @@ const WorkPoint* point_for_sizes(const SceneGuide& guide, const GuidedMethod& me
 /// The integrator's limit of stability; null if it was not looked for.
 const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator);
 
-/// The longest step, s, with which the integrator should keep the wished error; none if nothing that was
-/// measured tells.
+/// The longest step, s, with which the integrator should keep the requested error; none if no measurement
+/// shows it.
 std::optional<double> expected_step(const SceneGuide& guide, const Integrator& integrator);
 
 }  // namespace mssim

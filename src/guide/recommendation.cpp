@@ -10,7 +10,7 @@
 namespace mssim {
 namespace {
 
-/// The point of the least measure among those that count and that `takes` takes.
+/// The index of the point with the least measure among those that count and that `takes` accepts.
 template <class Takes, class Measure>
 std::optional<std::size_t> least(std::span<const WorkPoint> points, const Takes& takes,
                                  const Measure& measure) {
@@ -28,7 +28,7 @@ std::string named(const WorkPoint& point) {
   return fmt::format("{} on {}", point.integrator->name, point.backend);
 }
 
-/// The points of the method that count, from the longest step on.
+/// The points of the method that count, from the longest step to the shortest.
 std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const GuidedMethod& method) {
   std::vector<const WorkPoint*> curve;
   for (const WorkPoint& point : points)
@@ -46,8 +46,8 @@ std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
   const double seconds = frame_seconds(point, wish.frames_per_second), rate = 1 / seconds;
   const std::string asked = decimal(wish.frames_per_second);
   return seconds * wish.frames_per_second <= 1
-             ? fmt::format("and {} frames per second hold ({} would)", asked, three_digits(rate))
-             : fmt::format("so that {} frames per second do not hold ({} would)", asked, three_digits(rate));
+             ? fmt::format("fast enough for {} frames per second (up to {})", asked, three_digits(rate))
+             : fmt::format("too slow for {} frames per second (up to {})", asked, three_digits(rate));
 }
 
 std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const CostAtError& cost) {
@@ -63,34 +63,34 @@ std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const 
                   named(point), two_digits(point.dt_s), is_limited ? ", the longest that is stable" : "",
                   pluralize(steps_a_frame(point.dt_s, rate), "step"), decimal(rate));
   if (steps)
-    text += fmt::format(" A step of about {} s should do, too, but was not measured.",
+    text += fmt::format(" A step of about {} s should suffice, too, but was not measured.",
                         two_digits(guide.trusted.horizon_s / *steps));
   return text;
 }
 
 std::string what_is_nearest(const WorkPoint& point, const Wish& wish) {
   return fmt::format(
-      "Nothing that was measured keeps the error within {} of a mean rest length: the most accurate is {} "
-      "with a step of {} s.",
+      "No measured method keeps the error within {} of a mean rest length: the most accurate is {} with a "
+      "step of {} s.",
       two_digits(wish.error), named(point), two_digits(point.dt_s));
 }
 
 std::string what_it_costs(const WorkPoint& point, const SceneGuide& guide) {
   return fmt::format(
-      "A simulated second takes {} s, {}; {} s after the start no node is off by more than {} of a mean rest "
-      "length, and the energy by {} of what is kinetic and elastic.",
+      "A simulated second takes {} s, {}. After {} s of simulation, the largest error of a node is {} of a "
+      "mean rest length, and that of the energy {} of the kinetic and elastic energy.",
       three_digits(cost_of(point)), frames_sentence(point, guide.wish), two_digits(guide.trusted.horizon_s),
       two_digits(error_of(point)), two_digits(std::abs(point.energy_error.value_or(0))));
 }
 
-/// Errors that a user can bear, from one on up to another, which is not one of them; or without an end.
+/// A half-open range of errors, [from, to); without `to`, it has no end.
 struct ErrorRange {
   double from = 0;
   std::optional<double> to;
 };
 
-/// How much cheaper `other` is than `winner` at an error, as the logarithm of the ratio: infinite where
-/// only one of them keeps it, and negative where neither does.
+/// Advantage in cost of `other` over `winner` at an error, as the logarithm of the ratio: infinite if only
+/// one of them keeps it, and negative if neither does.
 double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winner, const GuidedMethod& other,
                     double error) {
   const auto mine = cost_at_error(points, other, error), its = cost_at_error(points, winner, error);
@@ -99,15 +99,15 @@ double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winne
   return its ? std::log(its->seconds_a_second / mine->seconds_a_second) : endless;
 }
 
-/// For which errors `other` is cheaper than `winner`, in order. Between the errors of their points the
-/// advantage is linear in the logarithm of the error.
+/// The errors at which `other` is cheaper than `winner`, in ascending order. Between the errors of their
+/// points, the advantage is linear in the logarithm of the error.
 std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const GuidedMethod& winner,
                                       const GuidedMethod& other) {
   std::vector<double> errors;
   for (const GuidedMethod* method : {&winner, &other})
     for (const WorkPoint* point : counting(points, *method)) errors.push_back(error_of(*point));
   std::ranges::sort(errors);
-  // Between two equal errors there is nothing to turn at.
+  // The advantage cannot change between equal errors.
   errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
   std::vector<ErrorRange> ranges;
   bool cheaper = false;
@@ -129,7 +129,7 @@ std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const G
   return ranges;
 }
 
-/// Three of them at most, in words.
+/// At most three ranges, in words.
 std::string in_words(std::span<const ErrorRange> ranges) {
   constexpr std::size_t most = 3;
   std::vector<std::string> texts;
@@ -148,26 +148,26 @@ std::string in_words(std::span<const ErrorRange> ranges) {
 
 std::string who_comes_second(const SceneGuide& guide, const Ranked& winner, const Ranked* second,
                              const WorkPoint* point) {
-  if (second == nullptr) return "No other method that was measured is accurate enough.";
+  if (second == nullptr) return "No other measured method is accurate enough.";
   const std::vector<ErrorRange> wins = ranges_to_win(guide.points, *winner.method, *second->method);
   const double ratio = second->cost.seconds_a_second / winner.cost.seconds_a_second;
   return fmt::format(
       "The runner-up is {} with a step of {} s, which takes {} times as long at an error of {}{}",
       named(*point), two_digits(point->dt_s), three_digits(ratio), decimal(guide.wish.error),
       wins.empty() ? "; it is cheaper at no error."
-                   : fmt::format("; it would win at errors of {}.", in_words(wins)));
+                   : fmt::format("; it is cheaper at errors of {}.", in_words(wins)));
 }
 
-/// Whether more time would have given the method a cost at the wished error.
+/// Whether more time would have given the method a cost at the requested error.
 bool lacks_time(const SceneGuide& guide, const GuidedMethod& method) {
   if (cost_at_error(guide.points, method, guide.wish.error)) return false;
-  // Errors grow with the horizon, and a better reference lets smaller ones count.
+  // Errors grow with the horizon, and smaller errors count with a better reference.
   const auto is_beyond = [&](const WorkPoint& point) { return is_of(point, method) && point.beyond_trust; };
   return method.lack == Lack::time ||
          (guide.trusted.short_of_s > 0 && std::ranges::any_of(guide.points, is_beyond));
 }
 
-/// Whether its integrator has come to the end of a curve, on another backend, short of the wished error.
+/// Whether the curve of its integrator on another backend is complete but does not reach the requested error.
 bool ends_short(const SceneGuide& guide, const GuidedMethod& method) {
   return std::ranges::any_of(guide.methods, [&](const GuidedMethod& other) {
     return other.integrator == method.integrator && other.lack == Lack::nothing &&
@@ -200,7 +200,7 @@ std::string names_of(std::span<const GuidedMethod* const> methods) {
 
 std::string seconds_of(const SceneGuide& guide) { return decimal(std::round(10 * guide.seconds) / 10); }
 
-/// Without `needed_s` it names no time that would do.
+/// Names the time that would suffice if there is `needed_s`.
 std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
                         std::span<const GuidedMethod* const> missed) {
   std::string text = guide.stopped
@@ -209,14 +209,14 @@ std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
   if (!missed.empty())
     text += fmt::format(", and any of these methods could be the cheapest at an error of {}: {}",
                         decimal(guide.wish.error), names_of(missed));
-  return needed_s
-             ? text + fmt::format(". About {} s for this scene would do (--time-budget).", decimal(*needed_s))
-             : text + '.';
+  return needed_s ? text + fmt::format(". About {} s for this scene would suffice (--time-budget).",
+                                       decimal(*needed_s))
+                  : text + '.';
 }
 
 constexpr std::array<std::string_view, 3> paper_integrators{"semi-euler", "midpoint", "rk4"};
 
-/// The integrator's time of a step and, where it reaches the error, its cost there.
+/// The integrator's time per step and, if it reaches the error, its cost there.
 struct Compared {
   std::string_view integrator;
   double seconds_a_step = 0;
@@ -229,8 +229,8 @@ std::string integrators_of(std::span<const Compared> compared) {
   return listed(names);
 }
 
-/// What becomes of the order of the integrators at the wished error; empty where fewer than two were
-/// measured.
+/// Compares the order of the integrators by time per step with that at the requested error; empty if fewer
+/// than two were measured.
 std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
   std::vector<Compared> all;
   for (const std::string_view name : paper_integrators) {
@@ -249,7 +249,7 @@ std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
     (one.cost ? reaching : others).push_back(one);
   }
   std::string text =
-      fmt::format("On {} a step of {} takes {} ms", backend.name, integrators_of(all), listed(milliseconds));
+      fmt::format("On {}, {} take {} ms per step", backend.name, integrators_of(all), listed(milliseconds));
   const std::string error = decimal(guide.wish.error);
   if (reaching.empty()) return fmt::format("{}; none of them reaches an error of {}.", text, error);
   for (const Compared& one : reaching) seconds.push_back(three_digits(one.cost->seconds_a_second));
@@ -351,7 +351,7 @@ std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& met
   const int steps = std::max(1, static_cast<int>(std::ceil(horizon_s / dt_s - 1e-6)));
   const int known = guide.points[*point_at_error(guide.points, method, guide.wish.error)].steps;
   if (steps * step_resolution > known) return std::nullopt;
-  // One that does not count, or is not accurate enough, whatever the curve says.
+  // A measured point between them does not count or is not accurate enough, unlike the curve.
   const bool was_tried = std::ranges::any_of(guide.points, [&](const WorkPoint& point) {
     return is_of(point, method) && point.steps >= steps && point.steps < known;
   });
@@ -380,14 +380,14 @@ Recommendation recommend(const SceneGuide& guide) {
   const std::vector<const GuidedMethod*> missed = missed_methods(guide);
   const bool without_reference = !guide.trusted.failure.empty() && guide.trusted.short_of_s > 0;
   if (!missed.empty() || without_reference) {
-    // What a stopped guide had no time for says nothing of its budget.
+    // The lack of time of a stopped guide does not show what budget it needs.
     if (!guide.stopped) chosen.needed_s = needed_seconds(guide, missed);
     chosen.sentences = {why_nothing(guide, chosen.needed_s, missed)};
     return chosen;
   }
   if (!guide.trusted.failure.empty()) return chosen;
   if (guide.points.empty()) {
-    chosen.sentences = {"Nothing was measured: the remark of each method says why."};
+    chosen.sentences = {"Nothing was measured: the remark of each method gives the reason."};
     return chosen;
   }
   const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
@@ -399,7 +399,7 @@ Recommendation recommend(const SceneGuide& guide) {
       chosen.sentences = {what_is_nearest(point, guide.wish), what_it_costs(point, guide)};
     } else {
       chosen.sentences = {
-          "Nothing that was measured can be recommended: no point is both stable and far enough from the "
+          "No measured method can be recommended: no point is both stable and far enough from the "
           "reference's error."};
     }
     return chosen;
@@ -441,7 +441,7 @@ std::vector<std::string> what_was_measured(const SceneGuide& guide) {
   say("Not measured, because no step that was tried is stable", unstable);
   say("Not compared, because no point is both stable and far enough from the reference's error", uncompared);
   say("Not measured down to an error of " + error + ", for lack of time", late_at_error);
-  say("Not within an error of " + error + " at any step that was tried", others);
+  say("Not within an error of " + error + " with any step that was tried", others);
   return sentences;
 }
 

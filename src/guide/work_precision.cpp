@@ -33,7 +33,7 @@ void put_vector(Numbers& numbers, std::size_t node, const Vec3d& value) {
   numbers[3 * node + 2] = value.z;
 }
 
-/// The derivative by time of positions and velocities.
+/// The time derivative of positions and velocities.
 class MotionOfNodes {
  public:
   explicit MotionOfNodes(const System& system) : system_(system), force_(system.nodes()) {}
@@ -77,7 +77,7 @@ State neighbour_of(const System& system, double distance_m) {
   return state;
 }
 
-/// Two trajectories side by side until one of the conditions of a horizon ends them.
+/// Follows two neighbouring trajectories until a condition of a horizon ends them.
 class HorizonWalk {
  public:
   HorizonWalk(const System& system, double dt_s)
@@ -91,15 +91,15 @@ class HorizonWalk {
     beside_->set_state(neighbour);
   }
 
-  /// Goes on by so many steps, unless the horizon ends before; false then.
+  /// Continues by `steps` steps; false if the horizon ends before that.
   bool go_on(int steps) {
-    const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
+    const OnAllProcessCpus unbound;  // a thread not started by OpenMP would share this thread's CPU
     std::future<void> beside = std::async(as_the_system_can, [&] { beside_->step(steps); });
     near_->step(steps);
     beside.get();
     State state = near_->state();
     if (first_bad_node(state)) return end_with("the trajectory cannot be followed any longer");
-    if (!is_in_the_air(state, system_.floor)) return end_with("a node meets the floor next");
+    if (!is_in_the_air(state, system_.floor)) return end_with("a node reaches the floor next");
     const double parting = position_deviation(system_, state, beside_->state()) / first_distance_;
     if (!(parting <= allowed_parting)) return end_with("neighbouring trajectories part next");
     steps_ += steps;
@@ -122,7 +122,7 @@ class HorizonWalk {
 
   const System& system_;
   double dt_s_;
-  System floorless_;  // who meets the floor stays below it, and is found at the next look
+  System floorless_;  // a node that reaches the floor stays below it until the next check finds it
   std::unique_ptr<Backend> near_, beside_;
   double first_distance_ = 0, parting_ = 0;
   int steps_ = 0;
@@ -132,7 +132,7 @@ class HorizonWalk {
 
 constexpr double enough_s = 0.03;  // for the runs of a point
 
-/// Wall seconds of a step of the double-precision rk4.
+/// Wall seconds per step of rk4 in double precision.
 double seconds_a_step(const System& system, double dt_s) {
   constexpr int steps = 3;
   const auto backend = make_reference(system, *find_integrator("rk4"), dt_s);
@@ -147,7 +147,7 @@ bool beats(const WorkPoint& a, const WorkPoint& b) {
   return time <= other_time && error <= other_error && (time < other_time || error < other_error);
 }
 
-/// Exact backward Euler at the horizon; none where it diverges, or was stopped.
+/// The state of exact backward Euler at the horizon; none if it diverges or is stopped.
 std::optional<State> exact_state(const System& system, const TrustedState& trusted, int steps,
                                  const std::function<bool()>& stop) {
   const auto backend =
@@ -161,7 +161,7 @@ std::optional<State> exact_state(const System& system, const TrustedState& trust
   return state;
 }
 
-/// Numbers of steps over the horizon, those that newton-euler took the least time for first.
+/// Numbers of steps over the horizon, in ascending order of newton-euler's time.
 std::vector<int> by_cost(std::span<const WorkPoint> points, std::span<const ImplicitEnd> ends) {
   std::map<int, double> seconds;
   for (const ImplicitEnd& end : ends)
@@ -183,7 +183,7 @@ std::optional<double> evaluations_of(const Integrator& integrator, const System&
   return std::nullopt;
 }
 
-/// What the state at the horizon says.
+/// Sets the errors of a point from its state at the horizon.
 void take_state(WorkPoint& point, const System& system, const TrustedState& trusted, const State& state) {
   if (first_bad_node(state)) {
     point.diverged = true;
@@ -210,7 +210,7 @@ std::optional<State> independent_state(const System& system, double span_s, doub
     put_vector(numbers, node, system.start.position[node]);
     put_vector(numbers, nodes + node, system.start.velocity[node]);
   }
-  // By reference: the stepper copies what it calls.
+  // By reference, because the stepper copies the function.
   MotionOfNodes motion(system);
   const auto rate = [&motion](const Numbers& now, Numbers& out, double time_s) { motion(now, out, time_s); };
   boost::numeric::odeint::bulirsch_stoer<Numbers> stepper(tolerance, 0);
@@ -228,27 +228,27 @@ std::optional<State> independent_state(const System& system, double span_s, doub
     state.position[node] = vector_at(numbers, node);
     state.velocity[node] = vector_at(numbers, nodes + node);
   }
-  for (const std::uint32_t pin : system.pins)  // which extrapolation rounds
+  for (const std::uint32_t pin : system.pins)  // without the rounding of extrapolation
     state.position[pin] = system.start.position[pin];
   return state;
 }
 
 TrustedState trusted_state(const System& system, const TrustedRequest& request) {
   constexpr double most_looks = 40;
-  // Two trajectories side by side, then half the step with the other solver beside it, which takes longer.
+  // Two neighbouring trajectories, then half the step and the other solver at once, which takes longer.
   constexpr double runs = 4;
   TrustedState trusted;
   const Stopwatch watch;
   const double step_seconds = seconds_a_step(system, request.first_dt_s);
   const double affordable_steps = request.seconds / runs / step_seconds;
   const double all_steps = request.longest_s / request.first_dt_s;
-  // With fewer steps than looks a horizon is too short for errors to grow.
+  // With fewer steps than checks, a horizon is too short for errors to grow.
   const double short_of_s =
       runs * step_seconds * (affordable_steps < most_looks ? std::min(most_looks, all_steps) : all_steps);
   if (affordable_steps < 1) {
     trusted.short_of_s = short_of_s;
-    trusted.failure = fmt::format("no time is left for a reference, of which a step takes {} s",
-                                  three_digits(step_seconds));
+    trusted.failure =
+        fmt::format("no time is left for a reference, which takes {} s per step", three_digits(step_seconds));
     return trusted;
   }
   const double longest_s = std::min(request.longest_s, affordable_steps * request.first_dt_s);
@@ -261,7 +261,7 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   if (look == 0) {
     trusted.failure = walk.why().empty()
                           ? "it was stopped"
-                          : fmt::format("there is no horizon to compare over: {}, within {} s of the start",
+                          : fmt::format("there is no horizon for a comparison: {}, within {} s of the start",
                                         walk.why(), three_digits(longest_s / looks));
     return trusted;
   }
@@ -269,11 +269,11 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   trusted.parting = walk.parting();
   const bool is_cut = walk.why().empty() && longest_s < request.longest_s;
   trusted.why_there = !walk.why().empty() ? walk.why()
-                      : is_cut            ? "the time for a longer reference does not suffice"
-                                          : "no longer horizon is asked for";
+                      : is_cut            ? "there is no time for a longer reference"
+                                          : "the requested horizon";
   if (is_cut) trusted.short_of_s = short_of_s;
 
-  const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
+  const OnAllProcessCpus unbound;  // a thread not started by OpenMP would share this thread's CPU
   const auto out_of_time = [&] { return request.stop() || watch.seconds() > 2 * request.seconds; };
   std::future<std::optional<State>> other = std::async(as_the_system_can, [&] {
     return independent_state(system, trusted.horizon_s, 1e-8 * mean_rest_length(system), out_of_time);
@@ -394,13 +394,13 @@ void WorkCurve::time_step() {
 
 bool WorkCurve::goes_on_after(const WorkPoint& point) {
   constexpr int fewest = 4, most = 11;
-  constexpr double largest_rounding = 0.02;  // of a rest length: what roundings have come to within a horizon
+  constexpr double largest_rounding = 0.02;  // of a rest length: seen as rounding error within a horizon
   if (points_ >= most) return false;
   if (points_ < fewest || !point.counts()) return !point.beyond_trust;
   if (*point.position_error <= wanted_error_ / 4) return false;
   if (last_error_ && *point.position_error >= 0.9 * *last_error_ &&
       *point.position_error < largest_rounding) {
-    end(Lack::nothing, "smaller steps are no more accurate: single precision rounds");
+    end(Lack::nothing, "smaller steps are no more accurate: rounding of single precision");
     return false;
   }
   return true;

@@ -13,77 +13,76 @@
 
 namespace mssim {
 
-/// The state of a system `span_s` after its start, in double precision, by a solver that shares nothing with
-/// the table of integrators but the laws of springs and acceleration: Boost.Odeint's Bulirsch-Stoer method
+/// The state of a system `span_s` after its start, in double precision, by a solver that shares only the laws
+/// of springs and acceleration with the table of integrators: Boost.Odeint's Bulirsch-Stoer method
 /// (extrapolated modified midpoint rules of variable order and step; Hairer, Norsett and Wanner, Solving
-/// Ordinary Differential Equations I, section II.9). `tolerance`: the error of a step, absolute, of
-/// positions in m and velocities in m/s. The floor does not act. None where `stop` ended it
-/// between two of its steps, or where it found no step that is small enough.
+/// Ordinary Differential Equations I, section II.9). `tolerance`: absolute error per step of positions in m
+/// and velocities in m/s. The floor does not act. None if `stop` ended it between two steps, or if no step
+/// was small enough.
 std::optional<State> independent_state(const System& system, double span_s, double tolerance,
                                        const std::function<bool()>& stop);
 
-/// What a trusted state is asked for with.
+/// A request for a trusted state.
 struct TrustedRequest {
-  double longest_s = 0;        ///< simulated time that it is to be after the start, at most
-  double first_dt_s = 0;       ///< of rk4, which starts with it; well below its stability limit
-  double seconds = 0;          ///< wall time that it may take, about
-  double wanted_error = 2e-7;  ///< its own, in mean rest lengths: the step is halved until it is reached
+  double longest_s = 0;        ///< longest simulated time after the start
+  double first_dt_s = 0;       ///< first step of rk4; well below its stability limit
+  double seconds = 0;          ///< approximate wall time
+  double wanted_error = 2e-7;  ///< in mean rest lengths; the step is halved until this is reached
   std::function<bool()> stop = [] { return false; };
 };
 
-/// Neighbouring trajectories may part by this factor within a horizon. Where they part by more, an error at
-/// its end says how chaotic the motion is and not how good a step was: what single precision rounds grows as
-/// much.
+/// Factor by which the distance of neighbouring trajectories may grow within a horizon. If it grows by more,
+/// the error at the end shows how chaotic the motion is, not how good a step was: rounding errors of single
+/// precision grow as much.
 inline constexpr double allowed_parting = 10;
 
-/// Errors that are shown are at least so many times as large as the trusted state's own.
+/// Smallest ratio of an error that is shown to the trusted state's own.
 inline constexpr double trusted_margin = 50;
 
-/// Where the nodes really are a while after the start: what errors are measured against.
+/// The reference for errors: the positions of the nodes some time after the start.
 struct TrustedState {
-  double horizon_s = 0;   ///< how long after the start
-  std::string why_there;  ///< what ended the horizon, in words without a full stop
-  double parting = 0;     ///< factor by which a neighbouring trajectory was farther away at its end
-  double dt_s = 0;        ///< of rk4, the last and smallest
+  double horizon_s = 0;   ///< simulated time after the start
+  std::string why_there;  ///< what ended the horizon, without a full stop
+  double parting = 0;     ///< factor by which the distance of a neighbouring trajectory has grown
+  double dt_s = 0;        ///< last and smallest step of rk4
   State state;
   Energy energy;
-  double own_error = 0;  ///< in mean rest lengths, from the last halving
-  std::optional<double>
-      confirmed;        ///< largest distance from what the independent solver found; none: no time
-  std::string failure;  ///< why there is none; then all else but short_of_s is empty
-  /// Wall seconds that a longer or better reference would have taken, where there was no time for it.
+  double own_error = 0;             ///< in mean rest lengths, from the last halving
+  std::optional<double> confirmed;  ///< largest distance from the independent solver's state; none: no time
+  std::string failure;              ///< why there is no state; then all else but short_of_s is empty
+  /// Wall seconds that a longer or better reference would have taken; 0: there was time for it.
   double short_of_s = 0;
 
-  /// The larger of the two, which errors that are shown exceed trusted_margin times.
+  /// The larger of own_error and confirmed; errors that are shown exceed it trusted_margin times.
   double error() const { return confirmed && *confirmed > own_error ? *confirmed : own_error; }
 };
 
-/// Classical Runge-Kutta in double precision (backends/backends.h), twice or more often, each time with half
-/// the step: two results of order 4 differ by 15 times the error of the better one (Hairer, Norsett and
-/// Wanner, Solving Ordinary Differential Equations I, section II.4, Richardson). Then another solver
-/// (independent_state) must come to the same. The horizon ends before a node meets the floor, since after
-/// a bounce results differ by a step's worth of landing time; and before a trajectory that starts 1e-7 mean
-/// rest lengths beside it has parted by more than allowed_parting.
+/// Computes a trusted state by classical Runge-Kutta in double precision (backends/backends.h), at least
+/// twice, each time with half the step: two results of order 4 differ by 15 times the error of the better one
+/// (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.4, Richardson). An
+/// independent solver confirms it (independent_state). The horizon ends before a node reaches the floor,
+/// because the time of landing depends on the step, and before the distance of a trajectory that starts 1e-7
+/// mean rest lengths away has grown by more than allowed_parting.
 TrustedState trusted_state(const System& system, const TrustedRequest& request);
 
-/// Marks the points that no other one beats: one that counts and is no slower, no less accurate and, in one
-/// of the two, better. Points that do not count are never on the front.
+/// Marks the points that no other point dominates. A point dominates if it counts, is neither slower nor less
+/// accurate, and is better in one of the two. Points that do not count are never on the front.
 void mark_pareto_front(std::span<WorkPoint> points);
 
-/// Where a point of an implicit method ended.
+/// The final state of a point of an implicit method.
 struct ImplicitEnd {
-  std::size_t point = 0;  ///< its index
+  std::size_t point = 0;  ///< index of the point
   State state;            ///< at the horizon
 };
 
-/// Tells the errors of implicit points apart: the solver's from the step's. Between them stands exact
-/// backward Euler with the same step: newton-euler in double precision until it gains nothing more. The steps
-/// that newton-euler itself took the least time for go first, until `stop` says so; what is left has no such
-/// errors, nor has what newton-euler does not run or that diverges.
+/// Separates the errors of implicit points into the solver's and the step's, by exact backward Euler with the
+/// same step: newton-euler in double precision, iterated until it no longer improves. Steps for which
+/// newton-euler took the least time come first, until `stop`. The other points have no such errors, nor have
+/// points that newton-euler does not run or for which it diverges.
 void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd> ends, const System& system,
                        const TrustedState& trusted, const std::function<bool()>& stop);
 
-/// A point of a curve, and where it ended.
+/// A point of a curve, and its final state.
 struct MeasuredPoint {
   WorkPoint point;
   State state;  ///< at the horizon
@@ -92,33 +91,34 @@ struct MeasuredPoint {
 /// A work-precision curve, from its coarsest step on.
 class WorkCurve {
  public:
-  /// `limit`: of the method's integrator; all must outlive it. `wanted_error`: no point is taken beyond a
-  /// quarter of it.
+  /// `limit`: of the method's integrator. All references must outlive the curve. `wanted_error`: the curve
+  /// ends after a point with at most a quarter of it.
   WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit, GuidedMethod& method,
             const ExecutionOptions& execution, double wanted_error);
 
-  /// Wall seconds that the next point takes, about: the first of an implicit method, and of one whose step
-  /// was not timed, as if it ran on the backend of the limit.
+  /// Approximate wall seconds of the next point. For the first point of an implicit method, or of one whose
+  /// step was not timed, it assumes the backend of the limit.
   double next_seconds() const { return next_seconds_; }
   bool has_next() const { return has_next_; }
-  /// Takes no more points, for this reason.
+  /// Ends the curve for this reason.
   void end(Lack lack, std::string_view why);
-  /// Takes no more points, because there is no time for the next one.
+  /// Ends the curve because there is no time for the next point.
   void end_without_time();
-  /// Whether the next point takes what a step on this backend says.
+  /// Whether a step on this backend has been timed.
   bool is_timed() const { return method_.step_seconds > 0; }
-  /// Times a step of an explicit method. Where the backend does not run, or fails, the curve ends.
+  /// Times a step of an explicit method. If the backend does not run, or fails, the curve ends.
   void time_step();
-  /// Measures the next point, with half the step of the one before. None where the backend does not run, or
-  /// fails; method.status says why.
+  /// Measures the next point, with half the step of the one before. None if the backend does not run, or
+  /// fails; method.status gives the reason.
   std::optional<MeasuredPoint> next();
-  /// Measures the point of so many steps over the horizon, beside the others. None as above.
+  /// Measures an additional point, of `steps` steps over the horizon. None as for next().
   std::optional<MeasuredPoint> measure(int steps);
-  /// Wall seconds that measure() takes, about, once the step is timed.
+  /// Approximate wall seconds of measure(), once a step is timed.
   double seconds_of(int steps) const;
 
  private:
-  /// Says in the method's status why not, where that is not for the points that there are.
+  /// Whether the curve continues. If it ends because rounding limits its accuracy, the method's status says
+  /// so.
   bool goes_on_after(const WorkPoint& point);
 
   const System& system_;
@@ -133,9 +133,9 @@ class WorkCurve {
   std::optional<double> last_error_;
 };
 
-/// Steps of the coarsest point of a curve: of an explicit method twice the largest stable step, so that the
-/// first point shows that this diverges; of an implicit one the longest step that is of use, the same for all
-/// of them, so that they share exact backward Euler.
+/// Number of steps of the coarsest point of a curve. An explicit method starts with twice the largest stable
+/// step, so that its first point shows that it diverges. An implicit method starts with the longest useful
+/// step, equal for all, so that they share exact backward Euler.
 int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s);
 
 }  // namespace mssim

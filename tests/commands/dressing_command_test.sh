@@ -83,5 +83,5 @@ for backend in threads-mutex hybrid; do
 done
 for backend in serial openmp opencl; do
   dress 2 --scene jeans2k --backend "$backend" --integrator rk4
-  misfit 'semi-euler only'
+  misfit 'only semi-euler'
 done

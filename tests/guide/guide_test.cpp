@@ -101,7 +101,7 @@ TEST(BesideThePaper, SaysWhatBecomesOfTheOrder) {
   EXPECT_THAT(
       beside_the_paper(guide_of({made_point("semi-euler", 1e-4, 10, 1e-3),
                                  made_point("midpoint", 4e-4, 5, 1e-3), made_point("rk4", 2e-3, 2, 1e-3)})),
-      ElementsAre(AllOf(HasSubstr("takes 1.00, 2.00 and 4.00 ms"), HasSubstr("takes 10.0, 5.00 and 2.00 s"),
+      ElementsAre(AllOf(HasSubstr("take 1.00, 2.00 and 4.00 ms"), HasSubstr("takes 10.0, 5.00 and 2.00 s"),
                         EndsWith("rk4 is the cheapest."))));
   EXPECT_THAT(
       beside_the_paper(guide_of({made_point("semi-euler", 1e-3, 1, 1e-3), made_point("rk4", 1e-3, 4, 1e-4)})),
@@ -190,9 +190,9 @@ TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
   ASSERT_EQ(chosen.sentences.size(), 3U);
   EXPECT_THAT(chosen.sentences[0], HasSubstr("Take verlet on openmp with a step of 0.0001 s"));
   EXPECT_THAT(chosen.sentences[0], HasSubstr("167 steps per frame"));
-  EXPECT_THAT(chosen.sentences[1], HasSubstr("60 frames per second hold"));
+  EXPECT_THAT(chosen.sentences[1], HasSubstr("fast enough for 60 frames per second"));
   EXPECT_THAT(chosen.sentences[2], HasSubstr("runner-up is rk4 on openmp"));
-  EXPECT_THAT(chosen.sentences[2], HasSubstr("it would win at errors of 1e-06 to below 0.00015."));
+  EXPECT_THAT(chosen.sentences[2], EndsWith("errors of 1e-06 to below 0.00015."));
 }
 
 std::string runner_up_sentence(const std::vector<WorkPoint>& points) {
@@ -225,7 +225,7 @@ TEST(Recommendation, SaysForWhichErrorsTheRunnerUpIsCheaper) {
   EXPECT_THAT(runner_up_sentence(by_turns), EndsWith("errors of 1e-06 to below 1e-05 and 0.022 or more."));
   EXPECT_THAT(
       runner_up_sentence({made_point("rk4", 1e-4, 0.5, 1e-4), made_point("verlet", 1e-4, 0.3, 1.001e-4)}),
-      EndsWith("it would win at errors of about 0.0001."));
+      EndsWith("errors of about 0.0001."));
   // Both have the same two errors. rk4 takes half as long at the smaller one and five times as long at the
   // larger one: they meet at log(2) of log(10) of the way.
   EXPECT_THAT(
@@ -406,15 +406,15 @@ TEST(WhatWasMeasured, SaysWhichMethodsWereNotAndWhy) {
 TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
   const Recommendation chosen = recommend_from({made_point("verlet", 1e-4, 3, 5e-4)}, {120, 1e-3});
   EXPECT_EQ(chosen.best, 0U);
-  EXPECT_THAT(chosen.sentences[1], HasSubstr("120 frames per second do not hold"));
-  EXPECT_THAT(chosen.sentences[2], HasSubstr("No other method"));
+  EXPECT_THAT(chosen.sentences[1], HasSubstr("too slow for 120 frames per second"));
+  EXPECT_THAT(chosen.sentences[2], HasSubstr("No other"));
 }
 
 TEST(Recommendation, CountsWholeStepsForTheTimeOfAFrame) {
   // 60 frames a second have 2.5 steps of 1/150 s each, so that 3 are taken. At 6 ms a step these take 18
   // ms, 55.6 frames a second; 2.5 would take 15 ms, and a frame lasts 16.7 ms.
   const Recommendation chosen = recommend_from({made_point("verlet", 1.0 / 150, 0.9, 5e-4)});
-  EXPECT_THAT(chosen.sentences[1], HasSubstr("60 frames per second do not hold (55.6 would)"));
+  EXPECT_THAT(chosen.sentences[1], AllOf(HasSubstr("too slow for 60 frames"), HasSubstr("55.6")));
 }
 
 TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator) {
@@ -432,7 +432,7 @@ TEST(Recommendation, NamesTheNearestWhereNothingIsAccurateEnough) {
   EXPECT_FALSE(chosen.best);
   EXPECT_EQ(chosen.nearest, 1U);
   ASSERT_EQ(chosen.sentences.size(), 2U);
-  EXPECT_THAT(chosen.sentences[0], HasSubstr("Nothing that was measured keeps the error within 0.0001"));
+  EXPECT_THAT(chosen.sentences[0], AllOf(HasSubstr("error within 0.0001"), HasSubstr("verlet on openmp")));
 }
 
 TEST(Recommendation, SaysThatEverythingDiverged) {

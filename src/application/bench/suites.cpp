@@ -31,28 +31,27 @@ constexpr std::array<std::string_view, 4> scenes_of_peers{"cloth2500", "cloth40k
 constexpr std::array<std::string_view, 6> jeans{"jeans1k", "jeans2k",  "jeans4k",
                                                 "jeans8k", "jeans16k", "jeans64k"};
 
-/// The scenes of `--suite cluster`: cloths and bodies that ever more processes share (strong scaling), and
-/// cloths that are wider the more processes there are, NAME-xN (weak scaling).
+/// The scenes of `--suite cluster`: cloths and bodies of fixed size (strong scaling), and cloths NAME-xN that
+/// are N times as wide for N processes (weak scaling).
 constexpr std::array<std::string_view, 10> cluster_scenes{
     "cloth350k",   "cloth350k-x2", "cloth350k-x4", "cloth350k-x8", "cloth10k",
     "cloth10k-x2", "cloth10k-x4",  "cloth10k-x8",  "cloth4m",      "bodies38233"};
 
-/// The families of both papers but garments: Hong et al.'s cloths, which Vassilev's panels are made like, and
-/// bodies.
+/// Hong et al.'s cloths and bodies. Vassilev's panels have the structure of the cloths.
 constexpr auto scenes_of_guide = [] {
   std::array<std::string_view, cloths.size() + body_scenes.size()> all{};
   std::ranges::copy(body_scenes, std::ranges::copy(cloths, all.begin()).out);
   return all;
 }();
 
-/// Figure 5 of Hong et al. shows ten threads.
+/// Figure 5 of Hong et al. is for ten threads.
 constexpr std::array<std::string_view, 1> cloths_as_published{"threads-mutex:10"};
-/// And they step one object after the other (Conclusions).
+/// Hong et al. step one object after the other (Conclusions).
 constexpr std::array<std::string_view, 7> bodies_as_published{
     "serial:each", "threads-mutex:10", "threads-mutex:each", "threads-mutex:each:10",
     "openmp:each", "opencl:each",      "hybrid:each"};
 
-/// The real methods, those that are a paper's integrator under its own name.
+/// Integrators of Hong et al. under their own names.
 constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
 constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
 constexpr auto every_integrator = [] {
@@ -67,16 +66,16 @@ std::vector<const BackendInfo*> all_methods() {
   return rows;
 }
 
-/// The other backends are rows that say that they cannot dress.
+/// All backends, including those that cannot dress, whose rows give that reason.
 std::vector<const BackendInfo*> all_that_dress() { return with_garment_backends(table_backends()); }
 
-/// Algorithm 1 as printed is not dressed in the finest jeans, which takes it many minutes.
+/// Algorithm 1 as printed is not measured on the finest jeans, which take many minutes.
 bool is_dressed_soon(std::string_view scene, std::string_view backend) {
   return scene != jeans.back() ||
          std::ranges::find(garment_backends(), backend, &BackendInfo::name) == garment_backends().end();
 }
 
-/// What peers and ranks are compared with: the plain list and the fastest of the host's.
+/// The backends with which peers and ranks are compared: the plain list and the fastest on the host.
 std::vector<const BackendInfo*> baseline_and_best() { return {&baseline_backend(), &best_host_backend()}; }
 
 /// 1, 2, 4, ... and the largest.
@@ -91,8 +90,8 @@ std::vector<int> rank_counts(const ExecutionOptions& execution) {
   return counts;
 }
 
-/// mpi in 1, 2, 4, ... processes up to --ranks, or else up to one for every processor and at least four; and
-/// as many copies that say nothing to each other.
+/// mpi in 1, 2, 4, ... processes up to --ranks, or by default up to the number of CPUs over --threads and at
+/// least four; and equally many copies that do not communicate.
 std::vector<std::string> cluster_programs(const ExecutionOptions& execution) {
   std::vector<std::string> names;
   for (const int ranks : rank_counts(execution)) names.push_back(name_in_ranks(ranks_backend, ranks));
@@ -101,13 +100,13 @@ std::vector<std::string> cluster_programs(const ExecutionOptions& execution) {
   return names;
 }
 
-/// A cloth N times as wide is for N processes, and for no other backend.
+/// A cloth N times as wide is measured only in N processes.
 bool is_in_cluster(std::string_view scene, std::string_view backend) {
   const WideScene wide = wide_scene(scene);
   return wide.times == 1 || backend == name_in_ranks(ranks_backend, wide.times);
 }
 
-/// No tables, for the suite that is run by guides, which make their tables themselves.
+/// No tables, for the suite of the guide, which makes its own.
 TableMaker no_tables() {
   return [](std::span<const ResultRow> /*rows*/, const Provenance& /*provenance*/) {
     return std::vector<ResultTable>();
@@ -116,7 +115,7 @@ TableMaker no_tables() {
 
 TableMaker tables_of_hong() { return paper_tables(paper_legend(), published_tables()); }
 
-/// Scenes of both papers are compared in the same way, and each in its own tables.
+/// Tables of both papers: each paper's scenes have their own.
 TableMaker tables_of_the_papers() {
   return [hong = tables_of_hong(), vassilev = garment_tables()](std::span<const ResultRow> rows,
                                                                 const Provenance& provenance) {
@@ -147,42 +146,43 @@ TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cl
 constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
 
 constexpr auto table = std::to_array<Suite>({
-    {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends, cloths_as_published},
-    {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
-    {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends,
+    {"table1", "times of cloths: Table 1 of Hong et al.", true, true, cloths, of_backends,
+     cloths_as_published},
+    {"table2", "sizes of single bodies: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
+    {"table3", "times of several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends,
      bodies_as_published},
     {"races",
-     "what it costs to avoid the data race of the springs, method by method (mssim list methods)",
+     "the cost of each method to avoid the data race of springs (mssim list methods)",
      false,
      true,
      race_scenes,
      {all_methods, cheapest_method, table_of_races}},
     {"scaling",
-     "the cost of a node in cloths of up to 16 million nodes",
+     "the time per node in cloths of up to 16 million nodes",
      false,
      true,
      ever_larger_cloths,
      {table_backends, cheapest_method, table_of_scaling}},
     {"peers",
-     "the same scenes in other languages and libraries, side by side (scripts/peers)",
+     "comparison with the same scenes in other languages and libraries (scripts/peers)",
      false,
      true,
      scenes_of_peers,
      {baseline_and_best, cheapest_method, peer_tables, true}},
     {"cluster",
-     "in several processes, on this machine or several: what messages cost, and what larger ones would do",
+     "several processes on one or more machines: the cost of messages, and estimates for larger clusters",
      false,
      true,
      cluster_scenes,
      {baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1}},
     {"garment",
-     "jeans on a body, draped and dressed: Figure 6 of Vassilev",
+     "jeans on a body, dressing and draped: Figure 6 of Vassilev",
      false,
      true,
      jeans,
      {all_that_dress, cheapest_method, garment_tables, false, nullptr, is_dressed_soon}},
     {guide_suite,
-     "which integrator, backend and step for cloths and bodies: mssim guide, scene by scene",
+     "recommended integrator, backend and step for each cloth and body, as mssim guide finds them",
      false,
      true,
      scenes_of_guide,

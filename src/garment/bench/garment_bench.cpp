@@ -30,7 +30,8 @@ void excite(const System& system, State& state) {
   for (const std::uint32_t pin : system.pins) state.velocity[pin] = {};
 }
 
-/// The reference's way from a start, cut into stretches; why there is none, where it blows up.
+/// Appends the stretches of the reference's trajectory from a start to `way`. Returns a reason if it blows
+/// up.
 std::optional<std::string> follow(Backend& reference, const System& system, const State& start, double dt_s,
                                   std::vector<GarmentStretch>& way) {
   reference.set_state(start);
@@ -54,13 +55,13 @@ std::optional<std::string> follow(Backend& reference, const System& system, cons
   return std::nullopt;
 }
 
-/// What the stretches of one kind say about a backend.
+/// Errors of a backend over the stretches of one kind.
 class StretchErrors {
  public:
   explicit StretchErrors(const System& system)
       : system_(system), unit_(mean_rest_length(system)), errors_(system.nodes()) {}
 
-  /// Steps the backend over all stretches; why it cannot be compared, where it blows up.
+  /// Steps the backend over all stretches. Returns a reason if it blows up.
   std::optional<std::string> run(Backend& backend, const std::vector<GarmentStretch>& way, double dt_s) {
     for (const GarmentStretch& stretch : way) {
       backend.set_state(stretch.start);
@@ -87,7 +88,7 @@ class StretchErrors {
     return largest;
   }
 
-  /// What a share of all errors, of all nodes in all stretches, stays below.
+  /// The quantile of the errors of all nodes in all stretches.
   double quantile(double fraction) const {
     std::vector<double> all;
     for (const std::vector<double>& of_node : errors_) all.insert(all.end(), of_node.begin(), of_node.end());
@@ -103,7 +104,7 @@ class StretchErrors {
   std::vector<std::vector<double>> errors_;  ///< [nodes][stretches] in mean rest lengths
 };
 
-/// Keeps an earlier record of the same combination. Says whether there was one.
+/// Takes the record of an earlier row of the same combination; returns whether there was one.
 bool keep_earlier(ResultRow& row, const std::vector<ResultRow>& earlier) {
   const auto same =
       std::ranges::find_if(earlier, [&](const ResultRow& other) { return same_combination(other, row); });
@@ -112,7 +113,7 @@ bool keep_earlier(ResultRow& row, const std::vector<ResultRow>& earlier) {
   return true;
 }
 
-/// Notes what of a published algorithm's dressing is out of bounds.
+/// Notes the numbers of a published algorithm's dressing that are out of bounds.
 void note_misfit(ResultRow& row) {
   const std::vector<std::string> found = out_of_bounds(*row.dressing);
   if (!found.empty()) append_sentence(row.note, "as published it does not fit: " + join(found, ", "));

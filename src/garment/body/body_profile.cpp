@@ -37,7 +37,7 @@ std::vector<Chord> chords_at(const Surface& body, double height) {
   return chords;
 }
 
-/// What a side of a section covers: its box, and how much of its width.
+/// The box of one side of a section, and the covered part of its width.
 class Half {
  public:
   void add(const Chord& chord) {
@@ -53,11 +53,11 @@ class Half {
   double covered_ = 0;
 };
 
-/// The gap between the legs at this height, none where the section does not fall apart into two halves that
-/// are about equally wide.
+/// The gap between the legs at this height; none if the section does not divide into two halves of about
+/// equal width.
 std::optional<LegGap> leg_gap(const Surface& body, double height) {
-  constexpr double least_gap = 1e-3;  // of the section's width: more than what rounding opens
-  // Of the wider half; hands and what stands beside the body are narrower.
+  constexpr double least_gap = 1e-3;  // of the section's width: more than gaps by rounding
+  // Width over that of the wider half; hands and objects next to the body are narrower.
   constexpr double least_share = 0.55;
   const std::vector<Chord> chords = chords_at(body, height);
   if (chords.empty()) return std::nullopt;
@@ -82,8 +82,8 @@ std::optional<LegGap> leg_gap(const Surface& body, double height) {
 
 using Corners = std::array<Vec3d, 3>;
 
-/// Calls `visit` with each corner of a triangle in the plane where `coordinate` is `value`, and with each
-/// point in which one of its edges passes through that plane.
+/// Calls `visit` with each corner of a triangle in the plane of constant `coordinate` = `value`, and with
+/// each point in which an edge passes through that plane.
 template <class Visit>
 void cut(const Corners& corners, double Vec3d::*coordinate, double value, const Visit& visit) {
   const auto [low, high] =
@@ -110,8 +110,8 @@ TrunkAndLegs checked_body(const Surface& surface, const std::string& name) {
   return trunk_and_legs(surface);
 }
 
-/// Where a landmark is looked for and where it is if the body does not show it, in heights of the crotch:
-/// what is between the two on grown people and children alike, and where the reference body has it.
+/// The range in which a landmark is searched, for adults and children, and its place on the reference body,
+/// used if the body does not show it; in heights of the crotch.
 struct Search {
   double low, high, usual;
 };
@@ -120,8 +120,8 @@ constexpr Search waist_search{1.16, 1.52, 1.35}, hip_search{1.05, 1.25, 1.12}, k
 
 using Girth = std::function<std::optional<double>(double)>;
 
-/// The height within the range at which the girth is least, or for a negative `sign` greatest. Where that is
-/// at an end of the range, it is on the way to something else, and the usual height counts.
+/// The height within the range with the least girth, or for a negative `sign` the greatest. An extreme at an
+/// end of the range is not a landmark; then the usual height counts.
 Landmark extreme(const Girth& girth, const Search& search, double crotch, double sign) {
   constexpr int steps = 100;
   int best = -1;
@@ -175,7 +175,7 @@ BodyProfile::BodyProfile(const Surface& surface, std::string name)
       crotch_(find_crotch()) {}
 
 std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> intervals) {
-  constexpr double joins = 1e-6;  // m, more than rounding opens between triangles that share a point
+  constexpr double joins = 1e-6;  // m, more than gaps by rounding between triangles that share a point
   std::ranges::sort(intervals, {}, &Interval::low);
   std::vector<Interval> pieces;
   for (const Interval& interval : intervals)
@@ -199,11 +199,11 @@ std::vector<BodyProfile::Interval> BodyProfile::heights_in_the_middle() const {
 }
 
 std::optional<double> BodyProfile::find_crotch() const {
-  // The trunk is the longest piece: feet may touch each other, or stand on something.
+  // The trunk is the longest piece: feet may touch each other or an object.
   const auto trunk = std::ranges::max_element(
       middle_, {}, [](const Interval& interval) { return interval.high - interval.low; });
   if (trunk == middle_.end()) return std::nullopt;
-  constexpr double shortest_leg = 0.01;  // m: a round underside's lowest point need not be at x = 0
+  constexpr double shortest_leg = 0.01;  // m: the lowest point of a round underside need not be at x = 0
   const auto has_leg = [&](double sign) {
     return std::ranges::any_of(body_.surface.points, [&](const Vec3d& point) {
       return sign * point.x > 0 && point.y < trunk->low - shortest_leg;
@@ -216,8 +216,8 @@ std::optional<double> BodyProfile::find_crotch() const {
 double BodyProfile::crotch_height() const {
   if (!crotch_)
     throw InputError(name_ +
-                     ": its section never falls apart into a left and a right leg at x = 0; give a body that "
-                     "stands upright in y, looks to +z and has a leg on either side of x = 0");
+                     ": its section never divides into a left and a right leg at x = 0; give a body that is "
+                     "upright in y, faces +z and has one leg on each side of x = 0");
   return *crotch_;
 }
 
@@ -232,7 +232,7 @@ std::vector<PlanPoint> BodyProfile::section(double y) const {
     });
   if (points.empty())
     throw InputError(name_ + ": there is a gap between its parts at the height " + shown(y) +
-                     " m; give a height at which there is a part");
+                     " m; give a height of a part");
   return points;
 }
 
@@ -268,10 +268,10 @@ double BodyProfile::front_share(double y, double z) const {
 double BodyProfile::crotch_length(double y) const {
   const double crotch = crotch_height();
   if (!(y > crotch && y < highest()))
-    throw InputError(name_ + ": no tape goes through its crotch, " + shown(crotch) +
-                     " m high, from the height " + shown(y) + " m; give a height from there to " +
+    throw InputError(name_ + ": a tape through its crotch, " + shown(crotch) +
+                     " m high, cannot start at the height " + shown(y) + " m; give a height from there to " +
                      shown(highest()) + " m");
-  // In the plane, {z, y}. Where it ends above, the tape ends, too.
+  // {z, y} in the plane, up to the ends of the tape.
   std::vector<PlanPoint> outline;
   double front = -HUGE_VAL, back = HUGE_VAL;
   for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {

@@ -26,13 +26,13 @@ struct NamedGirth {
 
 void require_between(std::string_view measure, double value, std::string_view unit, double least,
                      double most) {
-  // Written so that what is no number fails too.
+  // Negated so that NaN fails, too.
   if (!(value >= least && value <= most))
     fail(measure, value, unit,
          fmt::format("; give a number from {} to {}{}", shown(least), shown(most), unit));
 }
 
-/// Heights closer together than this leave no room for a smooth body between them.
+/// Throws InputError if a height is not at least `apart` below the next, which a smooth body needs.
 void require_below(std::string_view measure, double height, std::string_view next, double next_height,
                    double apart) {
   if (height > next_height - apart)
@@ -58,7 +58,7 @@ void require_thighs_below_hip(const BodyMeasures& m) {
   const double most = room / 2 * ellipse_perimeter(1, thigh_aspect);
   if (m.thigh.girth > most)
     fail("thigh girth", m.thigh.girth, " m",
-         fmt::format(", and both thighs side by side would stick out beyond a hip girth of {} m; give a "
+         fmt::format(", and both thighs side by side would be wider than a hip with a girth of {} m; give a "
                      "thigh girth of at most {} m or a larger hip girth",
                      shown(m.hip.girth), shown(std::floor(most * 1000) / 1000)));
 }
@@ -110,7 +110,7 @@ class Tube {
     return {heights, values};
   }
 
-  /// The sections, and between each two as many more as cells of about the wanted height need.
+  /// The sections, and rings between them for cells of about the wanted height.
   std::vector<EllipseSection> interpolated() const {
     const auto x_min = curve(&EllipseSection::x_min), x_max = curve(&EllipseSection::x_max);
     const auto z_min = curve(&EllipseSection::z_min), z_max = curve(&EllipseSection::z_max);
@@ -128,7 +128,7 @@ class Tube {
     return rings;
   }
 
-  /// The longest straight way from one section to the next along an edge of their boxes.
+  /// The longest straight distance between two sections along an edge of their boxes.
   static double way_between(const EllipseSection& a, const EllipseSection& b) {
     const double sideways = std::max({std::abs(b.x_min - a.x_min), std::abs(b.x_max - a.x_max),
                                       std::abs(b.z_min - a.z_min), std::abs(b.z_max - a.z_max)});
@@ -154,13 +154,13 @@ class Tube {
       surface_.points.push_back(rounded(centre(ring) + larger * spoke(j)));
   }
 
-  /// The cells between the ring that begins at point `lower` and the next.
+  /// The cells between the ring that starts at point `lower` and the next.
   void add_belt(std::uint32_t lower) {
     const std::uint32_t n = around_;
     for (std::uint32_t j = 0; j < n; ++j) {
       const std::uint32_t a = lower + j, b = lower + (j + 1) % n;
       const std::uint32_t c = a + n, d = b + n;
-      // Quarter by quarter the other diagonal, so that no side of the body differs from its mirror image.
+      // The diagonal alternates between quarters, so that the body is symmetric.
       if (4 * j / n % 2 == 0) {
         surface_.triangles.push_back({a, c, b});
         surface_.triangles.push_back({b, c, d});
@@ -192,8 +192,8 @@ class Tube {
 
 double between(double from, double to, double fraction) { return from + (to - from) * fraction; }
 
-/// Sections of the torso and of the leg at x > 0. What the measures do not say is in proportion to the
-/// reference body's.
+/// Sections of the torso and of the leg at x > 0. Values that the measures do not give are in proportion to
+/// the reference body's.
 class Figure {
  public:
   explicit Figure(const BodyMeasures& measures) : m_(measures) {
@@ -214,7 +214,7 @@ class Figure {
                                         between(m_.waist.girth, m_.bust.girth, 0.375), 0.75, 0, 0.004));
     sections.push_back(section_of_girth(m_.bust.height, m_.bust.girth, 0.72, 0, 0.006));
 
-    // Shoulders and neck, above the bust in shares of its height above the waist.
+    // Shoulders and neck; heights above the bust are fractions of its height above the waist.
     const double rise = m_.bust.height - m_.waist.height;
     const auto above_bust = [&](double fraction, double girth, double aspect, double z) {
       sections.push_back(
@@ -255,7 +255,7 @@ class Figure {
     leg_section(sections, thigh, thigh_aspect, -0.003);
     check_apart(sections);
 
-    // From here on inside the torso, so that nothing of the legs' tops shows.
+    // From here on inside the torso, so that the legs' tops do not show.
     const EllipseSection hidden = within(seat_section(seat[4]), m_.thigh_gap / 2, 0.94, 0.78);
     EllipseSection entering = sections.back();
     entering.height = seat_section(seat[3]).height;
@@ -269,10 +269,10 @@ class Figure {
  private:
   struct SeatPart {
     double fraction;      ///< of the way from the crotch up to the hip
-    double width, depth;  ///< of the hip's
+    double width, depth;  ///< fractions of the hip's
   };
-  /// Wide early, so that the outline runs from the thighs into the hip without a dent; deep late, so that
-  /// belly and seat do not hang over the thighs.
+  /// Wide near the crotch, so that the outline has no dent between thighs and hip; deep only higher up, so
+  /// that belly and seat do not hang over the thighs.
   static constexpr std::array<SeatPart, 6> seat{{{0, 0.45, 0.30},
                                                  {0.05, 0.70, 0.43},
                                                  {0.12, 0.83, 0.55},
@@ -287,15 +287,15 @@ class Figure {
             part.width * hip_.x_max, part.depth * hip_.z_min + back, part.depth * hip_.z_max + back};
   }
 
-  /// A leg's ellipse within a torso's: it reaches from x_min to `width` of the torso's half width, in depth
-  /// over `depth` of it. Up to a width of .94 and a depth of .78 no point of it lies outside.
+  /// A leg's ellipse within a torso's: from x_min to `width` of the torso's half width, and over `depth` of
+  /// its depth. Up to a width of .94 and a depth of .78, it lies inside.
   static EllipseSection within(const EllipseSection& torso, double x_min, double width, double depth) {
     const double z = (torso.z_min + torso.z_max) / 2;
     return {torso.height, x_min, width * torso.x_max, between(z, torso.z_min, depth),
             between(z, torso.z_max, depth)};
   }
 
-  /// The share of the way from the thigh's axis to the ankle's.
+  /// The fraction of the way from the thigh's axis to the ankle's.
   double share_of_leg(double height) const {
     return (m_.thigh.height - height) / (m_.thigh.height - m_.ankle.height);
   }
@@ -305,7 +305,7 @@ class Figure {
     sections.push_back(section_of_girth(at.height, at.girth, aspect, x, z));
   }
 
-  /// Between the sections a leg's inner edge is monotone, so they are all there is to look at.
+  /// A leg's inner edge is monotone between sections, so only sections are checked.
   void check_apart(const std::vector<EllipseSection>& leg) const {
     constexpr double least = 0.002;
     const auto nearest = std::ranges::min_element(leg, {}, &EllipseSection::x_min);
@@ -328,7 +328,7 @@ class Figure {
   double thigh_axis_ = 0;  ///< x of the leg's middle at the thigh's height
 };
 
-/// The mirror image in x.
+/// The sections mirrored in x.
 std::vector<EllipseSection> mirrored(std::vector<EllipseSection> sections) {
   for (EllipseSection& section : sections) {
     std::swap(section.x_min, section.x_max);
@@ -361,8 +361,9 @@ void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, std
 
 Surface mannequin(const BodyMeasures& measures, std::uint32_t cells_around) {
   if (cells_around < 16 || cells_around > 512 || cells_around % 4 != 0)
-    throw InputError("the points around a mannequin are {}; give a multiple of four from 16 to 512",
-                     cells_around);
+    throw InputError(
+        "a mannequin cannot have {} points around its torso; give a multiple of four from 16 to 512",
+        cells_around);
   const Figure figure(measures);
   const double cell = measures.hip.girth / cells_around;
   const std::uint32_t around_leg = 4 * ((cells_around + 3) / 6);

@@ -9,11 +9,11 @@
 namespace mssim {
 namespace {
 
-/// A triangle that the plane cuts, and the two edges in which it does.
+/// A triangle that the plane cuts, and its two cut edges.
 struct CutTriangle {
   std::uint32_t triangle = 0;
   std::uint64_t in = 0, out = 0;  ///< names of the edges
-  PlanPoint at;                   ///< where the plane cuts the first
+  PlanPoint at;                   ///< intersection of the plane and edge `in`
   bool done = false;
 };
 
@@ -21,7 +21,7 @@ std::uint64_t edge_name(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-/// Where the plane cuts an edge of which one end is below it.
+/// The intersection of the plane and an edge from below it to above it.
 PlanPoint crossing(const Vec3d& below, const Vec3d& above, double y) {
   const double fraction = (y - below.y) / (above.y - below.y);
   return {below.x + fraction * (above.x - below.x), below.z + fraction * (above.z - below.z)};
@@ -90,24 +90,24 @@ std::vector<Side> sides_within(const SectionLoop& loop, const PlanPoint& low, co
 
 constexpr double narrow = 0.6;          // chord over outline
 constexpr double small_part = 0.25;     // of the area
-constexpr double least_outline = 0.05;  // m, of what is a limb rather than a fold of the skin
-/// Ends of chords that are tried along an outline: of a trunk's, every third of a centimetre.
+constexpr double least_outline = 0.05;  // m, of a limb; folds of the skin have less
+/// Number of ends of chords tried along an outline: one every third of a centimetre for a trunk.
 constexpr std::size_t most_ends = 300;
 
 double distance(const PlanPoint& a, const PlanPoint& b) { return std::hypot(a.x - b.x, a.z - b.z); }
-/// Are two points farther apart than that, m, whatever rounding does? Takes a fraction of the distance's
-/// time.
+/// Whether two points are farther apart than `far`, m, by more than rounding errors. Faster than distance().
 bool are_surely_farther(const PlanPoint& a, const PlanPoint& b, double far) {
   const double x = a.x - b.x, z = a.z - b.z;
   return x * x + z * z > (1 + 1e-9) * far * far;
 }
 
-/// The part of a loop from its point `first` to its point `last`, round its beginning where that is smaller.
+/// The part of a loop from its point `first` to its point `last`, around the loop's start if `last` is
+/// smaller.
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
 
-/// Lengths and areas along a loop, so that those of any stretch take two look-ups.
+/// Prefix sums of lengths and areas along a loop: those of any stretch take two look-ups.
 class Outline {
  public:
   explicit Outline(const std::vector<PlanPoint>& points) : points_(points) {
@@ -121,7 +121,7 @@ class Outline {
   std::size_t size() const { return points_.size(); }
   const PlanPoint& operator[](std::size_t i) const { return points_[i]; }
   double length(const Stretch& s) const { return between(length_, s); }
-  /// What the stretch and its chord enclose, as a share of what the loop does; negative where the chord runs
+  /// The area that the stretch and its chord enclose, as a fraction of the loop's; negative if the chord runs
   /// outside.
   double fraction(const Stretch& s) const {
     return (between(twice_area_, s) + cross(points_[s.last], points_[s.first])) / twice_area_.back();

@@ -15,19 +15,19 @@ namespace {
 constexpr std::array<LengthUnit, 6> table{
     {{"m", 1}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"inch", 0.0254}, {"foot", 0.3048}}};
 
-/// How many times too small or too large a person of this height, m, would be; 1 for a person.
+/// Factor by which this height, m, is too small or too large for a person; 1 for a person.
 double misfit(double height) { return std::max({1.0, shortest_person / height, height / tallest_person}); }
 
 constexpr std::array<Vec3d, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// The smallest box that holds the surface.
+/// The bounding box of a surface.
 Box<double> box_of(const Surface& surface) {
   Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
   for (const Vec3d& point : surface.points) extend(box, point);
   return box;
 }
 
-/// The body stood up in one way.
+/// The body in one possible stance.
 struct Candidate {
   BodyStance stance;
   Surface body;
@@ -37,13 +37,13 @@ struct Candidate {
     stand(surface);
   }
 
-  /// After a change of stance.
+  /// Updates body and gaps after a change of stance.
   void stand(const Surface& surface) {
     body = stood_up(surface, stance);
     gaps = leg_gaps(body);
   }
 
-  /// How wide the legs are apart, over all heights: the larger, the more is it legs seen from ahead.
+  /// The distance between the legs, summed over all heights: largest if legs are seen from the front.
   double apartness() const {
     double sum = 0;
     for (const LegGap& gap : gaps) sum += gap.high - gap.low;
@@ -55,7 +55,7 @@ std::vector<UpAxis> possible_axes(const Surface& body, const GivenStance& given)
   if (given.up) return {*given.up};
   if (given.facing && !is_level(*given.facing, UpAxis::y)) return {UpAxis::z};
   if (given.facing && !is_level(*given.facing, UpAxis::z)) return {UpAxis::y};
-  // Arms that are held sideways reach about as far as a person is high.
+  // The span of arms held sideways is about a person's height.
   constexpr double least_share = 0.75;
   const Vec3d size = box_of(body).size();
   const double least = least_share * std::max({size.x, size.y, size.z});
@@ -65,7 +65,7 @@ std::vector<UpAxis> possible_axes(const Surface& body, const GivenStance& given)
   if (possible.empty())
     throw InputError("it is " + shown(size.x) + " long in x, " + shown(size.y) + " in y and " +
                      shown(size.z) +
-                     " in z, so that it stands upright neither in y nor in z; turn it in the file");
+                     " in z, so that it is upright neither in y nor in z; turn it in the file");
   return possible;
 }
 
@@ -85,8 +85,8 @@ std::vector<Candidate> candidates(const Surface& body, const GivenStance& given)
   return all;
 }
 
-/// How much farther the feet reach ahead than behind, seen from the shins, over their length; positive where
-/// the body looks to +z.
+/// How much farther the feet reach forwards than backwards from the shins, over their length; positive if the
+/// body faces +z.
 double toes_ahead(const Surface& body) {
   const Box<double> box = box_of(body);
   const double height = box.size().y;
@@ -107,7 +107,8 @@ double toes_ahead(const Surface& body) {
   return std::isfinite(fraction) ? fraction : 0;
 }
 
-/// The angle, in degrees, between the legs' middles and the sideways axis; the median over the gaps.
+/// The angle, in degrees, between the line through the legs' middles and the sideways axis; the median over
+/// the gaps.
 double turned_degrees(const std::vector<LegGap>& gaps) {
   std::vector<double> angles;
   for (const LegGap& gap : gaps)
@@ -120,9 +121,9 @@ double turned_degrees(const std::vector<LegGap>& gaps) {
 
 Facing opposite(Facing facing) { return static_cast<Facing>(static_cast<std::uint32_t>(facing) ^ 1U); }
 
-/// Turns the candidate until its legs stand side by side, in whole degrees.
+/// Turns the candidate in whole degrees until its legs are side by side.
 void turn_ahead(Candidate& best, const Surface& surface) {
-  constexpr int turns = 2;  // seen askew, legs are not quite where they are
+  constexpr int turns = 2;  // in an oblique view, the middles of legs are inexact
   for (int i = 0; i < turns; ++i) {
     best.stance.turn_deg -= std::round(turned_degrees(best.gaps));
     best.stand(surface);
@@ -131,17 +132,17 @@ void turn_ahead(Candidate& best, const Surface& surface) {
 
 void find_facing(Candidate& best, const Surface& surface, const GivenStance& given,
                  std::vector<std::string>& doubts) {
-  constexpr double clear = 0.15;  // toes of a foot of 25 cm reach 4 cm farther ahead than its heel behind
-  constexpr double askew = 12;    // degrees: less may be one foot before the other
+  constexpr double clear = 0.15;  // a foot of 25 cm: toes reach 4 cm farther forwards than heels backwards
+  constexpr double askew = 12;    // degrees: less may be one foot in front of the other
   const double turned = std::round(turned_degrees(best.gaps));
   if (std::abs(turned) > askew && given.facing)
-    doubts.push_back("facing: its legs stand " + shown(turned) +
+    doubts.push_back("facing: its legs are " + shown(turned) +
                      " degrees off the axis; turn_deg in the scene's surface_file turns it");
   if (given.facing) return;
   if (std::abs(turned) > askew) {
     turn_ahead(best, surface);
-    doubts.push_back("facing: its legs stand off the axes, so it is turned by " +
-                     shown(best.stance.turn_deg) + " degrees; give --facing to leave it as it is");
+    doubts.push_back("facing: its legs are oblique to the axes, so mssim turns it by " +
+                     shown(best.stance.turn_deg) + " degrees; give --facing to prevent this");
   }
   const double toes = toes_ahead(best.body);
   if (toes < 0) {
@@ -149,7 +150,7 @@ void find_facing(Candidate& best, const Surface& surface, const GivenStance& giv
     best.stand(surface);
   }
   if (std::abs(toes) < clear)
-    doubts.emplace_back("facing: its feet reach about as far ahead as behind; give it with --facing");
+    doubts.emplace_back("facing: its feet reach about as far forwards as backwards; give it with --facing");
 }
 
 double unit_of(double height, const GivenStance& given, std::vector<std::string>& doubts) {
@@ -157,17 +158,17 @@ double unit_of(double height, const GivenStance& given, std::vector<std::string>
   if (given.unit_m) {
     const double person = height * *given.unit_m;
     if (person < shortest_person || person > tallest_person)
-      doubts.push_back(fmt::format("unit: the body is {} high in the unit given, and people are {} to {} m",
+      doubts.push_back(fmt::format("unit: the body is {} high in the given unit, but people are {} to {} m",
                                    metres(*given.unit_m), shown(shortest_person), shown(tallest_person)));
     return *given.unit_m;
   }
   const auto guess = guess_unit(height);
   if (!guess)
-    throw InputError("it is {} high, which in no unit is a person of {} to {} m; give the unit with --unit",
+    throw InputError("it is {} high, which is no person of {} to {} m in any unit; give the unit with --unit",
                      shown(height), shown(shortest_person), shown(tallest_person));
   if (!guess->certain)
     doubts.push_back(fmt::format(
-        "unit: in {} the body is {} high, which is nearest to a person of {} to {} m; give it with --unit",
+        "unit: in {} the body is {} high, nearest to a person of {} to {} m; give the unit with --unit",
         guess->unit.name, metres(guess->unit.metres), shown(shortest_person), shown(tallest_person)));
   return guess->unit.metres;
 }
@@ -204,7 +205,7 @@ bool is_level(Facing facing, UpAxis up) { return dot(direction_of(facing), direc
 
 Surface stood_up(Surface body, const BodyStance& stance) {
   const Vec3d up = direction_of(stance.up), ahead = direction_of(stance.facing), left = cross(up, ahead);
-  // Without a turn these are 1 and 0, which change no bit.
+  // Without a turn these are 1 and 0, so that positions are bitwise identical.
   const double turn = stance.turn_deg * std::numbers::pi / 180, cosine = std::cos(turn),
                sine = std::sin(turn);
   for (Vec3d& point : body.points) {
@@ -221,8 +222,7 @@ StanceGuess guess_stance(const Surface& body, const GivenStance& given) {
   std::vector<std::string> doubts;
   if (best->gaps.empty() && !(given.up && given.facing))
     doubts.emplace_back(
-        "up and facing: it has no two legs side by side that would show them; give them with --up and "
-        "--facing");
+        "up and facing: it has no two legs side by side to find them by; give them with --up and --facing");
   find_facing(*best, body, given, doubts);
   const Box<double> box = box_of(best->body);
   BodyStance stance = best->stance;

@@ -12,9 +12,9 @@
 namespace mssim {
 namespace {
 
-constexpr double rim = 0.03;  // m; 2 cm leave thorns, 4 cm join the hip's opening with the armpit's
+constexpr double rim = 0.03;  // m; 2 cm leave spikes, 4 cm join the openings of hip and armpit
 
-/// Corners and middles of the triangles that do not stay, from below upwards.
+/// Corners and middles of the triangles that do not stay, bottom up.
 std::vector<Vec3d> left_out_points(const Surface& surface, const std::vector<bool>& stays) {
   std::vector<Vec3d> points;
   for (std::size_t t = 0; t < stays.size(); ++t) {
@@ -30,9 +30,9 @@ std::vector<Vec3d> left_out_points(const Surface& surface, const std::vector<boo
   return points;
 }
 
-/// Leaves out what lies within 3 cm of the triangles that do not stay: where a hand has been cut off a hip,
-/// the lip between them, whose edge would stand out of the patch over the cut, and thorns where they nearly
-/// touch. Nearness is that of a triangle's corners to corners and middles of those left out.
+/// Also removes triangles with a corner within 3 cm of a corner or middle of one that does not stay. After
+/// cutting a hand off a hip, these are the lip between them, whose edge would stick out of the patch over the
+/// cut, and spikes where they nearly touch.
 void leave_out_rim(const Surface& surface, std::vector<bool>& stays) {
   const std::vector<Vec3d> left_out = left_out_points(surface, stays);
   std::vector<bool> is_near(surface.points.size());
@@ -51,7 +51,7 @@ void leave_out_rim(const Surface& surface, std::vector<bool>& stays) {
 struct Group {
   std::vector<SectionLoop> loops;
   double area = 0;       ///< m^2, of the largest loop
-  bool by_neck = false;  ///< cut off from another one
+  bool by_neck = false;  ///< cut off another group
   bool kept = false;
 
   bool reaches_middle() const {
@@ -88,11 +88,11 @@ std::vector<Group> grouped(std::vector<SectionLoop> loops) {
   return groups;
 }
 
-/// A thigh has eight times the section of a hand, a trunk six times that of an arm; halves of a foot are of a
-/// size.
+/// A thigh has eight times the section of a hand, a trunk six times that of an arm; halves of a foot are
+/// about equal.
 constexpr double much_smaller = 0.25;
 
-/// Large groups of a single loop without what hangs on it by narrow necks, which are groups of their own.
+/// Splits large groups of a single loop at narrow necks into separate groups.
 std::vector<Group> parted(std::vector<Group> groups) {
   double largest = 0;
   for (const Group& group : groups) largest = std::max(largest, group.area);
@@ -128,7 +128,7 @@ std::vector<Level> levels_of(const Surface& surface) {
   return levels;
 }
 
-/// The largest group of a level of which `may` is true; null where there is none.
+/// The largest group of a level for which `may` is true; null if there is none.
 template <class May>
 Group* largest(Level& level, const May& may) {
   Group* found = nullptr;
@@ -137,7 +137,7 @@ Group* largest(Level& level, const May& may) {
   return found;
 }
 
-/// Does a group of the level that is kept, or one that is not, overlap this one of another level?
+/// Whether a group of the level, kept or not, overlaps this group of another level.
 bool any_overlaps(const Level& level, bool kept, const Group& group) {
   return std::ranges::any_of(level.groups,
                              [&](const Group& other) { return other.kept == kept && overlap(other, group); });
@@ -155,7 +155,7 @@ std::optional<std::size_t> middle_of_trunk(const std::vector<Level>& levels) {
   return longest > 0 ? std::optional(middle) : std::nullopt;
 }
 
-/// Keeps what hangs from the groups kept in the level above.
+/// Keeps groups that hang from those kept in the level above.
 void keep_below(const Level& above, Level& level) {
   for (const Group& from : above.groups) {
     if (!from.kept) continue;
@@ -168,7 +168,7 @@ void keep_below(const Level& above, Level& level) {
   }
 }
 
-/// Keeps what stands on the groups kept in the levels below, unless it leads back to the trunk.
+/// Keeps groups on top of those kept in the levels below, unless they lead back to the trunk.
 void keep_above(std::vector<Level>& levels, std::size_t from) {
   std::vector<const Group*> trunk(levels.size());
   trunk[from] = largest(levels[from], [](const Group& group) { return group.kept; });
@@ -194,8 +194,8 @@ void keep_above(std::vector<Level>& levels, std::size_t from) {
   }
 }
 
-/// Keeps what has been cut off at a neck but hangs from no part that is apart further up: it is no limb, or
-/// one that only begins there, as arms do at the shoulders.
+/// Keeps groups cut off at a neck that do not hang from a separate part above: they are no limb, or the start
+/// of one, such as arms at the shoulders.
 void keep_bulges(std::vector<Level>& levels) {
   for (std::size_t i = levels.size(); i-- > 0;)
     for (Group& group : levels[i].groups)
@@ -203,8 +203,8 @@ void keep_bulges(std::vector<Level>& levels) {
         group.kept = i + 1 == levels.size() || !any_overlaps(levels[i + 1], false, group);
 }
 
-/// Says for each triangle whether it stays: as its loop does at the level next to its middle that cuts it; as
-/// its neighbours do where no level cuts it.
+/// Whether each triangle stays: as its loop at the level nearest to its middle that cuts it, or as its
+/// neighbours if no level cuts it.
 std::vector<bool> staying(const Surface& surface, const std::vector<Level>& levels) {
   enum class Part : std::uint8_t { unknown, other, kept };
   std::vector<Part> of_triangle(surface.triangles.size(), Part::unknown);
@@ -324,9 +324,8 @@ TrunkAndLegs trunk_and_legs(const Surface& surface) {
 
 std::string ignored_parts(const TrunkAndLegs& body) {
   if (!body.left_out) return "";
-  return "garments ignore what the body has beside trunk and legs (arms, hands, hair), " +
-         shown(*body.left_out) +
-         (body.touched ? fmt::format("; {} they touch the body, whose measures are less certain there",
+  return "garments ignore all but trunk and legs of the body (arms, hands, hair), " + shown(*body.left_out) +
+         (body.touched ? fmt::format("; {} these parts touch the body, and its measures are uncertain",
                                      shown(*body.touched))
                        : "");
 }

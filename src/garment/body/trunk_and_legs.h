@@ -12,19 +12,19 @@
 
 namespace mssim {
 
-/// Heights from one to another, m.
+/// A range of heights, m.
 struct HeightRange {
   double low = 0, high = 0;
 };
 
-/// The triangles of a surface by horizontal slices of equal height.
+/// The triangles of a surface, sorted into horizontal slices of equal height.
 class HeightSlices {
  public:
   explicit HeightSlices(const Surface& surface);
 
   double lowest() const { return lowest_; }    ///< y, m
   double highest() const { return highest_; }  ///< y, m
-  /// Those that reach into the slice at the height y, which the surface has; in their order.
+  /// The triangles that reach into the slice at the height y, in their order; y is within the surface.
   std::span<const std::uint32_t> at(double y) const { return slices_[slice_of(y)]; }
 
  private:
@@ -34,56 +34,55 @@ class HeightSlices {
   std::vector<std::vector<std::uint32_t>> slices_;
 };
 
-/// What of a body garments are measured for and meet.
+/// The part of a body for which garments are measured and with which they collide.
 struct TrunkAndLegs {
   Surface surface;                      ///< closed
-  std::optional<HeightRange> left_out;  ///< where the body has other parts
-  /// Where such a part touches trunk or leg (a hand the hip, say): it is cut off there at its narrowest, or
-  /// counts as trunk or leg from there down.
+  std::optional<HeightRange> left_out;  ///< heights of other parts of the body
+  /// Heights at which such a part touches trunk or leg, for example a hand the hip. It is cut off at its
+  /// narrowest point there, or counts as trunk or leg from there down.
   std::optional<HeightRange> touched;
 };
 
-/// A standing body (BodyProfile) without arms, hands, hair and what stands beside it: its trunk, its legs,
-/// and what grows upwards out of them. The closed loops of many horizontal sections tell them apart. Loops
-/// that overlap, or lie within each other, are one. From the largest that reaches x = 0 half way up the
-/// body's trunk on, what overlaps it at the next height belongs to it, too: downwards but for what is much
-/// smaller than the rest (an arm beside the trunk, fingers beside a thigh), upwards but for what is joined
-/// with the trunk again further up. A hand that rests against the hip is cut off at its neck
-/// (cut_at_necks) where it hangs from an arm. Left out are whole triangles, with a rim where
-/// parts touch, and where that opens the surface it is closed. A surface without other parts, and one that
-/// reaches x = 0 nowhere, is given back as it is.
+/// A standing body (BodyProfile) without arms, hands, hair and objects next to it: trunk, legs, and the parts
+/// above them. The closed loops of many horizontal sections distinguish the parts; loops that overlap or
+/// contain each other form one group. The search starts from the largest group that reaches x = 0 half way up
+/// the trunk, and adds groups that overlap it at the next height. Downwards, it excludes groups much smaller
+/// than the rest (an arm next to the trunk, fingers next to a thigh); upwards, groups that join the trunk
+/// again further up. A hand that hangs from an arm and touches the hip is cut off at its neck (cut_at_necks).
+/// The result omits whole triangles, with a rim where parts touch, and closes the openings. A surface without
+/// other parts, or that does not reach x = 0, is returned unchanged.
 ///
 /// `surface` is closed (validate_surface).
 TrunkAndLegs trunk_and_legs(const Surface& surface);
 
-/// What a reader should know of it: which parts of the body garments ignore, and where that is not certain.
-/// Empty where there are none.
+/// A note about the parts of the body that garments ignore, and the heights where that is uncertain. Empty if
+/// there are none.
 std::string ignored_parts(const TrunkAndLegs& body);
 
-/// A closed line in which a surface meets a horizontal plane.
+/// A closed line in which a surface intersects a horizontal plane.
 struct SectionLoop {
-  std::vector<PlanPoint> points;         ///< m, in their order
-  std::vector<std::uint32_t> triangles;  ///< in which it runs, from each point to the next
-  double area = 0;                       ///< m^2, what it encloses, whichever way it runs
+  std::vector<PlanPoint> points;         ///< m, in order
+  std::vector<std::uint32_t> triangles;  ///< with the line from each point to the next
+  double area = 0;                       ///< m^2, enclosed, not negative
 
   PlanPoint low, high;  ///< corners of the box around it
 };
 
-/// The loops of a closed surface (validate_surface) at the height y, m, each once. `triangles` are all that
-/// may reach the plane. A point in the plane counts as above it, so that loops close whatever lies in it.
+/// The loops of a closed surface (validate_surface) at the height y, m. `triangles` includes all that may
+/// reach the plane. A point in the plane counts as above it, so that all loops close.
 std::vector<SectionLoop> section_loops(const Surface& surface, std::span<const std::uint32_t> triangles,
                                        double y);
 
 /// The loop through these points, with area and box.
 SectionLoop loop_of(std::vector<PlanPoint> points, std::vector<std::uint32_t> triangles);
 
-/// Do the areas within two loops have a point in common?
+/// Whether the areas within two loops have a common point.
 bool overlap(const SectionLoop& a, const SectionLoop& b);
 
-/// Cuts off what is joined to a loop by a narrow neck, as a hand is that rests against a hip: by a chord of
-/// at most 0.6 of the outline that it cuts off, with at most a quarter of the area, all on one side of x = 0.
-/// The narrowest necks go first. What remains of the loop stands at the front. Halves of a trunk above the
-/// crotch are no such parts, being of a size, nor are bulges, which have no neck.
+/// Cuts off parts that a narrow neck joins to a loop, for example a hand that touches a hip. The chord is at
+/// most 0.6 of the outline that it cuts off; the part has at most a quarter of the area and is on one side of
+/// x = 0. The narrowest necks are cut first. The first loop of the result is the rest. Halves of a trunk
+/// above the crotch stay, because their areas are about equal, and bulges, because they have no neck.
 std::vector<SectionLoop> cut_at_necks(SectionLoop loop);
 
 }  // namespace mssim

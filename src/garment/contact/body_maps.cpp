@@ -32,10 +32,10 @@ SideMap side_map(const Surface& surface, const std::vector<Vec3d>& normals, cons
 
 namespace {
 
-/// What faces the camera least: the z of a unit normal, 6 degrees from edge-on. Within a pixel at the
-/// silhouette the face of a limb turns by about as much.
+/// Smallest z of a plane's unit normal towards the camera: 6 degrees from edge-on. The face of a limb turns
+/// by about as much within a pixel at the silhouette.
 constexpr double least_facing = 0.1;
-/// n . P of a plane that no point is behind.
+/// n . P of a plane with no point behind it.
 constexpr float beyond_all = -1e30F;
 constexpr int most_dilation = 64;
 
@@ -51,7 +51,7 @@ void check(const BodyMapSettings& settings) {
                                             settings.dilation, most_dilation));
 }
 
-/// The surface's extent with room for offset and dilation, and a border of pixels that stay empty.
+/// The surface's extent with margins for offset and dilation, and a border of pixels that stay empty.
 PixelGrid grid_of(const Surface& surface, const BodyMapSettings& settings) {
   check(settings);
   if (surface.points.empty()) return {0, 0, settings.pixel, 1, 1};
@@ -62,11 +62,12 @@ PixelGrid grid_of(const Surface& surface, const BodyMapSettings& settings) {
     const double pixels = std::ceil((high - low + 2 * margin) / settings.pixel);
     if (!(pixels <= most_pixels_a_side))
       throw std::invalid_argument(fmt::format(
-          "the body's maps would be {} pixels of {} m along {}; give larger pixels, for {} at most",
+          "the body's maps would have {} pixels of {} m along {}; give larger pixels, so that there are at "
+          "most {}",
           decimal(pixels), decimal(settings.pixel), axis, most_pixels_a_side));
     return static_cast<std::uint32_t>(pixels);
   };
-  // What a pixel covers is computed from the corner in single precision later on.
+  // In single precision, because later code computes the extents of pixels from this corner in it.
   return {static_cast<float>(left.x - margin), static_cast<float>(bottom.y - margin), settings.pixel,
           pixels_over(left.x, right.x, "x"), pixels_over(bottom.y, top.y, "y")};
 }
@@ -79,7 +80,7 @@ Vec3d leaning_to_camera(const Vec3d& normal, double camera) {
   return {scale * normal.x, scale * normal.y, camera * least_facing};
 }
 
-/// The unit normal and n . P of the tangent plane of a pixel; camera: the side that it shows, +1 or -1.
+/// The unit normal and n . P of the tangent plane of a pixel. camera: side of the image, +1 or -1.
 std::array<float, 4> tangent_plane(const SideMap& map, std::size_t pixel, const Vec3d& centre,
                                    double camera) {
   const Vec3d normal = leaning_to_camera(map.normal[pixel], camera);
@@ -92,8 +93,8 @@ BodyPixel record(const std::array<float, 4>& front, const std::array<float, 4>& 
   return {{front[0], front[1], front[2], front[3], back[0], back[1], back[2], back[3]}};
 }
 
-/// Every empty pixel beside one that is not gets its planes; of several, beside goes before above and below,
-/// and those before the corners.
+/// Gives every empty pixel the planes of a neighbour that is not empty: preferably of one in its row, then in
+/// its column, then at a corner.
 void dilate(std::vector<BodyPixel>& pixels, std::uint32_t columns) {
   const auto wide = static_cast<std::ptrdiff_t>(columns);
   const std::array<std::ptrdiff_t, 8> around{-1, 1, -wide, wide, -wide - 1, -wide + 1, wide - 1, wide + 1};

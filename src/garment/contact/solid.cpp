@@ -15,8 +15,8 @@ namespace {
 
 constexpr double anywhere = std::numeric_limits<double>::infinity();
 
-/// Where another ray starts, in distances from the surface. Shorter than one, and with coordinates that stand
-/// in no ratio that a mesh would have.
+/// Offsets of the starts of other rays, in units of the distance from the surface: shorter than 1, with
+/// ratios of coordinates that meshes do not have.
 constexpr std::array<Vec3d, 4> moves{
     {{0.137, 0.541, 0.297}, {-0.219, -0.313, 0.613}, {0.331, -0.467, -0.179}, {-0.083, 0.229, -0.733}}};
 
@@ -30,7 +30,7 @@ bool is_inside(const TriangleTree& part, const Vec3d& point) {
   return part.winding_by_angles(point) != 0;
 }
 
-/// The corners of the triangles within the band, and where their edges leave it.
+/// The corners of triangles within the band, and the points where edges leave it.
 std::vector<Vec3d> points_of_band(const Surface& body, double lowest, double highest) {
   std::vector<Vec3d> points;
   for (const Vec3d& point : body.points)

@@ -8,44 +8,44 @@
 
 namespace mssim {
 
-/// A body as the space that its surface encloses: exact tests in double precision, against which what is
-/// fast and approximate (BodyMaps) is held.
+/// The space that a body's surface encloses: exact tests in double precision, with which the fast
+/// approximation (BodyMaps) is compared.
 ///
-/// A surface of several connected parts stands for their union; parts may overlap. A point is inside a part
-/// when the part's surface goes round it, that is when its winding number is not zero. The number is counted
-/// along a ray, where every determinant that decides has a bound of its rounding error. Where a sign is not
-/// certain, because the ray passes too near an edge or a vertex, the ray starts at another point that must be
-/// on the same side, since it is nearer to the point than the surface; and if that fails again and again,
-/// the solid angles of all triangles decide, which know no special positions.
+/// A surface of several connected parts represents their union; parts may overlap. A point is inside a part
+/// if the winding number of the part's surface around it is not zero. A ray determines that number, with a
+/// bound of the rounding error of every determinant. If a sign is uncertain, because the ray passes too near
+/// an edge or vertex, the ray starts at another point on the same side: one nearer to the first point than
+/// the surface is. If this fails repeatedly, the sum of the solid angles of all triangles decides, which has
+/// no special cases.
 ///
-/// Immutable: threads may ask it at the same time.
+/// Immutable: threads may use it concurrently.
 class Solid {
  public:
   /// Throws InputError unless validate_surface accepts the surface.
   explicit Solid(const Surface& surface);
 
-  /// How deep the point (m) lies inside, m: 0 outside all parts, inside one part the distance from that
-  /// part's surface, inside several the largest of these. A point that is not finite is outside.
+  /// Depth of a point (m) inside the body, m: the distance from the surface of the part around it, the
+  /// largest of these inside several parts, and 0 outside all. A point that is not finite is outside.
   double depth(const Vec3d& point) const;
 
-  /// depth() of each point, by that many threads; 0: as many as OpenMP takes.
+  /// depth() of each point, on `threads` threads; 0: OpenMP's default.
   std::vector<double> depths(std::span<const Vec3d> points, int threads = 0) const;
 
-  /// Distance of the point (m) from the nearest triangle of any part, m, inside as outside.
+  /// Distance of a point (m), inside or outside, from the nearest triangle of any part, m.
   double distance(const Vec3d& point) const;
 
  private:
   std::vector<TriangleTree> parts_;
 };
 
-/// The convex hull of what a body has between two heights: the body as taut cloth meets it, which bridges
-/// hollows. Its planes stand at every second degree around and up to 30 degrees up and down.
+/// The convex hull of a body between two heights: like taut cloth, it bridges hollows. The normals of its
+/// planes are 2 degrees apart around the body and up to 30 degrees up and down.
 class BandHull {
  public:
   /// Heights are y, m.
   BandHull(const Surface& body, double lowest, double highest);
 
-  /// How far outside the point lies, m; 0 inside.
+  /// Distance of a point outside from the hull, m; 0 inside.
   double distance(const Vec3d& point) const;
 
  private:

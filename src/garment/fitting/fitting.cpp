@@ -19,7 +19,7 @@
 namespace mssim {
 namespace {
 
-/// Distance that a share of the nodes has moved less than, m.
+/// The quantile of the distances that nodes have moved, m.
 double moved(const State& before, const State& after, double fraction) {
   std::vector<double> distances;
   distances.reserve(after.position.size());
@@ -33,7 +33,7 @@ class FrameDelivery {
  public:
   explicit FrameDelivery(const DressingFrames& frames) : frames_(frames) {}
 
-  /// Steps after which the next frame is due; none where nobody looks.
+  /// Steps after which the next frame is due; none without a receiver.
   std::optional<std::int64_t> due() const {
     return frames_.on_frame ? std::optional(frames_.grid.step_of(next_)) : std::nullopt;
   }
@@ -48,7 +48,7 @@ class FrameDelivery {
   std::int64_t next_ = 0;
 };
 
-/// Steps from `done` to `end`, where it leaves a frame that is due to the caller.
+/// Steps from `done` to `end`, and delivers the frames due before `end`.
 void step_through(DressingBackend& backend, std::int64_t done, std::int64_t end, FrameDelivery& frames) {
   for (auto due = frames.due(); due && *due < end; due = frames.due()) {
     backend.step(static_cast<int>(*due - done));
@@ -80,8 +80,8 @@ void measure_side_distance(const CloseCloth& close, const std::vector<Vec3d>& po
   fit.side_distance_height = points[static_cast<std::size_t>(farthest - distances.begin())].y;
 }
 
-/// Whether a spring of the 12-neighbour stencil is one whose elongation counts: one that spans a single cell.
-/// Bending springs, two cells long, may change length by bending.
+/// Whether the elongation of a spring of the 12-neighbour stencil counts: it spans a single cell. Bending
+/// springs, two cells long, may change length by bending.
 bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
   const GarmentPanel& panel = garment.panel_of(spring.first);
   const std::uint32_t first = spring.first - panel.first_node, second = spring.second - panel.first_node;
@@ -100,7 +100,7 @@ std::vector<double> elongations(const System& system, const Garment& garment,
   return elongations;
 }
 
-/// Mean height of nodes, one or more, above where the pattern puts them.
+/// Mean height of nodes, one or more, above their place in the pattern.
 double mean_rise(const Garment& garment, const std::vector<Vec3d>& position,
                  const std::vector<std::uint32_t>& nodes) {
   double rise = 0;
@@ -108,7 +108,7 @@ double mean_rise(const Garment& garment, const std::vector<Vec3d>& position,
   return rise / static_cast<double>(nodes.size());
 }
 
-/// The mean rise of the upper edges of a layer's panels, of the layer where it is farthest off.
+/// The mean rise of the upper edges of a layer's panels, of the layer with the largest deviation.
 double upper_edge_rise(const Garment& garment, const std::vector<Vec3d>& position) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> edges;
   for (const GarmentPanel& panel : garment.panels)
@@ -135,7 +135,7 @@ std::vector<std::uint32_t> where_seams_meet(const Garment& garment) {
   return nodes;
 }
 
-/// Rows of two panels that are sewn to each other at both ends, as closed loops of nodes.
+/// Closed loops of nodes: rows of two panels that are sewn to each other at both ends.
 std::vector<std::vector<std::uint32_t>> sewn_rows(const Garment& garment) {
   // For each end of a row, the nodes of other panels that it is sewn to.
   std::multimap<std::uint32_t, std::uint32_t> sewn_to;
@@ -162,7 +162,7 @@ std::vector<std::vector<std::uint32_t>> sewn_rows(const Garment& garment) {
         std::vector<std::uint32_t> loop;
         for (std::uint32_t column = 0; column < panel.columns; ++column)
           loop.push_back(panel.node(row, column));
-        // The other panel is seen from its own outside: its left is this one's right.
+        // Each panel is seen from its own outside: the other's left is this one's right.
         for (std::uint32_t column = 0; column < other->columns; ++column)
           loop.push_back(other->node(other_row, column));
         loops.push_back(std::move(loop));
@@ -171,7 +171,7 @@ std::vector<std::vector<std::uint32_t>> sewn_rows(const Garment& garment) {
   return loops;
 }
 
-/// How often a loop goes around an upright axis.
+/// The winding number of a loop around a vertical axis.
 int turns_around(const std::vector<std::uint32_t>& loop, const std::vector<Vec3d>& position,
                  const Vec3d& axis) {
   double angle = 0;
@@ -182,8 +182,7 @@ int turns_around(const std::vector<std::uint32_t>& loop, const std::vector<Vec3d
   return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
-/// What led to a number beyond its bound, as far as that can be told, and what may help. The keys are those
-/// of scene files.
+/// A likely cause of a number out of bounds, and a remedy with the keys of scene files.
 struct Diagnosis {
   std::string_view happened, remedy;
 };
@@ -192,11 +191,11 @@ constexpr Diagnosis pierced{"the body comes through", "a larger skin_m or more n
 constexpr Diagnosis stretched{"the cloth is stretched",
                               "a wider garment (hip_ease_m, waist_ease_m) or stiffer cloth"};
 
-/// How a number is shown.
+/// Units of a number.
 struct Unit {
-  double per_unit;          ///< factor to the unit that the number's name ends in
-  std::string_view spoken;  ///< in a sentence, with what goes before it
-  double per_spoken;        ///< factor to that
+  double per_unit;          ///< factor to the unit at the end of the number's name
+  std::string_view spoken;  ///< unit in a sentence, with a leading space
+  double per_spoken;        ///< factor to the unit in a sentence
 };
 constexpr Unit plain{1, "", 1}, millimetres{1e3, " mm", 1e3}, per_cent{1, " %", 100};
 
@@ -205,10 +204,10 @@ struct FitNumber {
   std::string_view name;
   std::variant<double Fit::*, std::size_t Fit::*, std::optional<double> Fit::*> value;
   Unit unit = plain;
-  double FitBounds::*bound = nullptr;  ///< on the magnitude; null where there is none
+  double FitBounds::*bound = nullptr;  ///< on the magnitude; null: none
   std::string_view what{};             ///< in a sentence
   Diagnosis too_large{};
-  Diagnosis too_small{};  ///< where there is one, the bound holds in both directions
+  Diagnosis too_small{};  ///< if there is one, the bound holds in both directions
 };
 
 constexpr auto numbers = std::to_array<FitNumber>({
@@ -249,25 +248,25 @@ constexpr auto numbers = std::to_array<FitNumber>({
      plain,
      &FitBounds::rows_astray,
      "the number of rows that do not go once around their limb",
-     {"the garment is not all around the body", "more nodes, or a body whose legs stand further apart"}},
+     {"the garment does not go around the body", "more nodes, or a body whose legs are further apart"}},
     {"crossings",
      &Fit::crossings,
      plain,
      &FitBounds::crossings,
      "the number of places where layers of the cloth cross",
-     {"layers went through each other",
+     {"layers passed through each other",
       "layers that touch (\"layers\"), a larger thickness_m or more nodes"}},
     {"side_distance_mm",
      &Fit::side_distance,
      millimetres,
      &FitBounds::side_distance,
-     "the largest distance of the side seams' cloth from the body between hip and thigh",
+     "the largest distance between body and side seams from hip to thigh",
      {"the garment stands off at the sides",
       "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"}},
     {"side_distance_height_m", &Fit::side_distance_height},
 });
 
-/// None where the garment has no such number.
+/// None if the garment has no such number.
 std::optional<double> value_of(const FitNumber& number, const Fit& fit) {
   return std::visit(
       [&](auto member) -> std::optional<double> {
@@ -279,14 +278,14 @@ std::optional<double> value_of(const FitNumber& number, const Fit& fit) {
       number.value);
 }
 
-/// A number that is none keeps no bound.
+/// NaN is within no bound.
 bool is_within(const FitNumber& number, double value, const FitBounds& bounds) {
   return std::abs(value) <= bounds.*number.bound;
 }
 
 bool has_sign(const FitNumber& number) { return !number.too_small.happened.empty(); }
 
-/// The bound in units of which one has so many of the number's own.
+/// The bound as text, in a unit of which the number's own has `per_unit`.
 std::string shown_bound(const FitNumber& number, const FitBounds& bounds, double per_unit) {
   std::ostringstream text;
   text << (has_sign(number) ? "±" : "") << bounds.*number.bound * per_unit;
@@ -313,8 +312,7 @@ DressingResult dress(DressingBackend& backend, const System& system, double dt_s
     result.iterations = end;
     State state = backend.state();
     if (backend.progress().draping) result.seamed_at = backend.progress().seamed_at;
-    // A window that began with open seams, or that was cut short, says nothing about how a sewn garment
-    // rests.
+    // A window that started with open seams, or was cut short, does not show whether a sewn garment rests.
     result.settled = was_draping && whole_window && moved(result.state, state, rule.fraction) < rule.distance;
     result.state = std::move(state);
     goes_on = on_window(result.state, result.iterations) && !result.settled && result.iterations < longest;

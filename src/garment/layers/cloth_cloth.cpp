@@ -17,20 +17,20 @@ void require(bool good, const char* what, double value, const char* wanted) {
 
 void validate(const ClothClothSettings& settings) {
   const auto not_negative = [](double value) { return value >= 0 && std::isfinite(value); };
-  const auto thickness = static_cast<float>(settings.thickness);  // as it is searched with
+  const auto thickness = static_cast<float>(settings.thickness);  // in the precision of the search
   require(thickness > 0 && std::isfinite(thickness), "the thickness in metres", settings.thickness,
           "a positive one");
-  require(not_negative(settings.friction), "the friction", settings.friction, "a coefficient from 0 on");
-  require(not_negative(settings.push_speed), "the push speed in m/s", settings.push_speed, "one from 0 on");
+  require(not_negative(settings.friction), "the friction", settings.friction, "a coefficient of at least 0");
+  require(not_negative(settings.push_speed), "the push speed in m/s", settings.push_speed, "at least 0");
   require(settings.sweeps >= 1, "the number of sweeps", settings.sweeps, "at least 1");
 }
 
-/// The node's value less that of its nearest point.
+/// The node's value less that of the triangle's nearest point.
 Vec3<float> difference(const ClothContact& contact, const std::array<std::span<float>, 3>& of) {
   const auto at = [&](std::uint32_t node) { return Vec3<float>{of[0][node], of[1][node], of[2][node]}; };
   const Vec3<float> own = at(contact.node);
   Vec3<float> sum;
-  // Differences first: their rounding is that of small numbers.
+  // Differences first, because the rounding errors of small numbers are small.
   for (std::size_t i = 0; i < 3; ++i) sum += contact.weight[i] * (own - at(contact.triangle[i]));
   return sum;
 }
@@ -48,8 +48,8 @@ ClothClothCollision::ClothClothCollision(const Garment& garment, std::span<const
   for (const float mass : node_mass) {
     if (!(mass > 0))
       throw std::invalid_argument(
-          fmt::format("cloth-cloth collision: node {} weighs {} kg, give it a positive mass, or an infinite "
-                      "one to hold it",
+          fmt::format("cloth-cloth collision: node {} has a mass of {} kg, give it a positive one, or an "
+                      "infinite one to pin it",
                       inverse_mass_.size(), decimal(mass)));
     inverse_mass_.push_back(1 / mass);
   }
@@ -60,7 +60,7 @@ void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
     for (const std::span<float> array : arrays)
       if (array.size() != inverse_mass_.size())
         throw std::invalid_argument(
-            fmt::format("cloth-cloth collision: an array has {} numbers for {} nodes, give one for each",
+            fmt::format("cloth-cloth collision: an array has {} numbers for {} nodes, give one per node",
                         array.size(), inverse_mass_.size()));
   contacts_ = search_.find({nodes.position[0], nodes.position[1], nodes.position[2]});
   for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep)
@@ -89,7 +89,7 @@ void ClothClothCollision::stop_approach(const ClothContact& contact, const NodeA
   const Vec3<float> across = relative - along * contact.normal;
   const float sliding = std::sqrt(dot(across, across));
   const float slowed = -static_cast<float>(settings_.friction) * along;  // m/s
-  const float kept = sliding > slowed ? slowed / sliding : 1;            // share of `across` that is lost
+  const float kept = sliding > slowed ? slowed / sliding : 1;            // fraction of `across` that is lost
   move(contact, nodes.velocity, (-1 / inverse_mass) * (along * contact.normal + kept * across));
 }
 
@@ -97,7 +97,7 @@ void ClothClothCollision::push_apart(const ClothContact& contact, const NodeArra
                                      float farthest) const {
   const float inverse_mass = inverse_mass_of(contact);
   if (inverse_mass == 0) return;
-  // What other contacts of the same nodes have moved already counts.
+  // The current gap: other contacts may have moved the same nodes.
   const float gap = dot(difference(contact, nodes.position), contact.normal);
   const float wanted = std::min(static_cast<float>(settings_.thickness), contact.gap + farthest);
   if (gap >= wanted) return;

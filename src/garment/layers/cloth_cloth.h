@@ -11,7 +11,7 @@
 
 namespace mssim {
 
-/// The state that a collision changes, as structures of arrays: x, y, z, each [nodes].
+/// The state that a collision changes, as a structure of arrays: x, y, z, each [nodes].
 struct NodeArrays {
   std::array<std::span<float>, 3> position;  ///< m
   std::array<std::span<float>, 3> velocity;  ///< m/s
@@ -24,33 +24,31 @@ struct NodeState {
 };
 
 /// Collisions between different panels (Vassilev, "Cloth-cloth collision detection"): finds the contacts of
-/// the pairs of layers and responds to each. With w the triangle's weights, a contact is a node and a point
-/// of a triangle; an impulse j (N s) along its normal, or across, changes the node's velocity by j/m and
-/// those of the triangle's nodes by -w j/m, which conserves momentum. For every contact, in the order in
-/// which ClothContactSearch gives them, so that the result is the same to the last bit for any number of
-/// threads:
+/// the pairs of layers and responds to each. A contact is a node and a point of a triangle, with weights w of
+/// the triangle's nodes. An impulse j (N s) along its normal, or across, changes the node's velocity by j/m
+/// and those of the triangle's nodes by -w j/m, which conserves momentum. Contacts are processed in the order
+/// of ClothContactSearch, so that the result is bitwise identical for every number of threads:
 ///
-/// - what approaches along the normal stops (an inelastic impact), and what slides across loses speed by an
-///   impulse of at most friction times the one along the normal;
-/// - what is nearer than the thickness, or on the wrong side, is moved apart in inverse proportion to mass.
+/// - an approach along the normal stops (an inelastic impact), and friction slows sliding by at most the
+///   friction coefficient times the normal impulse;
+/// - nodes nearer than the thickness, or on the wrong side, are moved apart in inverse proportion to mass.
 ///
-/// A layer that crosses by more than the thickness is not found any more and stays across: thickness must
-/// exceed what layers approach in a step. To be done after the velocities' update and before the body's
-/// collision, which then has the last word about the inner layer.
+/// A layer that has crossed by more than the thickness is no longer found and stays there: the thickness must
+/// exceed the approach of layers per step. Call it after the update of velocities and before contact with the
+/// body, so that the body decides last about the inner layer.
 class ClothClothCollision {
  public:
-  /// node_mass: [nodes] kg, positive; infinite for a node that is held. With a garment of one layer,
-  /// collide() does nothing. Throws std::invalid_argument, in one sentence, for settings out of their ranges
-  /// and for a mass that is not positive.
+  /// node_mass: [nodes] kg, positive; infinite for a pin. collide() does nothing for a garment of one layer.
+  /// Throws std::invalid_argument for settings out of range and for a mass that is not positive.
   ClothClothCollision(const Garment& garment, std::span<const float> node_mass,
                       const ClothClothSettings& settings, int threads);
 
-  /// That work on a collision; they form a team of their own.
+  /// Number of threads of a collision, which are a separate team.
   int threads() const { return threads_; }
 
-  /// Finds the contacts and responds, for a step of dt (s), on a copy of the nodes: NodeState read(node) of
-  /// every node, in any order and by several threads; write(node, NodeState) of those that have changed, by
-  /// one.
+  /// Finds the contacts and responds, for a step of dt (s), on a copy of the nodes. Several threads call
+  /// NodeState read(node) for all nodes, in any order; one calls write(node, NodeState) for those that have
+  /// changed.
   template <class Read, class Write>
   void collide(double dt, const Read& read, const Write& write) {
     const auto nodes = static_cast<std::int64_t>(inverse_mass_.size());
@@ -64,11 +62,11 @@ class ClothClothCollision {
     }
   }
 
-  /// Finds the contacts and responds, for a step of dt (s). Throws std::invalid_argument if an array has
-  /// another size than node_mass.
+  /// Finds the contacts and responds, for a step of dt (s). Throws std::invalid_argument if the size of an
+  /// array is not that of node_mass.
   void collide(const NodeArrays& nodes, double dt);
 
-  /// Those of the last collide(), as they were before the response.
+  /// The contacts of the last collide(), before the response.
   std::span<const ClothContact> contacts() const { return contacts_; }
 
  private:

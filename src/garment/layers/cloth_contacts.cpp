@@ -14,16 +14,16 @@
 namespace mssim {
 namespace {
 
-/// Two sub-patches with fewer cells than this together are searched by the task that met them: searching them
-/// takes microseconds, as making a task does.
+/// Two sub-patches with fewer cells than this in all do not get a task of their own: searching them takes
+/// microseconds, as creating a task does.
 constexpr std::uint32_t least_cells_of_task = 1024;
 
-/// Boxes are searched a little farther than distances are compared, whatever rounding says about either.
+/// The search of boxes reaches a little farther than the comparison of distances, to cover rounding errors.
 constexpr float box_reach = 1.01F;
 
 constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
 
-/// The nodes of a cell's half, 0 or 1.
+/// The nodes of one triangle of a cell; half is 0 or 1.
 std::array<std::uint32_t, 3> nodes_of(const GarmentPanel& panel, std::uint32_t row, std::uint32_t column,
                                       std::uint32_t half) {
   const std::uint32_t low_left = panel.node(row, column);
@@ -38,7 +38,7 @@ NearestPoint nearest_on(const std::array<std::uint32_t, 3>& triangle, const Vec3
                        point_of(position, triangle[2]));
 }
 
-/// The panel's normal at a node, as long as the area of the cells around it is large.
+/// The panel's normal at a node; its length is proportional to the area of the cells around it.
 Vec3<float> normal_at(const GarmentPanel& panel, std::uint32_t node, const Coordinates& position) {
   const std::uint32_t row = (node - panel.first_node) / panel.columns;
   const std::uint32_t column = (node - panel.first_node) % panel.columns;
@@ -50,7 +50,7 @@ Vec3<float> normal_at(const GarmentPanel& panel, std::uint32_t node, const Coord
   return cross(along_row, along_column);
 }
 
-/// Does a point of a triangle lie on the border of its panel?
+/// Whether a point of a triangle lies on the border of its panel.
 bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& triangle,
                const std::array<float, 3>& weight) {
   bool lowest = true, highest = true, leftmost = true, rightmost = true;
@@ -66,7 +66,7 @@ bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& tr
   return lowest || highest || leftmost || rightmost;
 }
 
-/// The contact of a node with its nearest triangle, if it is one. outward: 1 where the node belongs to the
+/// The contact of a node with its nearest triangle, if there is one. outward: 1 if the node belongs on the
 /// side of the panel's normal, else -1.
 std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t node, std::uint32_t nearest,
                                        float outward, const Coordinates& position) {
@@ -88,11 +88,11 @@ std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t 
   if (!right_side && on_border(panel, contact.triangle, point.weight)) return std::nullopt;
   const float distance = std::sqrt(point.distance_squared());
   contact.gap = right_side ? distance : -distance;
-  // Nearer than that, rounding decides where the offset points.
+  // At smaller distances, rounding determines the direction of the offset.
   constexpr float least_distance = 1e-6F;
   contact.normal =
       distance > least_distance ? (1 / contact.gap) * point.offset : (1 / std::sqrt(dot(face, face))) * face;
-  // NaN or infinite where the cloth has no normal there, because it has no area.
+  // NaN or infinite if the cloth has no area there, and so no normal.
   if (!std::isfinite(dot(contact.normal, contact.normal))) return std::nullopt;
   return contact;
 }
@@ -231,7 +231,7 @@ void ClothContactSearch::search(const Pair& pair, std::uint32_t inner_block, std
       const std::uint32_t outer_part = outside.children > 0 ? outside.first_child + j : outer_block;
       if (!near(inner.box(inner_part), outer.box(outer_part), box_reach * reach_)) continue;
       if (large) {
-        // `pair` and `position` outlive the tasks, which end before find() goes on.
+        // `pair` and `position` outlive the tasks, for which find() waits.
 #pragma omp task firstprivate(inner_part, outer_part) shared(pair, position)
         search(pair, inner_part, outer_part, position);
       } else {
@@ -249,7 +249,8 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
   const PanelBoxes::Block& nodes = of_nodes.blocks()[node_block];
   const PanelBoxes::Block& cells = of_triangles.blocks()[triangle_block];
   const Box<float>& around = of_triangles.box(triangle_block);
-  // A node belongs to the cell of which it is the lower left one, on the upper and right border to the last.
+  // A node belongs to the cell whose lower left node it is, or to the last cell on the upper and right
+  // border.
   const std::uint32_t row_end = nodes.row_end + (nodes.row_end + 1 == panel.rows ? 1 : 0);
   const std::uint32_t column_end = nodes.column_end + (nodes.column_end + 1 == panel.columns ? 1 : 0);
   for (std::uint32_t row = nodes.row_begin; row < row_end; ++row)
@@ -275,7 +276,7 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
 }
 
 void ClothContactSearch::keep_nearest() {
-  // The least of all is the same in whatever order the tasks have found them.
+  // The minimum does not depend on the order in which tasks have found the candidates.
   for (Candidates& found : found_) {
     for (const Candidate& candidate : found)
       slots_[candidate.slot] = std::min(slots_[candidate.slot], candidate.nearest);

@@ -20,8 +20,8 @@ struct PanelPair {
   bool operator==(const PanelPair&) const = default;
 };
 
-/// Every two panels of different layers, the one of the lower layer being the inner one, in ascending order.
-/// Two panels that a joint sews together are left out: they would repel each other at their seam.
+/// All pairs of panels of different layers, in ascending order; `inner` is of the lower layer. Pairs that a
+/// joint sews together are omitted: they would repel each other at their seam.
 std::vector<PanelPair> layer_pairs(const Garment& garment);
 
 /// The coordinates of all nodes: x, y, z, each [nodes] m.
@@ -31,26 +31,26 @@ inline Vec3<float> point_of(const Coordinates& position, std::uint32_t node) {
   return {position[0][node], position[1][node], position[2][node]};
 }
 
-/// Boxes around the cells of a panel and around its sub-patches: the panel is cut in four, by halves of its
-/// rows and columns of cells, and so on. What is cut where stays; the boxes are refitted to each step's
-/// positions from the smallest up (Vassilev, "Cloth-cloth collision detection", after Provot 1997).
+/// A tree of boxes around the cells of a panel and its sub-patches: the panel is cut in four, by halving its
+/// rows and columns of cells, and so on. The tree does not change; its boxes are refitted bottom up to the
+/// positions of each step (Vassilev, "Cloth-cloth collision detection", after Provot 1997).
 class PanelBoxes {
  public:
-  /// A sub-patch: cells, as row and column numbers of their lower left nodes.
+  /// A sub-patch: a range of cells, by row and column of their lower left nodes.
   struct Block {
     std::uint32_t row_begin, row_end, column_begin, column_end;
     std::uint32_t first_child = 0, children = 0;  ///< of blocks(); a leaf has none
 
     std::uint32_t cells() const { return (row_end - row_begin) * (column_end - column_begin); }
   };
-  /// Most cells along each side of a leaf.
+  /// Largest number of cells along a side of a leaf.
   static constexpr std::uint32_t leaf_side = 4;
 
-  /// A panel of at least 2 x 2 nodes.
+  /// `panel` has at least 2 x 2 nodes.
   explicit PanelBoxes(const GarmentPanel& panel);
 
   const GarmentPanel& panel() const { return panel_; }
-  /// [blocks] children behind their parents; the first is the whole panel.
+  /// [blocks] children after their parents; the first is the whole panel.
   const std::vector<Block>& blocks() const { return blocks_; }
   /// [leaves] numbers of the blocks without children.
   const std::vector<std::uint32_t>& leaves() const { return leaves_; }
@@ -59,9 +59,9 @@ class PanelBoxes {
     return cell_boxes_[row * (panel_.columns - 1) + column];
   }
 
-  /// First for every leaf, in any order, also at the same time: the boxes of a leaf and of its cells.
+  /// Refits the boxes of a leaf and of its cells. First step, for every leaf, in any order or in parallel.
   void refit_leaf(std::uint32_t leaf, const Coordinates& position);
-  /// Then: the boxes of all other blocks.
+  /// Refits the boxes of all other blocks. Second step.
   void refit_rest();
 
  private:
@@ -79,32 +79,33 @@ struct ClothContact {
   std::uint32_t node = 0;
   std::array<std::uint32_t, 3> triangle{};  ///< nodes
   std::array<float, 3> weight{};            ///< barycentric, of the triangle's point nearest to the node
-  Vec3<float> normal{};                     ///< unit, from the triangle to the side where the node belongs
-  float gap = 0;                            ///< m, from the triangle along the normal; negative: wrong side
+  Vec3<float> normal{};                     ///< unit, from the triangle to the node's correct side
+  float gap = 0;  ///< m, from the triangle along the normal; negative on the wrong side
 
   bool operator==(const ClothContact&) const = default;
 };
 
-/// Finds where panels come near each other: every node of one panel of a pair against all triangles of the
-/// other panel, both ways, of which the nearest counts. Edges are not tested against edges: cells must be
-/// fine enough that two edges do not cross while all nodes keep their distance.
+/// Finds contacts between panels: for each node of either panel of a pair, the nearest triangle of the other
+/// panel. Edges are not tested against edges: cells must be fine enough that two edges do not cross while all
+/// nodes keep their distance.
 ///
 /// A cell's triangles are (low left, low right, high right) and (low left, high right, high left).
 ///
-/// The right side of an inner panel for nodes of the outer one is where its normal points (GarmentPanel),
-/// that of an outer panel for nodes of the inner one is the other. The nearest point of a triangle's inside
-/// is told by the triangle's normal, that on an edge or corner by the normals at its nodes, so that a fold
-/// does not turn sides over. A node beyond the border of a panel, that is, whose nearest point lies on it, is
-/// a contact on the right side only: the panel says nothing about where that node belongs, but has a rim.
+/// Nodes of the outer panel belong on the side of the inner panel to which its normal points (GarmentPanel),
+/// nodes of the inner panel on the opposite side of the outer one. The triangle's normal decides the side if
+/// the nearest point is inside the triangle. If it is on an edge or corner, the normals at the nodes decide,
+/// so that a fold does not swap sides. A node beyond the border of a panel (its nearest point is on the
+/// border) is a contact only on the correct side: the panel cannot tell on which side such a node belongs,
+/// but its rim can still touch it.
 class ClothContactSearch {
  public:
-  /// Searches between layer_pairs, by `threads` threads, one or more. Nodes nearer than `reach` (m, positive)
-  /// to a triangle are contacts.
+  /// Searches the pairs of layer_pairs on `threads` threads, at least one. Nodes nearer to a triangle than
+  /// `reach` (m, positive) are contacts.
   ClothContactSearch(const Garment& garment, double reach, int threads);
 
-  /// The contacts in these positions, pair by pair, those of the outer panel's nodes first, in ascending
-  /// order of nodes; the same to the last bit for any number of threads. They stay until the next call.
-  /// Positions that are not finite are near nothing.
+  /// The contacts at these positions, pair by pair, first those of the outer panel's nodes, in ascending
+  /// order of nodes; bitwise identical for every number of threads. Valid until the next call. Positions that
+  /// are not finite have no contacts.
   std::span<const ClothContact> find(const Coordinates& position);
 
  private:
@@ -115,7 +116,7 @@ class ClothContactSearch {
   struct Leaf {
     std::uint32_t boxes, block;
   };
-  struct Nearest {  // triangle of a slot's node
+  struct Nearest {  // triangle to a slot's node
     float distance_squared;
     std::uint32_t triangle;  // 2 * cell + half
 
@@ -141,7 +142,7 @@ class ClothContactSearch {
 
   const float reach_;
   const int threads_;
-  std::vector<PanelBoxes> boxes_;  // of the panels that are in pairs
+  std::vector<PanelBoxes> boxes_;  // of the panels in pairs
   std::vector<Leaf> leaves_;       // of all boxes
   std::vector<Pair> pairs_;        // [pairs]
   std::vector<Nearest> slots_;     // [slots] the nearest triangle of each node of each pair
@@ -149,13 +150,13 @@ class ClothContactSearch {
   std::vector<ClothContact> contacts_;
 };
 
-/// How often two panels cross: pairs of an edge of one panel (sides and diagonals of cells, diagonals from
-/// low left to high right) and a triangle of the other such that the edge runs through the triangle. 0 where
-/// the panels are apart, however near, and also where one is wholly on its wrong side.
+/// The number of crossings of two panels: pairs of an edge of one panel (sides of cells, and diagonals from
+/// low left to high right) and a triangle of the other through which it runs. 0 if the panels are apart,
+/// however near, and also if one is entirely on its wrong side.
 ///
-/// Signs of volumes decide, in double precision and without a tolerance; those at the side that two triangles
-/// share are computed once for both, so that an edge which runs through it crosses exactly one of them. Meant
-/// for checks, not for every step. position: [nodes] m, finite.
+/// Signs of volumes decide, in double precision and without a tolerance. The signs at a side that two
+/// triangles share are equal for both, so that an edge through that side crosses exactly one of them. For
+/// checks, not for every step. position: [nodes] m, finite.
 std::size_t count_crossings(const GarmentPanel& first, const GarmentPanel& second,
                             std::span<const Vec3d> position);
 

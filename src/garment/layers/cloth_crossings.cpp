@@ -36,7 +36,7 @@ double volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   return dot(a - d, cross(b - d, c - d));
 }
 
-/// Edges through the triangles of one panel.
+/// Counts edges that run through the triangles of one panel.
 class PiercedPanel {
  public:
   PiercedPanel(const GarmentPanel& panel, std::span<const Vec3d> position)
@@ -49,7 +49,7 @@ class PiercedPanel {
   std::size_t crossings(const std::vector<Edge>& edges) const {
     std::size_t count = 0;
     for (const Edge& edge : edges) {
-      // Only triangles that begin here can meet the edge in x.
+      // Only these triangles can overlap the edge in x.
       const auto [from, to] = range(edge, &Vec3d::x);
       const auto by_left = [&](const Triangle& triangle) { return leftmost(triangle); };
       const auto begin = std::ranges::lower_bound(triangles_, from - widest_, {}, by_left);
@@ -90,8 +90,8 @@ class PiercedPanel {
     return volume(position_[triangle[0]], position_[triangle[1]], position_[triangle[2]], position_[node]) <=
            0;
   }
-  /// Does the edge pass the line from a to b on its left? The answer for b to a is always the opposite one,
-  /// even where they meet.
+  /// Whether the edge passes on the left of the line from a to b. The result for b to a is always the
+  /// opposite, even if they meet.
   bool passes_left(const Edge& edge, std::uint32_t a, std::uint32_t b) const {
     const double turn =
         volume(position_[std::min(a, b)], position_[std::max(a, b)], position_[edge[0]], position_[edge[1]]);

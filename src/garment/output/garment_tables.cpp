@@ -17,7 +17,7 @@ namespace {
 
 using Rows = std::vector<const ResultRow*>;
 
-/// Those of all scenes that any backend has dressed, in their order.
+/// The rows of all scenes that any backend has dressed, in their order.
 Rows rows_of_dressed_scenes(std::span<const ResultRow> rows) {
   std::set<std::string_view> scenes;
   for (const ResultRow& row : rows)
@@ -28,17 +28,17 @@ Rows rows_of_dressed_scenes(std::span<const ResultRow> rows) {
   return found;
 }
 
-/// Milliseconds an iteration, over a whole dressing; none where there was no iteration.
+/// Milliseconds per iteration of a whole dressing; none without iterations.
 std::optional<double> ms_per_iteration(const DressingRecord& dressing) {
   if (dressing.iterations == 0) return std::nullopt;
   return 1e3 * dressing.wall_s / static_cast<double>(dressing.iterations);
 }
 
-/// A line of a table: a backend with an integrator.
+/// A line of a table: backend and integrator.
 using Line = std::pair<std::string, std::string>;
 
-/// The rows laid out: scenes are columns, by their number of vertices, and combinations that have a time or a
-/// dressing anywhere are lines.
+/// The layout of the table. Its columns are scenes, by number of vertices; its lines are combinations that
+/// have dressed any scene.
 struct Layout {
   explicit Layout(Rows all) : rows(std::move(all)) {
     for (const ResultRow* row : rows) {
@@ -58,14 +58,14 @@ struct Layout {
   std::vector<Line> lines;
 };
 
-/// Null for other backends. After a colon a backend's number of threads may stand.
+/// Null for other backends. The backend's name may end in a colon and a number of threads.
 const PublishedDressing* published_dressing(std::string_view backend) {
   const auto row =
       std::ranges::find(published_dressings, backend.substr(0, backend.find(':')), &PublishedDressing::name);
   return row == published_dressings.end() ? nullptr : &*row;
 }
 
-/// As the first cell of a line says it.
+/// Start of the first cell of a line.
 std::string parallelisation_of(const Line& line) {
   return std::string(published_dressing(line.first) ? "as printed, " : "") +
          (is_parallel(line.first) ? "with: " : "without: ");
@@ -104,7 +104,7 @@ Table table_of(const Layout& layout, const Provenance& provenance, const std::st
   return table;
 }
 
-/// What is timed although its garment does not fit: only a published algorithm is.
+/// Lists rows that are timed although their garment does not fit; only published algorithms have such rows.
 void add_misfits(Document& page, const Rows& rows) {
   BulletList list;
   for (const ResultRow* row : rows) {
@@ -119,25 +119,25 @@ void add_misfits(Document& page, const Rows& rows) {
 
 Document page_of(const Layout& layout, const Provenance& provenance) {
   Document page{
-      Heading{1, "Figure 6 of Vassilev: milliseconds an iteration against vertices of jeans"},
+      Heading{1, "Figure 6 of Vassilev: milliseconds per iteration against vertices of jeans"},
       measured_on(layout.rows, provenance),
       Paragraph{
-          "One iteration of Algorithm 1, medians, of jeans that hang draped on the body: springs, joints, "
-          "collision with the body and the correction of velocities are at work. In brackets how many "
-          "times as fast as `serial`. Jeans are one layer, so that no cloth collides with cloth; in the "
-          "paper's measurement this was turned off."},
+          "Median times per iteration of Algorithm 1 for jeans that hang draped on the body: springs, "
+          "joints, collision with the body and the correction of velocities act. Numbers in brackets are "
+          "speed-ups over `serial`. Jeans are one layer, so that no cloth collides with cloth; the paper's "
+          "measurement turned these collisions off."},
       Paragraph{
           "The paper shows four curves, without numbers: a laptop (Intel Core i7-4702MQ, four cores, eight "
           "threads, 2.2 GHz) and a mobile device (ARM Cortex-A17, four cores, 1.7 GHz), each without and "
           "with parallelisation. Lines *as printed* run its Algorithm 1 loop by loop, with and without SIMD "
           "instructions. The other lines run mssim's own form, which limits elongations by positions and "
           "closes seams by constraints."},
-      table_of(layout, provenance, "milliseconds an iteration", time_cell),
-      Paragraph{"Nanoseconds an iteration and vertex, of the same samples:"},
+      table_of(layout, provenance, "milliseconds per iteration", time_cell),
+      Paragraph{"Nanoseconds per iteration and vertex, from the same samples:"},
       table_of(layout, provenance, "nanoseconds", vertex_cell),
       Paragraph{
-          "The whole dressing, once: seconds and iterations from flat panels to jeans that hang settled. "
-          "`garment.csv` says how each fits."},
+          "One whole dressing: seconds and iterations from flat panels to settled jeans. `garment.csv` has "
+          "the fit of each."},
       table_of(layout, provenance, "dressing", dressing_cell)};
   add_sentence(page, legend_of_ratios(page));
   add_sentence(page, legend_of_excess(layout.rows, provenance));
@@ -178,8 +178,8 @@ Table data_of(const Layout& layout) {
   return table;
 }
 
-/// A column of garment.csv that every row has: a value of the row, one that is computed from it, or one of
-/// its dressing, which only this file has; nothing where there is no dressing.
+/// A column of garment.csv that every row has: a value of the row, a value computed from it, or a value of
+/// its dressing, which only this file has and which is empty without a dressing.
 struct GarmentColumn {
   std::string_view name;
   std::variant<std::string ResultRow::*, std::uint64_t ResultRow::*, int ResultRow::*, double ResultRow::*,
@@ -189,7 +189,7 @@ struct GarmentColumn {
       value;
 };
 
-/// The TABLE of columns, in their order; the numbers of the fit follow.
+/// The TABLE of columns, in order; the numbers of the fit follow.
 constexpr std::size_t iterations_column = 12;
 constexpr auto columns = std::to_array<GarmentColumn>({
     {"scene", &ResultRow::scene},
@@ -247,7 +247,7 @@ void read_field(const CsvTable& table, std::size_t line, std::size_t column, Dre
 
 constexpr std::string_view within_suffix = "_within";
 
-/// The numbers of all fits: a garment that has fewer has none that the one with the most lacks.
+/// The longest of all fits: it has every number that the others have.
 std::vector<FitNumberRecord> most_of_a_fit(std::span<const ResultRow* const> rows) {
   std::vector<FitNumberRecord> most;
   for (const ResultRow* row : rows)

@@ -16,7 +16,7 @@
 namespace mssim {
 namespace {
 
-/// A list of numbers, one for each of `items`.
+/// Writes a list of numbers, one for each of `items`.
 template <class Item, class Number>
 void write_numbers(hid_t file, const std::string& path, const std::vector<Item>& items, Number Item::*member,
                    hid_t file_type, hid_t memory_type) {
@@ -26,7 +26,7 @@ void write_numbers(hid_t file, const std::string& path, const std::vector<Item>&
   write_array(file, path, file_type, memory_type, std::array<hsize_t, 1>{numbers.size()}, numbers.data());
 }
 
-/// What is written of a panel beside its name.
+/// The numbers of a panel.
 constexpr std::array panel_numbers{
     std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
     std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}};
@@ -65,12 +65,12 @@ void read_joints(hid_t file, Garment& garment) {
 
 void require_fitting_garment(const Garment& garment, std::size_t nodes) {
   if (garment.flat.size() != nodes)
-    throw std::invalid_argument("a trace needs to say where all nodes lie in the pattern");
+    throw std::invalid_argument("a trace of a garment needs the place of every node in the pattern");
   const bool joined = std::ranges::all_of(garment.joints, [&](const Joint& joint) {
     return std::max({joint.node, joint.edge_first, joint.edge_second}) < nodes &&
            joint.seam < garment.seams.size();
   });
-  if (!joined) throw std::invalid_argument("a trace needs joints between nodes, of seams that there are");
+  if (!joined) throw std::invalid_argument("a trace of a garment has a joint of a missing node or seam");
 }
 
 void write_garment(hid_t file, const Garment& garment) {
@@ -110,7 +110,7 @@ Garment read_garment(hid_t file, std::size_t nodes) {
   for (std::size_t i = 0; i < nodes; ++i) {
     garment.flat.push_back({numbers[2 * i], numbers[2 * i + 1], 0});
     if (!is_finite(garment.flat.back()))
-      throw Hdf5ContentError(fmt::format("{} has a number that is not finite, of node {}", flat, i));
+      throw Hdf5ContentError(fmt::format("{} has a number that is not finite, for node {}", flat, i));
   }
   read_joints(file, garment);
   require_fitting_garment(garment, nodes);

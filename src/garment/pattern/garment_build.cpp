@@ -26,8 +26,8 @@ void for_each_cell(const PanelMesh& mesh, Visit visit) {
     for (std::size_t column = 0; column + 1 < mesh.columns; ++column) visit(mesh.node(row, column));
 }
 
-/// How far the body stands out at the heights of a panel, m. Not less than the body itself anywhere, and
-/// even: the largest within 5 cm up and down, then its mean over as much.
+/// Smoothed depth of the body at the heights of a panel, m, nowhere less than the body's: the maximum within
+/// 5 cm up and down, then its mean over the same range.
 class Profile {
  public:
   Profile(const std::string& panel, const std::function<double(double)>& depth, double sign, double lowest,
@@ -40,7 +40,7 @@ class Profile {
       raw[i] = sign * depth(height);
       if (!std::isfinite(raw[i]))
         throw InputError(panel + ": the body has the depth " + shown(raw[i]) + " m at the height " +
-                         shown(height) + " m; give a body that reaches along the whole panel");
+                         shown(height) + " m; give a body that reaches over the heights of the whole panel");
     }
     std::vector<double> widest(count);
     over_windows(raw,
@@ -80,8 +80,8 @@ struct BentPoint {
   double back;      ///< m, towards the body
 };
 
-/// Where the bend takes a point that is `along` from the axis on the flat panel. Where it has come
-/// `most_back` towards the body, the panel runs straight on.
+/// The place of a point at distance `along` from the axis on the flat panel after bending. From `most_back`
+/// towards the body on, the panel runs straight.
 BentPoint bent(double along, double radius, double most_back) {
   const double steepest = std::acos(std::max(-1.0, 1 - most_back / radius));
   const double angle = std::clamp(along / radius, -steepest, steepest);
@@ -92,7 +92,7 @@ BentPoint bent(double along, double radius, double most_back) {
 struct StretchNodes {
   std::vector<std::uint32_t> nodes;
   std::vector<double> arcs;  ///< m, from the stretch's first node to each
-  double drawn_length = 0;   ///< m, between its ends as they were drawn
+  double drawn_length = 0;   ///< m, between its ends as drawn
 };
 
 std::string text_of(const SeamStretch& stretch) {
@@ -140,9 +140,9 @@ StretchNodes nodes_of(const std::string& where, const SeamStretch& stretch,
   }
 }
 
-/// Where a seam's fraction lies on its coarser side: nodes that a joint may have as its edge.
+/// A joint whose edge is at this fraction of a seam's coarser side.
 Joint place_at(const StretchNodes& coarser, double fraction) {
-  constexpr double near_a_node = 0.05;  // of an edge: less than the seam's own unevenness
+  constexpr double near_a_node = 0.05;  // of an edge: less than the unevenness of the seam
   const double arc = fraction * coarser.arcs.back();
   const auto after = std::upper_bound(coarser.arcs.begin() + 1, coarser.arcs.end() - 1, arc);
   const auto second = static_cast<std::size_t>(after - coarser.arcs.begin()), first = second - 1;
@@ -168,7 +168,7 @@ std::vector<double> seam_factors(const PanelMesh& mesh, const Waistband& waistba
   return factors;
 }
 
-/// What building a garment knows beside the result.
+/// Intermediate data of building a garment.
 struct Workshop {
   std::vector<PanelMesh> meshes;  ///< [panels]
   std::vector<double> strengths;  ///< [nodes] factors of the seams' force
@@ -198,7 +198,7 @@ void add_seam(const Seam& seam, const Workshop& workshop, Garment& garment) {
   append(garment.joints, joints);
 }
 
-/// Calls `add` with each part, and says of which one it does not take.
+/// Calls `add` with each part. Throws PatternError with the index of a part that `add` refuses.
 template <class Parts, class Add>
 void add_each(const Parts& parts, PatternError::Part kind, const Add& add) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -210,7 +210,7 @@ void add_each(const Parts& parts, PatternError::Part kind, const Add& add) {
   }
 }
 
-/// The nodes of these seams, and those of the same rows within the reach, each once and in rising order.
+/// The nodes of these seams and those of the same rows within the reach, in ascending order.
 CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
   std::set<std::uint32_t> nodes;
   const auto add_beside = [&](std::uint32_t sewn) {
@@ -316,7 +316,7 @@ std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
         "{}: it cannot be placed {} m from the body, bent with a radius of {} m; give positive lengths",
         panel, shown(placement.distance), shown(placement.radius));
   const auto [lowest, highest] = std::ranges::minmax(mesh.nodes, {}, &Vec3d::y);
-  // Seen from outside, a panel behind the body runs against x.
+  // Seen from outside, x decreases along the rows of a panel behind the body.
   const double outwards = placement.behind ? -1 : 1;
   const Profile profile(panel, placement.behind ? body.back : body.front, outwards, lowest.y, highest.y);
   std::vector<Vec3d> placed;

@@ -14,40 +14,38 @@
 namespace mssim {
 namespace {
 
-/// How front and back differ. Proportions are those of trouser drafts as they are taught (Aldrich, "Metric
-/// Pattern Cutting"), the lengths what fitted best on the reference body.
+/// Differences between front and back. Proportions are those of textbook trouser drafts (Aldrich, "Metric
+/// Pattern Cutting"); the lengths fitted best on the reference body.
 struct Half {
-  bool before;             ///< the side seams
-  double width;            ///< m, added to half of what the body has of each girth there
-  double fork_share;       ///< of the hip: how far the crotch point juts out over the centre line ...
-  double fork_more;        ///< m, ... and this
-  double centre_share;     ///< of what the waist is narrower than the hip is taken away at the centre
-  double raised;           ///< m, of the waist at the centre over that at the side
+  bool before;             ///< in front of the side seams
+  double width;            ///< m, added to half of the body's front or back part of each girth
+  double fork_share;       ///< of the hip's girth: length of the fork, from centre line to crotch point ...
+  double fork_more;        ///< m, ... plus this
+  double centre_share;     ///< of the difference of hip and waist, removed at the centre
+  double raised;           ///< m, of the waist at the centre over waist_height
   double crease_outwards;  ///< m, from the middle of the widest line
   double curve_height;     ///< m, over the crotch line, at which the crotch curve meets the centre line
-  double inseam_hollow;    ///< m, how far the inseam's control point stands back from the crotch point
+  double inseam_hollow;    ///< m, of the inseam's control point from the crotch point
   double fork_flatness;    ///< of the fork: length of the crotch curve's lower control
 };
 constexpr Half front_half{true, -0.007, 1.0 / 16, 0, 0.8, -0.009, 0, 0.075, 0.018, 0.60};
 constexpr Half back_half{false, 0.007, 1.0 / 8, 0.005, 1.05, 0.010, 0.015, 0.09, 0.040, 0.62};
 
-/// By how much of the body's girth jeans without ease are stretched from thigh to hip, and at the waist.
-/// Around a body that is round both ways the cloth is too long at the side seams; without tension it stands
-/// off there.
+/// Stretch of jeans without ease, as a fraction of the body's girth, from thigh to hip and at the waist.
+/// Around a body that curves in both directions, the cloth is too long at the side seams; without tension it
+/// stands off there.
 constexpr double hip_stretch = 0.031, waist_stretch = 0.006;
 
-/// The landmark of the thigh is just below the crotch.
-constexpr double thigh_below_crotch = 0.01;  // m
+constexpr double thigh_below_crotch = 0.01;  // m, of the landmark of the thigh
 
 constexpr double side_raised = -0.003;  // m, of the waist at the side
-constexpr double side_slope = 0.2;      // by which the waist falls away from there
+constexpr double side_slope = 0.2;      // of the waist's descent from there
 
 Curve bezier(const Vec3d& from, const Vec3d& control_1, const Vec3d& control_2, const Vec3d& to) {
   return Curve::bezier(std::array{from, control_1, control_2, to});
 }
 
-/// A function of the height as the cubic through given values at two heights, which follows a table between
-/// them with the least squares of its distances.
+/// Least-squares fit of a function of the height by a cubic with given values at two heights.
 struct FittedCubic {
   double low_slope = 0, high_slope = 0;  ///< dx/dy at the two heights
 };
@@ -72,7 +70,7 @@ FittedCubic fit_slopes(double low, double low_value, double high, double high_va
   return {(c * p - b * q) / determinant, (a * q - b * p) / determinant};
 }
 
-/// One half, with x = 0 at the outer side's hip while it is drawn.
+/// Drafts one half, with x = 0 at the hip of the outer side.
 class Drafting {
  public:
   Drafting(const JeansMeasures& measures, const Half& half, double fork_factor)
@@ -84,7 +82,7 @@ class Drafting {
         fork_(fork_factor * (half.fork_share * m_.girth(m_.hip_height) + half.fork_more)),
         crease_(0.5 * (hip_width_ + fork_) - half.crease_outwards) {}
 
-  /// With the crotch point this far below the crotch line.
+  /// The outline with the crotch point `drop` below the crotch line, m.
   JeansOutline outline(double drop) const {
     const Vec3d waist_centre{hip_width_ - centre_taken(), m_.waist_height + half_.raised, 0};
     const Curve waist_line = waist(waist_centre);
@@ -103,7 +101,7 @@ class Drafting {
   }
 
  private:
-  /// A quarter of the jeans at a height from hip to waist.
+  /// Width of this half of one leg at a height from hip to waist, m.
   double width_at(double y) const {
     const double fraction = (y - m_.hip_height) / (m_.waist_height - m_.hip_height);
     const double girth = girth_at(y);
@@ -116,12 +114,12 @@ class Drafting {
     const double girth = m_.girth(y);
     if (!(girth > 0.2 && girth < 5))
       throw InputError("jeans: the body's girth at the height " + shown(y) + " m is " + shown(girth) +
-                       " m; give a body that has one from 0.2 to 5 m there");
+                       " m; give a body with a girth from 0.2 to 5 m there");
     return girth;
   }
 
-  /// Half of the front or of the back, m, of jeans as wide as girth, offset and ease. Front and back share
-  /// them as the body does at the height y.
+  /// Half of the front or back, m, of jeans with the circumference of girth, offset and ease. Front and back
+  /// have the fractions of the body at the height y.
   double quarter(double y, double girth, double ease) const {
     const double front = m_.front_share ? m_.front_share(y) : 0.5;
     const double share = half_.before ? front : 1 - front;
@@ -130,12 +128,12 @@ class Drafting {
 
   double centre_taken() const { return half_.centre_share * (hip_width_ - waist_width_); }
 
-  /// The height at which the centre seam begins to lean to the side; the crotch curve ends there.
+  /// The height at which the centre seam starts to lean to the side; the crotch curve ends there.
   double centre_bend() const { return crotch_line_ + half_.curve_height; }
   double centre_height() const { return m_.waist_height + half_.raised - centre_bend(); }
 
-  /// x of the centre seam, and of its line prolonged below: upright at the bend, over seat and belly a cubic
-  /// of the height that leans the more the higher, as the body does.
+  /// x of the centre seam, extended below: vertical up to the bend, above it a cubic of the height that leans
+  /// more with height, as the body does over seat and belly.
   double centre_x(double y) const {
     const double t = std::max(0.0, (y - centre_bend()) / centre_height());
     return hip_width_ - centre_taken() * t * t * (3 - top_lean + (top_lean - 2) * t);
@@ -143,8 +141,8 @@ class Drafting {
   /// -dx/dy of the centre seam at the waist.
   double centre_lean() const { return top_lean * centre_taken() / centre_height(); }
 
-  /// The upper edge, as long as the waist is wide. It rises to the side, where front and back would make a
-  /// notch otherwise, and stands at right angles to the centre seam.
+  /// The upper edge, with the length of the waist. It rises to the side, where front and back would otherwise
+  /// form a notch, and is perpendicular to the centre seam.
   Curve waist(const Vec3d& at_centre) const {
     double width = waist_width_;
     const auto drawn = [&] {
@@ -152,13 +150,13 @@ class Drafting {
       return bezier(at_side, at_side + (width / 3) * Vec3d{1, -side_slope, 0},
                     at_centre - (width / 3) * Vec3d{1, centre_lean(), 0}, at_centre);
     };
-    // The slope adds 2 % at the most, so that each turn leaves 2 % of the error.
+    // The slope adds at most 2 % of length, so that each turn leaves 2 % of the error.
     for (int turn = 0; turn < 12; ++turn) width *= waist_width_ / drawn().length();
     return drawn();
   }
 
-  /// From the knee to the waist: cubics with one direction where they meet, at the hip and, where the jeans
-  /// are drafted through the thigh, there. The uppermost one follows the body's girth.
+  /// The side seam from knee to waist: cubics with equal directions where they meet, at the hip and, if there
+  /// is an ease at the thigh, there. The uppermost one follows the body's girth.
   Curve side(const Vec3d& hem, const Vec3d& knee, const Vec3d& at_waist) const {
     const auto wanted = [this](double y) { return centre_x(y) - width_at(y); };
     const Vec3d hip{wanted(m_.hip_height), m_.hip_height, 0};
@@ -168,10 +166,10 @@ class Drafting {
     std::vector<Vec3d> points{knee};
     if (m_.thigh_ease) {
       const double y = m_.crotch_height - thigh_below_crotch, girth = girth_at(y);
-      // Both legs lie to the trunk's front and back as the hip over them does.
+      // The legs have the hip's fractions of front and back.
       const double width = quarter(m_.hip_height, girth, *m_.thigh_ease - hip_stretch * girth);
       const Vec3d thigh{hip_width_ - width, y, 0};
-      // The direction there is that of the parabola through knee, thigh and hip.
+      // The direction at the thigh is that of the parabola through knee, thigh and hip.
       const double below = y - knee.y, above = hip.y - y;
       const Vec3d at_thigh = 1 / leg * (above * along(knee, thigh) + below * along(thigh, hip));
       points.insert(points.end(), {knee + 0.31 * below * at_knee, thigh - below / 3 * at_thigh, thigh,
@@ -190,7 +188,7 @@ class Drafting {
                   crotch_point - Vec3d{half_.inseam_hollow, 0.43 * height, 0}, crotch_point);
   }
 
-  /// The crotch curve, nearly level at its point, and the seam above it, which centre_x describes.
+  /// The crotch curve, nearly horizontal at the crotch point, and the seam of centre_x above it.
   Curve centre(const Vec3d& crotch_point, const Vec3d& at_waist) const {
     const Vec3d bend{hip_width_, centre_bend(), 0}, up{0, 1, 0};
     const double third = centre_height() / 3;
@@ -200,7 +198,7 @@ class Drafting {
                                     at_waist - third * Vec3d{-centre_lean(), 1, 0}, at_waist});
   }
 
-  /// The direction of the line between two points, scaled so that it rises by 1.
+  /// The direction of the line between two points, with y = 1.
   static Vec3d along(const Vec3d& from, const Vec3d& to) { return 1 / (to.y - from.y) * (to - from); }
 
   Curve from_crease(const Curve& curve) const {
@@ -209,7 +207,7 @@ class Drafting {
     return Curve(std::move(points));
   }
 
-  /// The centre seam's lean at the waist over its mean one.
+  /// The centre seam's lean at the waist over its mean.
   static constexpr double top_lean = 1.2;
 
   const JeansMeasures& m_;
@@ -231,14 +229,15 @@ void require_measures(const JeansMeasures& m) {
   require_between(m.hem_height, 0, 2, "the hem's height, hem_height_m,");
   const double least = 0.03;  // between two of the heights
   require_between(m.knee_height, m.hem_height + least, 2,
-                  "the knee's height, knee_height_m, which lies above the hem's,");
+                  "the knee's height, knee_height_m, which must be above the hem's,");
   require_between(
       m.crotch_height - m.crotch_ease, m.knee_height + least, 2,
-      "the crotch line's height, the body's less crotch_ease_m, which lies above the knee's, knee_height_m,");
+      "the crotch line's height, the body's crotch less crotch_ease_m, which must be above the knee's, "
+      "knee_height_m,");
   require_between(m.hip_height, m.crotch_height + least, 2,
-                  "the hip's height, hip_height_m, which lies above the crotch's,");
+                  "the hip's height, hip_height_m, which must be above the crotch's,");
   require_between(m.waist_height, m.hip_height + least, 2,
-                  "the waist's height, waist_height_m, which lies above the hip's,");
+                  "the waist's height, waist_height_m, which must be above the hip's,");
   require_between(m.knee, 0.1, 2, "the jeans' circumference at the knee, knee_m,");
   require_between(m.hem, 0.1, 2, "the jeans' circumference at the hem, hem_m,");
   require_between(m.hip_ease, -0.2, 0.5, "the ease at the hip, hip_ease_m,");
@@ -246,24 +245,24 @@ void require_measures(const JeansMeasures& m) {
   if (m.thigh_ease)
     require_between(
         m.crotch_height - thigh_below_crotch, m.knee_height + least, 2,
-        "the thigh's height, 1 cm below the body's crotch, which lies above the knee's, knee_height_m,");
+        "the thigh's height, 1 cm below the body's crotch, which must be above the knee's, knee_height_m,");
   require_between(m.waist_ease, -0.2, 0.5, "the ease at the waist, waist_ease_m,");
   require_between(m.crotch_ease, -0.05, 0.2, "the ease at the crotch, crotch_ease_m,");
   require_between(m.body_offset, 0, 0.05, "the distance between body and cloth");
 }
 
-/// With the crotch curves' forks so many times as wide as the hip's girth alone has them.
+/// A draft whose forks have `fork_factor` times the length that follows from the hip's girth.
 JeansDraft draft_with(const JeansMeasures& measures, double fork_factor) {
   const Drafting front(measures, front_half, fork_factor), back(measures, back_half, fork_factor);
   const JeansOutline front_outline = front.outline(0);
   const double inseam = front_outline.inseam.length();
-  double least = -0.03, most = 0.08;  // m: the back inseam shrinks from the one to the other
+  double least = -0.03, most = 0.08;  // m: the back's inseam shrinks over this range
   const auto back_inseam = [&](double drop) { return back.outline(drop).inseam.length(); };
   if (!(back_inseam(least) > inseam && back_inseam(most) < inseam))
     throw InputError(
         "jeans: no crotch point makes the back's inseam as long as the front's of " + shown(inseam) +
-        " m; change the heights (hip_height_m, waist_height_m, knee_height_m, hem_height_m) or the widths "
-        "(knee_m, hem_m) towards the body's");
+        " m; change the heights (hip_height_m, waist_height_m, knee_height_m, hem_height_m) or the "
+        "circumferences (knee_m, hem_m) towards the body's");
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = 0.5 * (least + most);
     (back_inseam(middle) > inseam ? least : most) = middle;
@@ -271,11 +270,11 @@ JeansDraft draft_with(const JeansMeasures& measures, double fork_factor) {
   return {front_outline, back.outline(most)};
 }
 
-/// How wide the forks must be for the centre seams to be as long as the body there, with some ease: a body
-/// that is deep for its girth needs wider ones.
+/// The factor of the forks' length for which the centre seams are as long as the body there plus some ease: a
+/// body that is deep for its girth needs longer forks.
 double fork_factor(const JeansMeasures& measures) {
   if (!measures.crotch_length) return 1;
-  constexpr double ease = 0.05;  // m, of which the crotch's own and the raised back take a part
+  constexpr double ease = 0.05;  // m, including that of the crotch and the raised back
   const double wanted = measures.crotch_length(measures.waist_height) + ease;
   double least = 0.7, most = 1.6;
   for (int halving = 0; halving < 12; ++halving) {
@@ -288,7 +287,7 @@ double fork_factor(const JeansMeasures& measures) {
 
 double inner_length(const JeansOutline& outline) { return outline.inseam.length() + outline.centre.length(); }
 
-/// The mean height of an outline's rows, m, over and under the crotch point's row.
+/// The mean length of an outline's inner and outer sides, m.
 double mean_height(const JeansOutline& outline) {
   return 0.5 * (inner_length(outline) + outline.outer.length());
 }
@@ -308,8 +307,8 @@ double area_of(const JeansOutline& outline) {
   return 0.5 * twice;
 }
 
-/// The fraction of the side seam that faces the crotch point. It lies lower than the point, so that cells
-/// under the crotch curve, which is nearly level there, are less oblique.
+/// The fraction of the side seam opposite the crotch point. It is lower than the crotch point, so that cells
+/// under the crotch curve, which is nearly horizontal there, are less oblique.
 double facing_fraction(const JeansOutline& outline) {
   constexpr double lower = 0.06;  // m
   const double height = outline.inseam.last().y - lower;
@@ -325,7 +324,7 @@ double crotch_fraction(const JeansOutline& outline) {
   return outline.inseam.length() / inner_length(outline);
 }
 
-/// As drawn, with the outer side at the left, or mirrored.
+/// The piece as drawn, with the outer side on the left, or mirrored.
 PatternPiece piece_of(const std::string& name, const JeansOutline& outline, bool mirror) {
   const Curve inner = outline.inseam.followed_by(outline.centre);
   if (!mirror) return {name, outline.hem, outline.waist, outline.outer, inner};
@@ -339,18 +338,19 @@ PatternPiece piece_of(const std::string& name, const JeansOutline& outline, bool
 
 double in_millimetres(double metres) { return std::round(1000 * metres) / 1000; }
 
-/// What the jeans are wider than the body at their upper edge, m. Where the body hardly widens from there to
-/// the hip, they hold by being narrower.
+/// The ease of jeans at their upper edge, m. If the body hardly widens from there to the hip, they must be
+/// narrower to hold.
 double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
   constexpr double usual = 0.01, least = -0.03;  // m
-  constexpr double steep = 0.7;                  // m of girth per m of height: usual from there on
-  constexpr double narrower = 0.1;               // m, by as much less for each m per m below
+  constexpr double steep = 0.7;                  // m of girth per m of height: `usual` above this
+  constexpr double narrower = 0.1;               // m, less by this per m/m below `steep`
   const double widening = (profile.hull_girth(jeans.hip_height) - profile.hull_girth(jeans.waist_height)) /
                           (jeans.waist_height - jeans.hip_height);
   return std::clamp(usual + narrower * (widening - steep), least, usual);
 }
 
-/// How much the leg, straight from hem to knee, would have to be wider to go round the body's with some air.
+/// By how much the trouser leg, straight from hem to knee, must be wider to go around the body's with some
+/// air, m.
 double lack_of_width(const BodyProfile& profile, const JeansMeasures& jeans) {
   constexpr double air = 0.03, step = 0.01;  // m
   double lack = 0;
@@ -385,7 +385,7 @@ JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes) {
     if (rows < 4) break;
     const double shape = std::log(height / (rows - 1) / cell);
     const double excess = static_cast<double>(2 * rows * (front + back)) / nodes - 1;
-    // A cell 10 % off a square weighs as much as 1 % of the nodes.
+    // A cell with sides that differ by 10 % costs as much as an error of 1 % of the nodes.
     const double cost = shape * shape + 100 * excess * excess;
     if (std::abs(excess) > 0.03 || cost >= least) continue;
     least = cost;
@@ -405,8 +405,8 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
     for (const bool behind : {false, true}) {
       const std::string name = std::string(behind ? "back " : "front ") + (is_left ? "left" : "right");
       const JeansOutline& outline = behind ? draft.back : draft.front;
-      // Seen from outside, the wearer's left leg has its outer side at the right in front and at the left
-      // behind.
+      // Seen from outside, the outer side of the wearer's left leg is on the right in front and on the left
+      // at the back.
       const bool mirror = is_left != behind;
       const double inner = crotch_fraction(outline);
       const GridLine crotch =
@@ -438,13 +438,13 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
 
 JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& body) {
   constexpr double edge = 0.8;                           // of the way from the hip to the waist
-  constexpr double wider_knee = 1.135, wider_hem = 1.5;  // than knee and ankle
+  constexpr double wider_knee = 1.135, wider_hem = 1.5;  // factors to knee and ankle
   JeansMeasures jeans;
   jeans.waist_height = in_millimetres(body.hip.height + edge * (body.waist.height - body.hip.height));
   jeans.hip_height = in_millimetres(body.hip.height);
   jeans.crotch_height = body.crotch_height;
-  // Chosen on the twenty persons of tests/support/persons.csv, of whom 17 fit; with half of this ease at
-  // the thigh 16 do, on openmp.
+  // Chosen for the twenty persons of tests/support/persons.csv: 17 fit on openmp, or 16 with half of this
+  // ease at the thigh.
   jeans.crotch_ease = 0.04;
   jeans.thigh_ease = 0.01;
   jeans.knee_height = in_millimetres(body.knee.height);

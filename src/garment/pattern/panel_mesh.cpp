@@ -14,7 +14,7 @@ constexpr double corner_tolerance = 1e-4;
 struct Segment {
   Vec3d from, to;
   PanelEdge edge;
-  std::size_t number;  ///< counted round the outline
+  std::size_t number;  ///< index along the outline
   double lowest() const { return std::min(from.y, to.y); }
   double highest() const { return std::max(from.y, to.y); }
 };
@@ -27,8 +27,8 @@ void require_corner(const PatternPiece& piece, std::string_view corner, const Ve
       piece.name, corner, edge_a, place(a), edge_b, place(b));
 }
 
-/// The outline, counter-clockwise. At the corners, where the curves meet only nearly, it takes the first
-/// one's point, or the gap would look like a crossing.
+/// The outline, counter-clockwise. At corners, where curves meet only approximately, it uses one curve's
+/// point; otherwise the gap would look like a crossing.
 std::vector<Segment> outline_of(const PatternPiece& piece) {
   std::vector<Vec3d> points;
   std::vector<PanelEdge> edges;
@@ -51,12 +51,12 @@ std::vector<Segment> outline_of(const PatternPiece& piece) {
   return outline;
 }
 
-/// Twice the area of the triangle; positive where it goes round counter-clockwise.
+/// Twice the area of the triangle; positive if it is counter-clockwise.
 double turn(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Is there a point common to both? On one line, their boxes decide.
+/// Whether both have a common point; if they are collinear, their boxes decide.
 bool intersect(const Segment& a, const Segment& b) {
   const auto apart = [](double a1, double a2, double b1, double b2) {
     return std::max(a1, a2) < std::min(b1, b2) || std::max(b1, b2) < std::min(a1, a2);
@@ -75,8 +75,8 @@ bool intersect(const Segment& a, const Segment& b) {
                     place(rounded(0.5 * (a.from + a.to))));
 }
 
-/// Throws InputError, which names panel, place and remedy, unless the corners of the piece meet to a tenth of
-/// a millimetre and its boundaries neither cross nor touch each other or themselves elsewhere.
+/// Throws InputError, which names panel, place and remedy, unless the corners of the piece meet to 0.1 mm and
+/// its boundaries neither cross nor touch each other or themselves elsewhere.
 void require_simple_boundary(const PatternPiece& piece) {
   require_corner(piece, "bottom left", piece.bottom.first(), "bottom", piece.left.first(), "left");
   require_corner(piece, "bottom right", piece.bottom.last(), "bottom", piece.right.first(), "right");
@@ -85,7 +85,7 @@ void require_simple_boundary(const PatternPiece& piece) {
 
   std::vector<Segment> outline = outline_of(piece);
   const std::size_t count = outline.size();
-  // By height, so that each is compared with those beside it alone.
+  // By height, so that each is compared only with those at the same height.
   std::sort(outline.begin(), outline.end(), [](const Segment& a, const Segment& b) {
     return a.lowest() != b.lowest() ? a.lowest() < b.lowest() : a.number < b.number;
   });
@@ -102,16 +102,16 @@ constexpr std::uint32_t most_lines = 10'000;
 
 void require_lines(const PatternPiece& piece, std::uint32_t count, std::string_view what) {
   if (count < 2 || count > most_lines)
-    throw InputError("{}: it cannot have {} {} of nodes; give a number from 2 to {}", piece.name, count, what,
-                     most_lines);
+    throw InputError("{}: a panel cannot have {} {} of nodes; give a number from 2 to {}", piece.name, count,
+                     what, most_lines);
 }
 
-/// Where the grid lines of one direction end.
+/// The ends of the grid lines of one direction.
 struct LineEnds {
   std::vector<double> first, second;  ///< fractions of the two boundaries' arc lengths
 };
 
-/// Lines `count` in number, through those that are given and evenly between them.
+/// The ends of `count` lines: the given ones, and evenly spaced ones between them.
 LineEnds line_ends(const PatternPiece& piece, std::uint32_t count, const std::vector<GridLine>& given) {
   LineEnds ends{{0}, {0}};
   GridLine last{};
@@ -136,8 +136,8 @@ LineEnds line_ends(const PatternPiece& piece, std::uint32_t count, const std::ve
   return ends;
 }
 
-/// The four areas (twice) of the triangles at the corners of a cell must be positive: it is convex then and
-/// lies the right way round.
+/// Throws FoldedPiece unless the triangles at the four corners of each cell have positive areas: then the
+/// cell is convex and counter-clockwise.
 void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
   for (std::size_t row = 0; row + 1 < mesh.rows; ++row)
     for (std::size_t column = 0; column + 1 < mesh.columns; ++column) {
@@ -148,7 +148,7 @@ void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
         const Vec3d &here = corner[i], &next = corner[(i + 1) % 4], &before = corner[(i + 3) % 4];
         if (cross(next - here, before - here).z <= 0)
           throw FoldedPiece(
-              "{}: the cell of row {} and column {} folds over at {}; straighten the boundaries there or end "
+              "{}: the cell in row {} and column {} folds over at {}; straighten the boundaries there or end "
               "the grid lines elsewhere",
               piece.name, row, column, place(here));
       }
@@ -184,7 +184,7 @@ Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
       throw InputError(point(i) +
                        " does not lie in the plane of the pattern; give finite x and y, and z = 0");
     if (i > 0 && points_[i] == points_[i - 1])
-      throw InputError(point(i) + " is the same as the one before it; leave one of them out");
+      throw InputError(point(i) + " equals the point before it; remove one of them");
     arcs_.push_back(i == 0 ? 0 : arcs_.back() + mssim::length(points_[i] - points_[i - 1]));
   }
 }

@@ -16,8 +16,9 @@ namespace {
 void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
   const std::string part(key);
   fields.object({key, fmt::format("Girth of the {}.", part)}, Presence::required, [&](FieldVisitor& at) {
-    visit_length(at, {"girth_m", fmt::format("Around the {} as a tape measures it, m.", part)}, girth.girth);
-    visit_length(at, {"height_m", "Height above the floor at which it is measured, m."}, girth.height);
+    visit_length(at, {"girth_m", fmt::format("Girth of the {} as a tape measures it, m.", part)},
+                 girth.girth);
+    visit_length(at, {"height_m", "Height above the floor at which the girth is measured, m."}, girth.height);
   });
 }
 
@@ -33,9 +34,9 @@ void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
                measures.crotch_height);
   fields.number({"hip_depth_over_width", "Depth of the hip over its width, without unit."},
                 measures.hip_aspect, above(0, 10));
-  fields.number({"thigh_gap_m", "Between the thighs at the thigh's height, m."}, measures.thigh_gap,
+  fields.number({"thigh_gap_m", "Gap between the thighs at the thigh's height, m."}, measures.thigh_gap,
                 from(0, largest_length_m));
-  visit_length(fields, {"stance_m", "From one ankle's middle to the other's, m."}, measures.stance);
+  visit_length(fields, {"stance_m", "Distance between the middles of the ankles, m."}, measures.stance);
   fields.integer({"cells_around",
                   "Points around the torso, a multiple of four: 24 make 3,500 triangles, 96 make 45,000."},
                  cells_around, 16, 512);
@@ -43,31 +44,30 @@ void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
 
 void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
   auto& [file, stance, close_holes_m] = garment.body.emplace<BodyFile>();
-  fields.text({"file", "An .obj or .stl file; if not absolute, from the scene file's folder."},
+  fields.text({"file", "An .obj or .stl file; a relative path starts at the scene file's folder."},
               Presence::required, file);
   fields.number({"unit_m", "Metres in one unit of the file, m."}, stance.unit_m, above(0, 1e6));
-  visit_choice(fields,
-               {"up", "The file's axis along which the body stands upright; y where it is not given."},
+  visit_choice(fields, {"up", "The file's axis along which the body stands upright; y by default."},
                Presence::optional, up_axis_names, stance.up);
   visit_choice(fields,
                {"facing",
-                "Where the body looks, along an axis of the file that is not the upright one; +z where it "
-                "is not given."},
+                "Direction in which the body looks, along an axis of the file that is not the upright one; "
+                "+z by default."},
                Presence::optional, facing_names, stance.facing);
   std::optional<double> turn_deg;
   fields.optional_number({"turn_deg",
-                          "By which the body is turned about y, from +z towards +x, when it stands upright "
-                          "in y and looks to +z, degrees; 0 where it is not given."},
+                          "Rotation of the body about y, from +z towards +x, after it is upright in y and "
+                          "faces +z, degrees; 0 by default."},
                          turn_deg, from(-360, 360));
   stance.turn_deg = turn_deg.value_or(0);
   fields.vector({"move_m",
-                 "By which the body is moved then: [to its left, up, ahead], m. The legs are to be on either "
-                 "side of x = 0, the feet on the floor."},
+                 "Translation of the body after that: [to its left, up, ahead], m. It must put one leg on "
+                 "each side of x = 0 and the feet on the floor."},
                 Presence::optional, stance.move, from(-1e9, 1e9));
   fields.optional_number(
       {"close_holes_m",
-       "Openings of the surface up to this size, m, are filled: twice the largest distance of their points "
-       "from their middle. Without it the surface must have none."},
+       "Largest size of openings of the surface that are closed, m: twice the largest distance of their "
+       "points from their middle. Without this field, the surface must be closed."},
       close_holes_m, above(0, largest_length_m));
 }
 
@@ -93,14 +93,14 @@ FileSurface body_from_file(const SceneSpec& spec, const BodyFile& body) {
     refuse(
         spec.file, section + "/file",
         fmt::format("is not a closed body: it has {} opening{} of {} edges around {}, {} m across; close the "
-                    "surface, or give \"close_holes_m\", the largest opening that mssim closes",
+                    "surface, or give \"close_holes_m\", the size of the largest opening to close",
                     openings.size(), openings.size() == 1 ? "" : "s, the largest", largest.edges(),
                     place(largest.centre), shown(largest.size)));
   }
   return read;
 }
 
-/// A wrong unit shows here rather than in what a pattern makes of it.
+/// Reports a wrong unit here, before a pattern fails for it.
 void require_person(const SceneSpec& spec, const BodyFile& body, const BodyProfile& profile) {
   const double height = profile.highest() - profile.lowest();
   if (height >= shortest_person / 2 && height <= 1.5 * tallest_person) return;
@@ -108,7 +108,7 @@ void require_person(const SceneSpec& spec, const BodyFile& body, const BodyProfi
   refuse(spec.file, "/garment/surface_file/unit_m",
          fmt::format("is {}, which makes the body {} m high: give the metres in one unit of the file{}",
                      shown_number(body.stance.unit_m), shown(height),
-                     guess ? fmt::format(", {} where that is a person in {}",
+                     guess ? fmt::format(", {} if the body is a person in {}",
                                          shown_number(guess->unit.metres), guess->unit.name)
                            : ""));
 }
@@ -128,13 +128,13 @@ FileSurface body_of_garment(const SceneSpec& spec) {
 
 void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment) {
   const std::array bodies{
-      Section{{"mannequin", "A dress form with legs, from measures. It stands on y = 0 and looks to +z."},
+      Section{{"mannequin", "A dress form with legs, from measures. It stands on y = 0 and faces +z."},
               [&](FieldVisitor& body) { visit_mannequin(body, garment); }},
       Section{{"surface_file",
-               "A closed surface, with a leg on either side of x = 0 when it stands upright in y and looks "
-               "to +z. mssim measure finds how a file has it."},
+               "A closed surface, with one leg on each side of x = 0 when it is upright in y and faces +z. "
+               "mssim measure finds the values for a file."},
               [&](FieldVisitor& body) { visit_body_file(body, garment); }}};
-  fields.one_of({"body", "Which of the sections says what the body is."}, bodies);
+  fields.one_of({"body", "Section that describes the body."}, bodies);
 }
 
 void check_body(const SceneSpec& spec) {
@@ -142,7 +142,7 @@ void check_body(const SceneSpec& spec) {
   if (body == nullptr || is_level(body->stance.facing, body->stance.up)) return;
   refuse(spec.file, "/garment/surface_file/facing",
          fmt::format("is \"{}\", the axis along which the body stands upright: give \"+x\", \"-x\" or the "
-                     "other axis that is level",
+                     "other horizontal axis",
                      facing_names.at(static_cast<std::size_t>(body->stance.facing))));
 }
 

@@ -22,27 +22,27 @@
 namespace mssim {
 namespace {
 
-/// Cloth of this radius of curvature, of a limb's, say, must not show the body through the faces between its
-/// nodes: their sagitta is h^2 / 8 r.
+/// Radius of curvature down to which cloth, around a limb for example, must not let the body through the
+/// faces between its nodes: their sagitta is h^2 / 8 r.
 constexpr double least_curvature_radius_m = 0.04;
 
-/// A trouser leg begins so far outside the leg's middle: its halves are closed around the leg from there
-/// without being drawn across the other one.
+/// A trouser leg starts this far outside the leg's middle. From there, its halves close around the leg and
+/// are not drawn across the other leg.
 constexpr double beside_the_leg_m = 0.01;
 
-/// The places in its scene file at which a garment describes its pieces, and its jeans.
+/// JSON pointers to a garment's pieces and jeans in its scene file.
 std::string pieces_pointer(const GarmentSpec& garment) {
   return garment.jeans ? "/garment/outfit" : "/garment/pieces";
 }
 std::string jeans_pointer(const GarmentSpec& garment) {
   return garment.pieces ? "/garment/outfit/jeans" : "/garment/jeans";
 }
-/// How far before the body its maps lie, m, for cloth whose cells are about `cell` wide.
+/// Distance of the maps from the body, m, for cloth whose cells are about `cell` wide.
 double map_offset(const GarmentSpec& garment, double cell) {
   return garment.skin_m + cell * cell / (8 * least_curvature_radius_m);
 }
 
-/// Width of a square cell of the average size in the layer where that is largest, m.
+/// The largest over the layers of the width of a square cell of average area, m.
 double widest_mean_cell(const GarmentPattern& pattern, const GarmentBuild& build) {
   struct Extent {
     double area = 0, nodes = 0;
@@ -65,40 +65,40 @@ double widest_mean_cell(const GarmentPattern& pattern, const GarmentBuild& build
   refuse(spec.file, jeans_pointer(garment_of(spec)) + '/' + field, "is " + shown_number(value) + rest);
 }
 
-/// That the body reaches as far as the jeans do. Throws SceneError, which names the field to change.
+/// Checks that the body reaches as far as the jeans. Throws SceneError, which names the field to change.
 void require_body_there(const SceneSpec& spec, const BodyProfile& profile) {
   const JeansMeasures& jeans = garment_of(spec).jeans->measures;
-  constexpr double waist_raised = 0.04;  // m, of the jeans' upper edge behind, and room
+  constexpr double waist_raised = 0.04;  // m, of the jeans' upper edge at the back, with a margin
   if (!profile.has_legs() && std::holds_alternative<BodyFile>(garment_of(spec).body))
     refuse(spec.file, "/garment/surface_file",
-           "has no leg on either side of x = 0, where jeans need one: let \"up\", \"facing\" and \"move_m\" "
-           "say how it stands (mssim measure finds them)");
+           "has no leg on each side of x = 0, which jeans need: correct \"up\", \"facing\" and \"move_m\" "
+           "(mssim measure finds them)");
   if (jeans.hem_height < profile.lowest())
-    refuse_measure(
-        spec, "hem_height_m", jeans.hem_height,
-        fmt::format(", and the body begins at the height {} m: give a higher one", shown(profile.lowest())));
+    refuse_measure(spec, "hem_height_m", jeans.hem_height,
+                   fmt::format(", but the body starts at the height {} m: give a larger height",
+                               shown(profile.lowest())));
   if (jeans.waist_height + waist_raised > profile.highest())
     refuse_measure(spec, "waist_height_m", jeans.waist_height,
-                   ", and the body ends at the height " + shown(profile.highest()) +
-                       " m, but the jeans' back rises 0.04 m above their waist: give a lower one");
+                   ", but the body ends at the height " + shown(profile.highest()) +
+                       " m, and the jeans' back rises 0.04 m above their waist: give a smaller height");
 }
 
-/// What is wrong with jeans whose panels, which nobody drew, cannot be cut.
+/// The message if the panels of jeans, which no user drew, cannot be cut.
 std::string uncut_jeans(const JeansMeasures& jeans, const BodyProfile& profile) {
   const auto girth_at = [&](double height) {
     const double millimetres = std::round(1000 * profile.hull_girth(height));
     return fmt::format("{} m around at the height {}", shown(millimetres / 1000), shown(height));
   };
   return fmt::format(
-      "cannot be cut for this body: it measures {} (hip_height_m) and {} (waist_height_m), and parts into "
-      "legs at {} m; give the heights of its hip and waist, and knee_height_m and hem_height_m evenly below "
+      "cannot be cut for this body: it measures {} (hip_height_m) and {} (waist_height_m), and its legs part "
+      "at {} m; give the heights of its hip and waist, and knee_height_m and hem_height_m evenly below "
       "(mssim measure finds them)",
       girth_at(jeans.hip_height), girth_at(jeans.waist_height), shown(profile.crotch_height()));
 }
 
 using OfHeight = std::function<double(double height)>;
 
-/// Wraps a function so that it computes a value once for each height. Copies remember together.
+/// Wraps a function so that it computes a value once per height. Copies share the stored values.
 OfHeight remembered(OfHeight function) {
   return [function = std::move(function),
           known = std::make_shared<std::unordered_map<double, double>>()](double height) {
@@ -107,12 +107,12 @@ OfHeight remembered(OfHeight function) {
   };
 }
 
-/// What patterns ask of a body. They ask for the same heights again: for panels that are mirror images, and
-/// when they are cut once more for another offset.
+/// The measures of a body that patterns need, stored by height: mirrored panels, and a second cut with
+/// another offset, ask for the same heights again.
 struct AskedMeasures {
   const BodyProfile& profile;
   OfHeight girth = remembered([&of = profile](double y) { return of.hull_girth(y); });
-  /// Before the middle of the legs, above which the side seams lie.
+  /// In front of the middle of the legs, above which the side seams lie.
   OfHeight front_share = remembered(
       [&of = profile](double y) { return of.front_share(y, of.leg_middle(of.crotch_height()).z); });
   OfHeight leg_x = remembered([&of = profile](double y) { return of.leg_middle(y).x; });
@@ -120,7 +120,7 @@ struct AskedMeasures {
                   remembered([&of = profile](double y) { return of.back(y); })};
 };
 
-/// Jeans for a body that is as much wider all round as its maps lie before it.
+/// Jeans for a body enlarged on all sides by the distance of its maps.
 GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, double body_offset) {
   JeansMeasures measures = garment.jeans->measures;
   measures.body_offset = body_offset;
@@ -133,7 +133,7 @@ GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, 
                        [leg_x = body.leg_x](double height) { return leg_x(height) + beside_the_leg_m; });
 }
 
-/// Throws SceneError, which names the panel or seam that cannot be made.
+/// Throws SceneError, which names a panel or seam that cannot be made.
 GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern, const AskedMeasures& body,
                             const GarmentPattern& jeans) {
   const GarmentSpec& garment = garment_of(spec);
@@ -172,28 +172,28 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, d
 constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
 
 void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
-  fields.integer({"nodes", "About how many nodes all panels have."}, jeans.nodes, fewest_nodes, most_nodes);
+  fields.integer({"nodes", "Approximate number of nodes of all panels."}, jeans.nodes, fewest_nodes,
+                 most_nodes);
   visit_length(fields, {"waist_height_m", "Height at which the upper edge is worn at the side, m."},
                jeans.measures.waist_height);
   visit_length(fields, {"hip_height_m", "Height at which the body's girth is largest, m."},
                jeans.measures.hip_height);
   visit_length(fields, {"knee_height_m", "Height of the knee, m."}, jeans.measures.knee_height);
   visit_length(fields, {"hem_height_m", "Height at which the hem is worn, m."}, jeans.measures.hem_height);
-  visit_length(fields, {"knee_m", "Around one leg of the jeans at the knee, m."}, jeans.measures.knee);
-  visit_length(fields, {"hem_m", "Around one leg of the jeans at the hem, m."}, jeans.measures.hem);
-  fields.number(
-      {"hip_ease_m",
-       "How much wider than 0.969 of the body, and what lies between, the jeans are at the hip, all "
-       "round, m."},
-      jeans.measures.hip_ease, from(0, largest_length_m));
+  visit_length(fields, {"knee_m", "Circumference of a trouser leg at the knee, m."}, jeans.measures.knee);
+  visit_length(fields, {"hem_m", "Circumference of a trouser leg at the hem, m."}, jeans.measures.hem);
+  fields.number({"hip_ease_m",
+                 "Ease at the hip: circumference of the jeans less 0.969 of the body's girth and less what "
+                 "the distance of the maps adds, m."},
+                jeans.measures.hip_ease, from(0, largest_length_m));
   fields.optional_number({"thigh_ease_m",
-                          "How much wider than 0.969 of both legs together, and what lies between, the jeans "
-                          "are a centimetre below the crotch, m; not given, the side seams go from hip to "
-                          "knee whatever lies between."},
+                          "Ease at the thigh, 1 cm below the crotch, over 0.969 of the girth of both legs "
+                          "together, m. Without this field, the side seams run from hip to knee without "
+                          "regard to the thigh."},
                          jeans.measures.thigh_ease, from(-0.2, 0.5));
-  fields.number({"waist_ease_m", "The same at the waist, over 0.994 of the body, m."},
+  fields.number({"waist_ease_m", "Ease at the waist, over 0.994 of the body's girth, m."},
                 jeans.measures.waist_ease, from(-0.2, largest_length_m));
-  fields.number({"crotch_ease_m", "How far the crotch of the jeans lies below the body's, m."},
+  fields.number({"crotch_ease_m", "Distance of the jeans' crotch below the body's, m."},
                 jeans.measures.crotch_ease, from(0, largest_length_m));
 }
 
@@ -203,60 +203,60 @@ void visit_correction(FieldVisitor& fields, DressingSettings& dressing, Velocity
   fields.number(
       {"threshold", "Elongation over rest length beyond which a spring is corrected, without unit."},
       dressing.correction_threshold, from(0, 10));
-  fields.integer({"sweeps", "Passes over all springs in a step, forwards and backwards by turns."},
+  fields.integer({"sweeps", "Passes over all springs per step, alternately forwards and backwards."},
                  dressing.correction_sweeps, 1, 1000);
   if (correction == VelocityCorrection::bounded)
-    fields.number({"rate", "Share of the excess that a step takes away, without unit."},
+    fields.number({"rate", "Fraction of the excess that a step removes, without unit."},
                   dressing.correction_rate, from(0, 1));
 }
 
 void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
-  fields.number({"seam_force_n_per_m", "Force that draws a seam together at first, per length, N/m."},
+  fields.number({"seam_force_n_per_m", "Initial force per length that draws a seam together, N/m."},
                 dressing.seam_force, from(0, 1e6));
-  fields.number({"seam_force_doubling_s", "Time in which that force has grown by its first value, s."},
+  fields.number({"seam_force_doubling_s", "Time in which that force grows by its initial value, s."},
                 dressing.seam_force_doubling_s, above(0, 1e6));
   fields.number({"seaming_damping_per_s",
-                 "Deceleration of every node per speed while the seams close, 1/s; viscous_damping_per_s is "
-                 "for draping."},
+                 "Deceleration of every node over its speed while the seams close, 1/s; draping uses "
+                 "viscous_damping_per_s."},
                 dressing.seaming_damping, from(0, 1e6));
-  fields.number({"seaming_gravity", "Share of gravity that acts while the seams close, without unit."},
+  fields.number({"seaming_gravity", "Fraction of gravity that acts while the seams close, without unit."},
                 dressing.seaming_gravity, from(0, 1));
   fields.number({"longest_seaming_s", "Simulated time after which open seams are sewn as they are, s."},
                 dressing.longest_seaming_s, from(0, 1e6));
   constexpr std::array<std::string_view, 2> held_names{"nothing", "upper edge"};
   visit_choice(fields,
                {"held",
-                "What keeps its height while the seams close, as if hands held it: \"nothing\", or the "
-                "\"upper edge\" of every panel; nothing where it is not given."},
+                "Part that keeps its height while the seams close, as if hands held it: \"nothing\" (the "
+                "default), or the \"upper edge\" of every panel."},
                Presence::optional, held_names, dressing.edge_held);
   visit_length(fields, {"sewn_gap_m", "Gap below which a joint counts as sewn and its ends move as one, m."},
                dressing.sewn_gap);
-  fields.number({"closing_share", "Share of a sewn joint's gap that a step closes at most, without unit."},
+  fields.number({"closing_share", "Largest fraction of a sewn joint's gap that a step closes, without unit."},
                 dressing.closing_share, from(0, 1));
-  fields.number({"closing_speed_m_per_s", "Speed at which a sewn joint's gap closes at most, m/s."},
+  fields.number({"closing_speed_m_per_s", "Largest speed at which a sewn joint's gap closes, m/s."},
                 dressing.closing_speed, above(0, 1000));
   fields.number({"friction", "Coulomb's coefficient between cloth and body while draping, without unit."},
                 dressing.friction, from(0, 100));
-  fields.number({"push_speed_m_per_s", "Speed at which a point inside the body is moved out at most, m/s."},
+  fields.number({"push_speed_m_per_s", "Largest speed at which a point inside the body is moved out, m/s."},
                 dressing.push_speed, from(0, 1000));
   const auto section = [&](const Field& field, VelocityCorrection correction) {
     return Section{
         field, [&dressing, correction](FieldVisitor& rule) { visit_correction(rule, dressing, correction); }};
   };
   const std::array sections{
-      section({"none", "Nothing is done to over-elongated springs."}, VelocityCorrection::none),
-      section(
-          {"published", "What lengthens an over-elongated spring is taken from the velocities of its ends."},
-          VelocityCorrection::published),
-      section(
-          {"bounded",
-           "An over-elongated spring has to shorten: its ends part at -rate times excess per step at most."},
-          VelocityCorrection::bounded)};
-  fields.one_of({"correction", "Which of the sections says what is done to over-elongated springs."},
-                sections);
+      section({"none", "Over-elongated springs are not corrected."}, VelocityCorrection::none),
+      section({"published",
+               "The part of its ends' velocities that lengthens an over-elongated spring is removed."},
+              VelocityCorrection::published),
+      section({"bounded",
+               "An over-elongated spring must shorten: its ends approach by at least rate times excess per "
+               "step."},
+              VelocityCorrection::bounded)};
+  fields.one_of({"correction", "Section that describes the correction of over-elongated springs."}, sections);
 }
 
-/// The body as each layer meets it: where layers touch, an outer one has no room but for what lies under it.
+/// The maps of the body for each layer. If layers touch, an outer one's lie further out by the thickness of
+/// those beneath.
 std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
                                                              const Surface& body, double offset) {
   std::uint32_t outermost = 0;
@@ -282,7 +282,7 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
   if (lowest_start < spec.floor.height)
     refuse(spec.file, "/floor/height_m",
            "is " + shown_number(spec.floor.height) + ", but the garment would start down to " +
-               shown_number(lowest_start) + ": lower the floor or wear the garment higher");
+               shown_number(lowest_start) + ": lower the floor or place the garment higher");
   System system;
   system.springs = build.springs;
   system.materials = build.materials;
@@ -321,49 +321,51 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   visit_body_fields(fields, garment);
   visit_length(fields, {"pixel_m", "Width of a pixel of the maps that cloth collides with, m."},
                garment.pixel_m);
-  fields.number({"skin_m",
-                 "How far the maps lie before the body's surface, m; what coarse cloth needs lest the body "
-                 "shows between its nodes is added."},
-                garment.skin_m, from(0, largest_length_m));
+  fields.number(
+      {"skin_m",
+       "Distance of the maps from the body's surface, m. mssim adds what coarse cloth needs so that "
+       "the body does not show between its nodes."},
+      garment.skin_m, from(0, largest_length_m));
   constexpr Field jeans_field{"jeans",
-                              "Jeans of four panels and six seams that fit the body; its girths and the "
-                              "height of its crotch are measured."};
+                              "Jeans of four panels and six seams that fit the body; mssim measures its "
+                              "girths and the height of its crotch."};
   const auto jeans_of = [&](FieldVisitor& jeans) { visit_jeans(jeans, garment.jeans.emplace()); };
   const auto pieces_of = [&](FieldVisitor& pieces) { visit_pieces(pieces, garment.pieces.emplace()); };
   const std::array patterns{
-      Section{jeans_field, jeans_of},
-      Section{{"pieces", "Panels and seams of one's own pattern."}, pieces_of},
-      Section{{"outfit", "Jeans, and panels and seams of one's own pattern."}, [&](FieldVisitor& outfit) {
+      Section{jeans_field, jeans_of}, Section{{"pieces", "Panels and seams of your own pattern."}, pieces_of},
+      Section{{"outfit", "Jeans, and panels and seams of your own pattern."}, [&](FieldVisitor& outfit) {
                 outfit.object(jeans_field, Presence::required, jeans_of);
                 pieces_of(outfit);
               }}};
-  fields.one_of({"pattern",
-                 "What is dressed, and the key of the section that describes it: jeans drafted for the body, "
-                 "pieces of one's own, or both."},
-                patterns);
-  fields.object({"cloth", "What jeans, and pieces without a cloth of their own, are cut from."},
-                Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
-  fields.object({"dressing", "How the panels are drawn together and draped."}, Presence::required,
+  fields.one_of(
+      {"pattern",
+       "Section that describes the garment: jeans drafted for the body, pieces of your own pattern, "
+       "or both."},
+      patterns);
+  fields.object({"cloth", "Cloth of jeans, and of pieces without their own cloth."}, Presence::required,
+                [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
+  fields.object({"dressing", "Settings by which the panels are drawn together and draped."},
+                Presence::required,
                 [&](FieldVisitor& dressing) { visit_dressing(dressing, garment.dressing); });
   fields.object(
       {"layers",
-       "How layers of cloth keep apart; left out, they go through each other. The body lies "
-       "further out for each layer by the thickness."},
+       "Settings of collisions between layers of cloth; without this section, layers pass through each "
+       "other. For each layer, the maps of the body lie further out by the thickness."},
       Presence::optional, [&](FieldVisitor& section) {
         ClothClothSettings& layers = garment.layers.emplace();
         visit_length(section,
-                     {"thickness_m", "Distance that layers keep, m; more than what they approach in a step."},
+                     {"thickness_m", "Distance that layers keep, m; more than they approach per step."},
                      layers.thickness);
         section.number({"friction", "Coulomb's coefficient of friction between layers."}, layers.friction,
                        from(0, 100));
         section.number(
             {"push_speed_m_per_s",
-             "Speed at which layers that are too near or have crossed are moved apart at most, m/s."},
+             "Largest speed at which layers that are too near or have crossed are moved apart, m/s."},
             layers.push_speed, from(0, 1000));
-        section.integer({"sweeps", "Sweeps over all contacts in a step."}, layers.sweeps, 1, 1000);
+        section.integer({"sweeps", "Sweeps over all contacts per step."}, layers.sweeps, 1, 1000);
       });
   fields.object(
-      {"expected", "What the pattern comes to, for listings."}, Presence::optional,
+      {"expected", "Size of the cut pattern, for listings."}, Presence::optional,
       [&](FieldVisitor& expected) {
         MeshSize& size = garment.expected.emplace();
         expected.integer({"nodes", "Nodes of all panels."}, size.nodes, 4, most_nodes);
@@ -371,7 +373,7 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
       });
 }
 
-/// That the pieces have names, curves and not too many nodes.
+/// Checks the body's axes, and that the pieces have names, curves and not too many nodes.
 void check(const SceneSpec& spec) {
   check_body(spec);
   const GarmentSpec& garment = garment_of(spec);
@@ -383,12 +385,12 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
   return expected ? std::optional(SceneCounts{expected->nodes, expected->springs}) : std::nullopt;
 }
 
-/// Measures the body and cuts the garment for it. Throws SceneError when the body cannot be measured or the
+/// Measures the body and cuts the garment for it. Throws SceneError if the body cannot be measured or the
 /// pattern does not fit together.
 ///
-/// The scene has the panels placed around the body, at rest, and the maps of the body that they collide with;
-/// its note says what of the body they ignore. Deterministic. Building it throws SceneError when the garment
-/// starts below the floor.
+/// The built scene has the panels at rest around the body, and the maps of the body that they collide with.
+/// Its note names the parts of the body that they ignore. Deterministic. Building it throws SceneError if the
+/// garment starts below the floor.
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
@@ -401,7 +403,7 @@ SceneParts read(const SceneSpec& spec) {
 
 extern const SceneKind garment_kind{
     .name = "garment",
-    .description = "Panels that are drawn together around a body along their seams, and draped.",
+    .description = "Panels, drawn together around a body along their seams and then draped.",
     .visit_fields = visit_fields,
     .check = check,
     .published_per_spring = {},

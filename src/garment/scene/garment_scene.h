@@ -11,31 +11,30 @@
 
 namespace mssim {
 
-/// What a scene whose content is a garment holds.
+/// The content of a garment scene.
 inline const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
 
-// The body of a garment scene. All of these but visit_body_fields need a spec whose content is a garment.
+// The body of a garment scene. All functions but visit_body_fields need a spec whose content is a garment.
 
 /// Names the fields of the body, with their targets in garment.body.
 void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment);
 
-/// That a body from a file looks along a level axis. Throws SceneError.
+/// Checks that a body from a file looks along a horizontal axis. Throws SceneError.
 void check_body(const SceneSpec& spec);
 
-/// The body that the garment is for, upright in y and looking to +z, its openings closed as far as the scene
-/// says so. Throws SceneError for one that cannot be read or measured, and for jeans when it is not a
-/// person's height.
+/// The body that wears the garment, upright in y and facing +z, with openings closed as the scene specifies.
+/// Throws SceneError if it cannot be read or measured, and for jeans if its height is not a person's.
 MeasuredBody measured_body(const SceneSpec& spec);
 
-/// A garment and how far before the body its maps lie, m.
+/// A garment, and the distance of its maps from the body, m.
 struct FittedGarment {
   GarmentBuild build;
   double body_offset = 0;
 };
 
-/// Cuts, sews and places what a garment scene describes. Its cells decide how far before the body its maps
-/// lie, which decides how wide jeans are cut: coarse cloth cut for the body itself would be too tight for
-/// them. Throws SceneError, which names the panel or seam that does not fit.
+/// Cuts, sews and places the garment of a scene. The size of its cells determines the distance of the maps
+/// from the body, and so the width of jeans: coarse cloth cut for the body itself would be too tight for the
+/// maps. Throws SceneError, which names the panel or seam that does not fit.
 FittedGarment cut_and_placed(const SceneSpec& spec, const BodyProfile& profile);
 
 }  // namespace mssim

@@ -7,51 +7,51 @@ namespace mssim {
 namespace {
 
 constexpr std::uint32_t most_panels = 64, most_seams = 256, most_lines = 10'000, most_layers = 8;
-constexpr std::size_t most_points = 100;  // of a boundary: they are compared with each other
+constexpr std::size_t most_points = 100;  // of a boundary: each is compared with each other one
 
 void visit_boundary(FieldVisitor& fields, const Field& field, BoundarySpec& boundary) {
   fields.object(field, Presence::required, [&](FieldVisitor& drawn) {
     constexpr std::array<std::string_view, 2> curves{"polyline", "bezier"};
     visit_choice(drawn,
                  {"curve",
-                  "How the points draw the curve: joined by straight lines, or as end point, two control "
-                  "points, end point, ... of cubic Bezier segments."},
+                  "What the points are: corners of a polyline, or end point, two control points, end point, "
+                  "... of cubic Bezier segments."},
                  Presence::required, curves, boundary.is_bezier);
     drawn.points({"points_m",
-                  "Points [x, y], m, y being the height at which they are worn; 3 n + 1 of them for n Bezier "
-                  "segments."},
+                  "Points [x, y], m; y is the height at which they are worn. n Bezier segments have 3 n + 1 "
+                  "points."},
                  2, most_points, from(-largest_length_m, largest_length_m), boundary.points);
   });
 }
 
 void visit_piece(FieldVisitor& fields, PieceSpec& piece) {
-  fields.text({"name", "Its name, which no other panel has; seams name it."}, Presence::required, piece.name);
+  fields.text({"name", "Unique name of the panel, to which seams refer."}, Presence::required, piece.name);
   fields.integer({"rows", "Rows of nodes, from the bottom boundary to the top one."}, piece.rows, 2,
                  most_lines);
   fields.integer({"columns", "Columns of nodes, from the left boundary to the right one."}, piece.columns, 2,
                  most_lines);
-  fields.integer({"layer", "Which layer of cloth it is; 0 lies on the body, as jeans do."}, piece.layer, 0,
+  fields.integer({"layer", "Layer of cloth; 0 lies on the body, as jeans do."}, piece.layer, 0,
                  most_layers - 1);
   constexpr std::array<std::string_view, panel_edge_names.size()> descriptions{
       "The lower boundary, from left to right.", "The upper boundary, from left to right.",
       "The left boundary, from bottom to top.", "The right boundary, from bottom to top."};
   for (std::size_t edge = 0; edge < panel_edge_names.size(); ++edge)
     visit_boundary(fields, {panel_edge_names[edge], descriptions.at(edge)}, piece.boundaries[edge]);
-  fields.object({"placement", "Where the panel begins, at the heights that it is drawn at."},
+  fields.object({"placement", "Where the panel starts, at the heights at which it is drawn."},
                 Presence::required, [&](FieldVisitor& placement) {
                   constexpr std::array<std::string_view, 2> sides{"front", "back"};
-                  visit_choice(placement, {"side", "Before the body or behind it."}, Presence::required,
+                  visit_choice(placement, {"side", "In front of the body or behind it."}, Presence::required,
                                sides, piece.behind);
-                  placement.number({"axis_m", "x at which the drawing's x = 0 stands, m."}, piece.axis_m,
+                  placement.number({"axis_m", "x of the drawing's x = 0, m."}, piece.axis_m,
                                    from(-largest_length_m, largest_length_m));
                   placement.number(
                       {"distance_m", "Distance from the body's foremost (hindmost) point at each height, m."},
                       piece.distance_m, above(0, largest_length_m));
                   placement.number(
-                      {"bend_radius_m", "Radius of the upright cylinder round which the panel is bent, m."},
+                      {"bend_radius_m", "Radius of the vertical cylinder around which the panel is bent, m."},
                       piece.bend_radius_m, above(0, largest_length_m));
                 });
-  fields.object({"cloth", "What this panel is cut from, instead of the garment's cloth."}, Presence::optional,
+  fields.object({"cloth", "Cloth of this panel, instead of the garment's."}, Presence::optional,
                 [&](FieldVisitor& cloth) { visit_cloth(cloth, piece.cloth.emplace()); });
 }
 
@@ -59,11 +59,13 @@ void visit_stretch(FieldVisitor& fields, const Field& field, SeamStretch& stretc
   fields.object(field, Presence::required, [&](FieldVisitor& sewn) {
     sewn.text({"panel", "Name of the panel; jeans have front left, back left, front right and back right."},
               Presence::required, stretch.panel);
-    visit_choice(sewn, {"edge", "Which of its boundaries."}, Presence::required, panel_edge_names,
+    visit_choice(sewn, {"edge", "Boundary of the panel."}, Presence::required, panel_edge_names,
                  stretch.edge);
-    sewn.number({"from", "Where the stretch begins, as a fraction of the boundary's length."}, stretch.from,
+    sewn.number({"from", "Start of the stretch, as a fraction of the boundary's length."}, stretch.from,
                 from(0, 1));
-    sewn.number({"to", "Where it ends; it may run backwards."}, stretch.to, from(0, 1));
+    sewn.number(
+        {"to", "End of the stretch, as such a fraction; if it is less than from, the stretch is reversed."},
+        stretch.to, from(0, 1));
   });
 }
 
@@ -93,47 +95,46 @@ PatternPanel panel_of(const PieceSpec& piece, const PanelMaterial& cloth) {
 void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth) {
   fields.number({"areal_density_kg_per_m2", "Mass per area, kg/m^2."}, cloth.area_density, above(0, 1e6));
   fields.number(
-      {"structural_n_per_m", "Stiffness of the springs between neighbours of a row or a column, N/m."},
+      {"structural_n_per_m", "Stiffness of the springs between neighbours in a row or column, N/m."},
       cloth.structural.stiffness, above(0, largest_stiffness));
   fields.number({"shear_n_per_m", "Stiffness of the springs along the diagonals of cells, N/m."},
                 cloth.shear.stiffness, above(0, largest_stiffness));
   fields.number(
-      {"bending_n_per_m", "Stiffness of the springs between every second node of a row or a column, N/m."},
+      {"bending_n_per_m", "Stiffness of the springs to the second next node in a row or column, N/m."},
       cloth.bending.stiffness, above(0, largest_stiffness));
   fields.number({"least_mass_share",
-                 "The least mass of a node over its panel's mean one, without unit: nodes on the boundary "
-                 "have less cloth."},
+                 "Least mass of a node over the mean of its panel, without unit: nodes on the boundary have "
+                 "less cloth."},
                 cloth.least_mass_share, from(0, 1));
   fields.object({"waistband", "The rows next to the upper edge, which hold the garment on the body."},
                 Presence::optional, [&](FieldVisitor& band) {
                   band.number({"height_m", "Height of the band, m."}, cloth.waistband.height,
                               above(0, largest_length_m));
-                  band.number(
-                      {"stiffness_factor", "On the stiffness of the springs along the rows, without unit."},
-                      cloth.waistband.stiffness_factor, above(0, 1000));
-                  band.number({"mass_factor", "On the masses of its nodes, without unit."},
+                  band.number({"stiffness_factor",
+                               "Factor of the stiffness of the springs along the rows, without unit."},
+                              cloth.waistband.stiffness_factor, above(0, 1000));
+                  band.number({"mass_factor", "Factor of the masses of its nodes, without unit."},
                               cloth.waistband.mass_factor, above(0, 1000));
-                  band.number({"seam_factor", "On the force of the seams, without unit."},
+                  band.number({"seam_factor", "Factor of the force of the seams, without unit."},
                               cloth.waistband.seam_factor, above(0, 1000));
                 });
 }
 
 void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces) {
   fields.list({"panels", "The panels."}, Presence::required, most_panels,
-              "A panel: a grid of nodes on a pattern piece between four boundaries, drawn as it is seen "
-              "from outside when it is worn.",
+              "A panel: a grid of nodes on a pattern piece between four boundaries, drawn as seen from "
+              "outside when worn.",
               [&](FieldVisitor& panel) { visit_piece(panel, pieces.panels.emplace_back()); });
-  fields.list({"seams", "The seams; left out, nothing is sewn."}, Presence::optional, most_seams,
-              "Two stretches of boundaries that are sewn together, beginning to beginning.",
-              [&](FieldVisitor& element) {
-                Seam& seam = pieces.seams.emplace_back();
-                element.text({"name", "Its name, for messages."}, Presence::required, seam.name);
-                visit_stretch(element, {"first", "One of the two stretches."}, seam.first);
-                visit_stretch(element, {"second", "The other one."}, seam.second);
-                element.number(
-                    {"tolerance", "How much their lengths may differ, as a fraction of the longer one."},
-                    seam.tolerance, from(0, 1));
-              });
+  fields.list(
+      {"seams", "The seams; without this field, nothing is sewn."}, Presence::optional, most_seams,
+      "Two stretches of boundaries that are sewn together, start to start.", [&](FieldVisitor& element) {
+        Seam& seam = pieces.seams.emplace_back();
+        element.text({"name", "Name of the seam, for messages."}, Presence::required, seam.name);
+        visit_stretch(element, {"first", "One of the two stretches."}, seam.first);
+        visit_stretch(element, {"second", "The other stretch."}, seam.second);
+        element.number({"tolerance", "Largest difference of their lengths, as a fraction of the longer one."},
+                       seam.tolerance, from(0, 1));
+      });
 }
 
 void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,

@@ -31,17 +31,17 @@ struct PieceSpec {
   std::uint32_t rows = 0, columns = 0;  ///< of nodes
   std::uint32_t layer = 0;
   std::array<BoundarySpec, panel_edge_names.size()> boundaries;  ///< by PanelEdge
-  bool behind = false;                                           ///< the body, or else before it
-  double axis_m = 0;                                             ///< x at which the piece's x = 0 stands
+  bool behind = false;                                           ///< behind the body, or else in front of it
+  double axis_m = 0;                                             ///< x of the piece's x = 0
   double distance_m = 0;                                         ///< PanelPlacement::distance
   double bend_radius_m = 0;                                      ///< PanelPlacement::radius
   std::optional<PanelMaterial> cloth;                            ///< none: the garment's
 };
 
-/// Panels and seams of one's own pattern.
+/// Panels and seams of the user's own pattern.
 struct PiecesSpec {
   std::vector<PieceSpec> panels;
-  std::vector<Seam> seams;  ///< also to the panels of the jeans, where there are any
+  std::vector<Seam> seams;  ///< also to the panels of the jeans, if any
 };
 
 /// A dress form made from measures.
@@ -50,14 +50,14 @@ struct MannequinBody {
   std::uint32_t cells_around = 96;  ///< of the torso
 };
 
-/// A surface in an OBJ or STL file. Paths that are not absolute start at the scene file's folder.
+/// A surface in an OBJ or STL file. Relative paths start at the scene file's folder.
 struct BodyFile {
   std::string file;
   BodyStance stance;
-  std::optional<double> close_holes_m;  ///< size of the largest opening that is closed; none: there are none
+  std::optional<double> close_holes_m;  ///< size of the largest opening to close; none: it must be closed
 };
 
-/// Jeans that fit the body: what the body itself says, its girths and the height of its crotch, is measured.
+/// Jeans that fit the body. The body's girths and the height of its crotch are measured on it.
 struct JeansSpec {
   std::uint32_t nodes = 0;  ///< about
   JeansMeasures measures;
@@ -67,28 +67,28 @@ struct JeansSpec {
 struct GarmentSpec {
   std::variant<MannequinBody, BodyFile> body;
   double pixel_m = 0.0025;  ///< of the maps of the body
-  double skin_m = 0.003;    ///< that the maps lie before the body's surface, beside what coarse cloth needs
+  double skin_m = 0.003;    ///< distance of the maps from the body's surface, besides what coarse cloth needs
   std::optional<JeansSpec> jeans;
   std::optional<PiecesSpec> pieces;  ///< one or both of the two
-  PanelMaterial cloth;               ///< of jeans, and of pieces that have none of their own
+  PanelMaterial cloth;               ///< of jeans, and of pieces without their own cloth
   DressingSettings dressing;
-  std::optional<ClothClothSettings> layers;  ///< that touch each other; none: they go through each other
+  std::optional<ClothClothSettings> layers;  ///< none: they pass through each other
   std::optional<MeshSize> expected;
 };
 
 /// Names the fields of pieces.
 void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces);
 
-/// Names the fields of what panels are cut from.
+/// Names the fields of a panel's cloth.
 void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth);
 
-/// Throws SceneError, which names the place under `pointer`, for a panel without a name, for boundaries that
-/// are no curves, and for more than `most_nodes` nodes. What only cutting and sewing shows, build_garment
-/// refuses.
+/// Throws SceneError, which names the place under `pointer`, for a panel without a name, for invalid boundary
+/// curves, and for more than `most_nodes` nodes. build_garment refuses errors that appear only in cutting and
+/// sewing.
 void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,
                   std::uint64_t most_nodes);
 
-/// Appends pieces that check_pieces accepts to a pattern. Those without a cloth of their own are of `cloth`.
+/// Appends pieces that check_pieces accepts to a pattern. Those without their own cloth get `cloth`.
 void append_pieces(const PiecesSpec& pieces, const PanelMaterial& cloth, GarmentPattern& pattern);
 
 }  // namespace mssim

@@ -12,25 +12,25 @@ namespace mssim {
 
 struct OpenclDevice;
 
-/// How far the dressing of a garment has come.
+/// Progress of a dressing.
 struct DressingProgress {
   std::size_t open_joints = 0;  ///< not sewn yet
-  bool draping = false;         ///< the seams are closed: gravity and friction act
-  std::int64_t seamed_at = 0;   ///< steps after which that was so
+  bool draping = false;         ///< the seams are closed; gravity and friction act
+  std::int64_t seamed_at = 0;   ///< steps after which the seams were closed
 };
 
-/// A backend that dresses: its steps are those of Algorithm 1. From a state that is draped on all joints are
-/// sewn, and gravity and friction act from the first step on; from any other all joints are open.
+/// A backend that dresses: its steps are those of Algorithm 1. If it starts from a draped state, all joints
+/// are sewn, and gravity and friction act from the first step on; otherwise all joints are open.
 class DressingBackend : public Backend {
  public:
   virtual DressingProgress progress() const = 0;
 };
 
-/// Whether garments can be dressed with it.
+/// Whether the integrator can dress garments.
 bool dresses(const Integrator& integrator);
 
-/// Algorithm 1 of Vassilev's paper as a straightforward program has it: one thread, an array of nodes, a list
-/// of springs, six loops. `system.topology` is a Garment. Throws Unsupported for another integrator than
+/// Algorithm 1 of Vassilev's paper as a straightforward program: one thread, an array of nodes, a list of
+/// springs, six loops. `system.topology` is a Garment. Throws Unsupported for an integrator other than
 /// semi-euler.
 std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s);
@@ -39,31 +39,30 @@ std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, cons
 std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, const Integrator& integrator,
                                                          double dt_s);
 
-/// The instruction sets that the vector code is compiled for and this processor has, the best first.
+/// The instruction sets for which the vector code is compiled and that this processor has, the best first.
 std::vector<std::string_view> dressing_instruction_sets();
 
-/// Algorithm 1 in vectors along the rows of the panels and on `threads` threads, with the same result to the
-/// last bit for any number of them. An empty instruction set is the best. Throws Unsupported for another
-/// integrator than semi-euler and for springs of one row and direction that differ in stiffness, and
-/// std::invalid_argument for an instruction set that is none of these.
+/// Algorithm 1 in vectors along the rows of the panels, on `threads` threads; bitwise identical for every
+/// number of threads. An empty name selects the best instruction set. Throws Unsupported for an integrator
+/// other than semi-euler and for springs of one row and direction that differ in stiffness, and
+/// std::invalid_argument for an instruction set not in dressing_instruction_sets().
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, int threads,
                                                       std::string_view instruction_set = "");
 
-/// How a device's work-items share a garment.
+/// The distribution of a garment over a device's work-items.
 struct DressingShape {
-  int lanes = 1;  ///< nodes of a work-item side by side: 1, 4, 8 or 16
-  std::size_t items =
-      1;  ///< work-items of a group, which takes a block of rows; with several lanes it has one
+  int lanes = 1;          ///< adjacent nodes per work-item: 1, 4, 8 or 16
+  std::size_t items = 1;  ///< work-items per group, which handles a block of rows; 1 with several lanes
 
-  /// That suits a device: one work-item with so many lanes, or where that is one, many.
+  /// The shape for a device: one work-item with this many lanes, or many work-items if `lanes` is 1.
   static DressingShape of(const OpenclDevice& device, int lanes);
 };
 
-/// Algorithm 1 on an OpenCL device (kernels/dressing_step.cl), all steps queued one behind the other: the
-/// host hears of seams that have closed at the end of step(). Throws Unsupported for another integrator than
-/// semi-euler, for layers that touch each other and for what does not fit into the device's memory;
-/// Unavailable where its driver fails.
+/// Algorithm 1 on an OpenCL device (kernels/dressing_step.cl). All steps are queued at once: the host learns
+/// at the end of step() whether seams have closed. Throws Unsupported for an integrator other than
+/// semi-euler, for layers that touch each other and if the device's memory is too small; Unavailable if its
+/// driver fails.
 std::unique_ptr<DressingBackend> make_opencl_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, const OpenclDevice& device,
                                                       DeviceMemory memory, const DressingShape& shape);

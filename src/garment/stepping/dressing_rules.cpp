@@ -7,7 +7,7 @@ namespace mssim {
 bool dresses(const Integrator& integrator) { return integrator.name == "semi-euler"; }
 
 void require_semi_euler(const Integrator& integrator) {
-  if (!dresses(integrator)) throw Unsupported("a garment is dressed with semi-euler only, as published");
+  if (!dresses(integrator)) throw Unsupported("only semi-euler dresses garments, as published");
 }
 
 std::optional<ClothClothCollision> layer_collision(const System& system, const Garment& garment,

@@ -13,12 +13,12 @@
 
 namespace mssim {
 
-// The rules of a dressing as its backends compute with them: Real is float or double.
+// The rules of a dressing in the precision of its backends: Real is float or double.
 
-/// Throws Unsupported for another integrator than semi-euler.
+/// Throws Unsupported for an integrator other than semi-euler.
 void require_semi_euler(const Integrator& integrator);
 
-/// What acts on the nodes beside springs, joints and the body. It changes when the seams are closed.
+/// Damping, gravity and friction of a phase: while the seams close, or after.
 template <class Real>
 struct PhaseRule {
   Real damping;  ///< 1/s, per mass
@@ -35,10 +35,10 @@ PhaseRule<Real> phase_rule(const System& system, const DressingSettings& rules, 
           0};
 }
 
-/// Which springs are corrected, and how (kernels/garment_laws.h).
+/// The correction of over-elongated springs (kernels/garment_laws.h).
 template <class Real>
 struct CorrectionRule {
-  Real limit;       ///< length over rest length
+  Real limit;       ///< largest length over rest length that is not corrected
   Real rate_per_s;  ///< see elongation_impulse
 };
 
@@ -49,12 +49,12 @@ CorrectionRule<Real> correction_rule(const DressingSettings& rules, double dt_s)
           bounded ? static_cast<Real>(rules.correction_rate) / static_cast<Real>(dt_s) : Real{0}};
 }
 
-/// Sweeps over all springs in a step.
+/// Sweeps over all springs per step.
 inline std::uint32_t correction_sweeps(const DressingSettings& rules) {
   return rules.correction == VelocityCorrection::none ? 0 : rules.correction_sweeps;
 }
 
-/// How a sewn joint closes its gap: the arguments of closing_rate (kernels/garment_laws.h).
+/// The arguments of closing_rate (kernels/garment_laws.h), by which a sewn joint closes its gap.
 template <class Real>
 struct ClosingRule {
   Real most;   ///< 1/s
@@ -66,21 +66,21 @@ ClosingRule<Real> closing_rule(const DressingSettings& rules, double dt_s) {
   return {static_cast<Real>(rules.closing_share / dt_s), static_cast<Real>(rules.closing_speed)};
 }
 
-/// How a dressing that starts from this state stands before its first step.
+/// Progress before the first step of a dressing that starts from this state.
 inline DressingProgress first_progress(const Garment& garment, const State& start) {
   return {start.draped ? 0 : garment.joints.size(), start.draped || garment.joints.empty(), 0};
 }
 
-/// Whether the step after which `steps` have been taken is the last one of seaming.
+/// Whether seaming ends after `steps` steps.
 inline bool ends_seaming(const DressingSettings& rules, const DressingProgress& progress, std::int64_t steps,
                          double dt_s) {
   return !progress.draping &&
          (progress.open_joints == 0 || static_cast<double>(steps) * dt_s >= rules.longest_seaming_s);
 }
 
-// kernels/garment_laws.h for a joint at a time.
+// The laws of kernels/garment_laws.h for one joint.
 
-/// Something that each of the three nodes of a joint has, T a number or a vector.
+/// A number or vector T for each of the three nodes of a joint.
 template <class T>
 struct AtJoint {
   T node, first, second;
@@ -91,14 +91,14 @@ Vec3<Real> joint_gap(const AtJoint<Vec3<Real>>& at, Real fraction) {
   return joint_gap(at.node, at.first, at.second, fraction);
 }
 
-/// What an impulse on the node, and its opposite on the point, gives the three.
+/// Changes of the three velocities by an impulse on the node and its opposite on the point.
 template <class Real>
 AtJoint<Vec3<Real>> spread(const JointEnds<Real>& ends, const Vec3<Real>& impulse) {
   return {ends.node * impulse, ends.first * impulse, ends.second * impulse};
 }
 
-/// Accelerations of the three (m/s^2) by which loop 3 draws a joint together, from their positions (m) and
-/// inverse masses (1/kg); none where it is near enough to be sewn. time_s: since the first step.
+/// Accelerations of the three nodes (m/s^2) by which loop 3 draws a joint together, from their positions (m)
+/// and inverse masses (1/kg); none if the gap is small enough to sew it. time_s: since the first step.
 template <class Real>
 std::optional<AtJoint<Vec3<Real>>> pull_of_joint(const DressingSettings& rules, const Joint& joint,
                                                  double time_s, const AtJoint<Vec3<Real>>& x,
@@ -113,7 +113,7 @@ std::optional<AtJoint<Vec3<Real>>> pull_of_joint(const DressingSettings& rules, 
                 static_cast<Real>(force) / distance * gap);
 }
 
-/// Changes of the velocities of the three (m/s) after which a sewn joint's gap closes and does nothing else.
+/// Changes of the three velocities (m/s) after which the gap of a sewn joint only closes.
 template <class Real>
 AtJoint<Vec3<Real>> closing_of_joint(const ClosingRule<Real>& rule, Real fraction,
                                      const AtJoint<Vec3<Real>>& x, const AtJoint<Vec3<Real>>& v,
@@ -129,12 +129,12 @@ AtJoint<Vec3<Real>> closing_of_joint(const ClosingRule<Real>& rule, Real fractio
                        closing_impulse(gap.z, gap_rate.z, rate, mobility)});
 }
 
-/// Fewer nodes are searched for layers that touch by one thread: that takes less than OpenMP's threads may
-/// take to meet where other programs run, too (backends/threads/spin_wait.h).
+/// With fewer nodes, one thread searches for layers that touch: OpenMP's threads may take longer to
+/// synchronise if other programs run (backends/threads/spin_wait.h).
 inline constexpr std::size_t least_shared_nodes = 16'384;
 
-/// What the layers of a garment do to each other in a step, after loop 4 has updated velocities and before
-/// the body is met, by one thread or as many as are given. None for a garment whose layers do not touch.
+/// Makes the collision of a garment's layers, which runs after loop 4 has updated velocities and before
+/// contact with the body, on one thread or on `threads`. None if the layers do not touch.
 std::optional<ClothClothCollision> layer_collision(const System& system, const Garment& garment, int threads);
 
 }  // namespace mssim

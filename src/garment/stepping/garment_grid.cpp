@@ -28,15 +28,15 @@ void append_row(const GarmentPanel& panel, std::uint32_t row, const GridSpring& 
     const auto found = numbers.find(
         key(panel.node(row, column), panel.node(other_row, static_cast<std::uint32_t>(other_column))));
     if (found == numbers.end())
-      throw std::invalid_argument(fmt::format("panel {} misses a spring of its stencil", panel.name));
+      throw std::invalid_argument(fmt::format("panel {} lacks a spring of its stencil", panel.name));
     order.push_back(found->second);
   }
 }
 
 constexpr std::size_t widest_vector = 16, empty_rows = 2;
 
-/// The direction of a spring between two nodes of a panel, from the one that owns it; throws where there is
-/// none.
+/// The direction of a spring between two nodes of a panel, from the node that owns it. Throws if the stencil
+/// has none.
 std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::uint32_t& other) {
   if (other < owner) std::swap(owner, other);
   const auto row = [&](std::uint32_t node) {
@@ -49,14 +49,13 @@ std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::u
     if (other < panel.first_node + panel.nodes() && row(other) - row(owner) == panel_stencil[d].rows &&
         column(other) - column(owner) == panel_stencil[d].columns)
       return d;
-  throw std::invalid_argument(fmt::format("panel {} has a spring that is not of its stencil", panel.name));
+  throw std::invalid_argument(fmt::format("panel {} has a spring that is not in its stencil", panel.name));
 }
 
-/// The rows at which a panel's blocks begin, which are corrected side by side, and its number of rows at the
-/// end.
+/// The first rows of a panel's blocks, which are corrected in parallel, then its number of rows.
 std::vector<std::uint32_t> correction_blocks(const GarmentPanel& panel) {
-  // At least. Small enough that a panel makes work for several threads, large enough that corrections travel.
-  constexpr std::uint32_t block_rows = 16;
+  // Small enough to give several threads work, large enough for corrections to propagate.
+  constexpr std::uint32_t block_rows = 16;  // at least
   std::vector<std::uint32_t> begins{0};
   for (std::uint32_t row = block_rows; row + block_rows <= panel.rows; row += block_rows)
     begins.push_back(row);
@@ -126,8 +125,8 @@ GarmentGrid::GarmentGrid(const System& system) : offset(system.nodes()) {
     float& stiffness = panels[number].stiffness[direction][row];
     const auto own = static_cast<float>(system.materials[spring.kind].stiffness);
     if (stiffness != 0 && stiffness != own)
-      throw Unsupported("the springs of a row of panel {} that have one direction must have one stiffness",
-                        panel.name);
+      throw Unsupported(
+          "panel {} has a row whose springs of one direction differ in stiffness; give them one", panel.name);
     stiffness = own;
   }
   for (const mssim::Joint& joint : garment.joints)

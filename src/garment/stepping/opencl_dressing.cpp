@@ -23,7 +23,7 @@
 namespace mssim {
 namespace {
 
-/// Rows of nothing before the stiffnesses of a panel's first row, as far as springs reach up.
+/// Empty rows before the stiffnesses of a panel's first row: the reach of springs.
 constexpr std::size_t rows_before = 2;
 
 DressingPhase phase_of(const System& system, const DressingSettings& rules, bool draping) {
@@ -31,7 +31,7 @@ DressingPhase phase_of(const System& system, const DressingSettings& rules, bool
   return {rule.damping, rule.gravity, rule.friction};
 }
 
-/// Steps after which seaming ends in any case.
+/// Number of steps after which seaming ends in any case.
 int longest_seaming(const DressingSettings& rules, double dt_s) {
   constexpr double most = std::numeric_limits<int>::max() - 1;
   const DressingProgress open{1, false, 0};
@@ -61,9 +61,9 @@ DressingParameters parameters_of(const System& system, const DressingSettings& r
   return parameters;
 }
 
-/// For each joint its level: after the levels of all joints before it that it has a node in common with.
+/// The level of each joint, above those of all earlier joints with which it shares a node.
 std::vector<std::size_t> levels_of(const std::vector<GarmentGrid::Joint>& joints) {
-  std::map<std::size_t, std::size_t> next;  // the first level that is free at a node
+  std::map<std::size_t, std::size_t> next;  // first free level of a node
   std::vector<std::size_t> levels;
   for (const GarmentGrid::Joint& joint : joints) {
     const std::size_t level = std::max({next[joint.node], next[joint.first], next[joint.second]});
@@ -73,20 +73,20 @@ std::vector<std::size_t> levels_of(const std::vector<GarmentGrid::Joint>& joints
   return levels;
 }
 
-/// A garment as the kernels of a dressing have it (kernels/parameters.h): what stays constant.
+/// The constant part of a garment in the layout of the kernels (kernels/parameters.h).
 struct OpenclPanels {
-  /// Throws Unsupported like GarmentGrid, where layers touch each other and where the kernels' 32-bit offsets
-  /// do not reach; std::invalid_argument where the springs are not those of the panels.
+  /// Throws Unsupported as GarmentGrid does, if layers touch each other and if the kernels' 32-bit offsets
+  /// are too small; std::invalid_argument if the springs are not those of the panels.
   OpenclPanels(const System& system, double dt_s) {
     const auto& garment = std::get<Garment>(system.topology);
     if (garment.touching)
-      throw Unsupported("opencl dresses without collisions between layers; serial and openmp have them");
+      throw Unsupported("opencl does not have collisions between layers; use serial or openmp");
     const GarmentGrid grid(system);
     const std::size_t plane = grid.inverse_mass.size();
     if (plane * panel_stencil.size() > std::numeric_limits<cl_int>::max())
       throw Unsupported(
-          "the garment needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit "
-          "offsets reach");
+          "the garment needs OpenCL buffers larger than the 8191 MiB that the kernels' 32-bit offsets reach; "
+          "use fewer nodes");
     parameters = parameters_of(system, garment.dressing, dt_s);
     parameters.plane = static_cast<int>(plane);
     offset = grid.offset;
@@ -153,7 +153,7 @@ struct OpenclPanels {
     parameters.joint_nodes = static_cast<int>(joint_nodes.size());
   }
 
-  /// Bytes of all these arrays and of those that the state takes.
+  /// Bytes of each of these arrays and of those of the state.
   std::vector<std::uint64_t> buffer_bytes() const {
     const auto bytes = [](const auto& values) {
       return std::uint64_t{values.size() * sizeof(values.front())};
@@ -165,19 +165,20 @@ struct OpenclPanels {
   }
 
   DressingParameters parameters{};
-  std::vector<std::size_t> offset;  ///< [nodes] float of a node
+  std::vector<std::size_t> offset;  ///< [nodes] index of each node's float
   std::vector<DressingBlock> blocks;
   std::vector<BodyPixel> pixels;      ///< of all layers
   std::vector<float> inverse_mass;    ///< [plane]
   std::vector<float> rest;            ///< [directions][plane]
   std::vector<float> stiffness;       ///< [directions][spring_rows]
-  std::vector<cl_int> at_joint;       ///< [plane] -1 for the nodes of joints and those held, else 0
+  std::vector<cl_int> at_joint;       ///< [plane] -1 for held nodes and those of joints, else 0
   std::vector<DressingJoint> joints;  ///< level by level
   std::vector<cl_int> level_ends;     ///< [levels]
-  std::vector<cl_int> joint_nodes;    ///< those held first
+  std::vector<cl_int> joint_nodes;    ///< held nodes first
 };
 
-/// panel_stencil for the kernels. Contractions would round differently in kernels of different shapes.
+/// panel_stencil for the kernels, without contractions, which would round differently in kernels of different
+/// shapes.
 std::string stencil_text() {
   std::string rows, columns;
   for (const GridSpring& spring : panel_stencil) {
@@ -250,13 +251,13 @@ class OpenclDressing final : public DressingBackend {
   bool runs_on_host() const override { return queue_.runs_on_host(); }
 
  private:
-  /// A buffer that only kernels see from now on.
+  /// Copies values to a buffer that from now on only kernels use.
   template <class Values>
   const cl::Buffer& kept(const Values& values) {
     return kept_.emplace_back(queue_.copy_of(std::as_bytes(std::span(values)))).buffer();
   }
 
-  /// The launches of a step, whose arguments are set once and for all.
+  /// Makes the launches of a step; their arguments do not change.
   void make_launches(const OpenclPanels& panels, const DressingShape& shape, std::uint32_t sweeps) {
     const std::vector<float> nothing(3 * plane_);
     const std::vector<cl::Buffer> grid{kept(std::span(&panels.parameters, 1)),
@@ -284,7 +285,7 @@ class OpenclDressing final : public DressingBackend {
     };
     const auto yes_if = [](bool condition) { return cl_int{condition ? 1 : 0}; };
     on_blocks("update_velocities", kept(panels.pixels), yes_if(sweeps > 0));
-    // Sweeps go forwards and backwards by turns: within the blocks, then between them, and back.
+    // Sweeps alternate: forwards within the blocks, then between them; backwards in reverse.
     std::uint32_t done = 0;
     do {
       const bool back = done + 1 < sweeps, on = done + 2 < sweeps;
@@ -321,8 +322,8 @@ class OpenclDressing final : public DressingBackend {
   }
 
   const Garment& garment_;
-  std::vector<std::size_t> offset_;  ///< [nodes] float of a node
-  std::size_t plane_;                ///< floats of a component
+  std::vector<std::size_t> offset_;  ///< [nodes] index of each node's float
+  std::size_t plane_;                ///< floats per component
   DeviceQueue queue_;
   OpenclBuffer<float> position_, velocity_;  ///< [3][plane]
   OpenclBuffer<cl_int> sewn_;                ///< [joints]

@@ -13,7 +13,7 @@ AtJoint<Vector> at(const Float3Arrays& arrays, const GarmentGrid::Joint& joint) 
   return {arrays.at(joint.node), arrays.at(joint.first), arrays.at(joint.second)};
 }
 void add(Float3Arrays& arrays, const GarmentGrid::Joint& joint, const AtJoint<Vector>& values) {
-  // One after the other: the ends of an edge may be one node.
+  // In sequence, because both ends of an edge may be the same node.
   arrays.put(joint.node, arrays.at(joint.node) + values.node);
   arrays.put(joint.first, arrays.at(joint.first) + values.first);
   arrays.put(joint.second, arrays.at(joint.second) + values.second);

@@ -14,8 +14,8 @@
 namespace mssim {
 namespace {
 
-/// A point or vector in one register of four floats, the last of which is 0: NEON has such registers, and so
-/// has every x86-64. The compiler makes the instructions, as it does of intrinsic functions.
+/// A point or vector in one register of four floats, the last of which is 0. NEON and every x86-64 have such
+/// registers. The compiler generates the instructions, as it does for intrinsic functions.
 class Vec3InRegister {
  public:
   Vec3InRegister() = default;
@@ -29,7 +29,7 @@ class Vec3InRegister {
   friend Vec3InRegister operator*(float s, Vec3InRegister a) { return of(s * a.lanes_); }
   Vec3InRegister& operator+=(Vec3InRegister a) { return *this = *this + a; }
   Vec3InRegister& operator-=(Vec3InRegister a) { return *this = *this - a; }
-  /// In the order of dot() of Vec3, so that the bits are the same.
+  /// Adds in the order of dot() of Vec3, so that both are bitwise identical.
   friend float dot(Vec3InRegister a, Vec3InRegister b) {
     const Lanes products = a.lanes_ * b.lanes_;
     return products[0] + products[1] + products[2];
@@ -56,15 +56,15 @@ struct Components<Vec3<Number>> {
   static const Vec3<Real>& of(const Vec3<Number>& a) { return a; }
 };
 
-/// An order for threads to take things in that touch nodes: batches, and rounds of batches that have no node
-/// in common. Who takes a round's batches one after the other gets the same result.
+/// Order in which threads process things that write to nodes: rounds of batches without a common node.
+/// Processing a round's batches one after the other gives the same result.
 struct ThreadSafeOrder {
-  std::vector<std::uint32_t> things;  ///< batch after batch; within one in their own order
-  std::vector<std::size_t> batches;   ///< [batches + 1] where each begins in `things`
-  std::vector<std::size_t> rounds;    ///< [rounds + 1] where each begins in `batches`
+  std::vector<std::uint32_t> things;  ///< batch after batch; within a batch in their original order
+  std::vector<std::size_t> batches;   ///< [batches + 1] start of each in `things`
+  std::vector<std::size_t> rounds;    ///< [rounds + 1] start of each in `batches`
 };
 
-/// `nodes_of`: the nodes that a thing touches.
+/// `nodes_of`: the nodes to which a thing writes.
 template <class NodesOf>
 ThreadSafeOrder thread_safe_order(std::size_t nodes, std::size_t count, std::size_t batch_size,
                                   const NodesOf& nodes_of) {
@@ -97,8 +97,8 @@ ThreadSafeOrder thread_safe_order(std::size_t nodes, std::size_t count, std::siz
   return order;
 }
 
-/// Large enough to be worth a turn of a `parallel for`, and so small that many threads get some of small
-/// jeans.
+/// Large enough to be worth an iteration of a `parallel for`, and small enough to give many threads work for
+/// small jeans.
 constexpr std::size_t springs_of_a_batch = 128, joints_of_a_batch = 16;
 
 template <class Vector, bool parallel>
@@ -198,7 +198,7 @@ class PublishedLoops final : public DressingBackend {
   struct ListedSpring {
     std::uint32_t first, second;
     LinearSpring<Real> law;
-    Real limit;  ///< m, the length from which on it is over-elongated
+    Real limit;  ///< m, length above which it is over-elongated
   };
 
   template <class Act>
@@ -259,7 +259,7 @@ class PublishedLoops final : public DressingBackend {
     force_[i] = {};
   }
 
-  /// kernels/body_contact.h without its push, in operations on vectors.
+  /// The contact of kernels/body_contact.h without its push, in vector operations.
   void meet(const BodyMaps& body, Node& node, Real friction) const {
     const Vector at = node.x + dt_ * node.v;
     const Vec3<Real> point = Components<Vector>::of(at);
@@ -311,7 +311,7 @@ class PublishedLoops final : public DressingBackend {
   std::vector<ListedSpring> springs_;    ///< in spring_order_
   std::vector<Real> mass_;               ///< [nodes] kg
   std::vector<Real> inverse_mass_;       ///< [nodes] 1/kg, 0 for a pin
-  std::vector<const BodyMaps*> bodies_;  ///< [nodes] that they meet
+  std::vector<const BodyMaps*> bodies_;  ///< [nodes] maps of the body for each
   std::vector<Real> sewn_stiffness_;     ///< [joints] N/m
   std::vector<std::uint8_t> sewn_;       ///< [joints]
   DressingProgress progress_;
@@ -324,7 +324,7 @@ std::unique_ptr<DressingBackend> make(const System& system, const Integrator& in
   require_semi_euler(integrator);
   if (std::get<Garment>(system.topology).touching)
     throw Unsupported(
-        "these rows leave out collisions between layers, as Vassilev's Figure 6 does: dress the scene with "
+        "these rows omit collisions between layers, as Vassilev's Figure 6 does: dress the scene with "
         "serial or openmp");
   return std::make_unique<PublishedLoops<Vector, parallel>>(system, dt_s, options.threads);
 }

@@ -91,7 +91,7 @@ class SerialDressing final : public DressingBackend {
     }
   }
 
-  void add_external_forces() {  // loop 2, per mass: what is added up is an acceleration from here on
+  void add_external_forces() {  // loop 2; from here on, force_ holds accelerations
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (inverse_mass_[i] == 0) continue;
       force_[i] = node_acceleration_unfused(inverse_mass_[i] * force_[i], nodes_[i].v, phase_.damping,
@@ -99,7 +99,7 @@ class SerialDressing final : public DressingBackend {
     }
   }
 
-  /// What the nodes of a joint have, as `of` gives it for a node's number.
+  /// The values of `of` for the three nodes of a joint.
   template <class Of>
   static auto at_joint(const Joint& joint, const Of& of) {
     return AtJoint<std::decay_t<decltype(of(0))>>{of(joint.node), of(joint.edge_first),
@@ -170,8 +170,7 @@ class SerialDressing final : public DressingBackend {
     }
   }
 
-  /// Lets the ends of an over-elongated spring part no faster than the rule allows; a node that friction
-  /// holds stays.
+  /// Limits the speed at which the ends of an over-elongated spring separate; nodes that friction holds stay.
   void correct(const Spring& spring) {
     Node &first = nodes_[spring.first], &second = nodes_[spring.second];
     const Vector d = second.x - first.x;
@@ -185,8 +184,8 @@ class SerialDressing final : public DressingBackend {
     second.v -= second_free * impulse * d;
   }
 
-  /// After the correction, which would open them again: the ends of a sewn joint move as one but for what
-  /// closes its gap.
+  /// Runs after the correction, which would reopen sewn joints: their ends move as one except for closing the
+  /// gap.
   void close_sewn_joints() {
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
       if (sewn_[j] == 0) continue;
@@ -230,10 +229,10 @@ class SerialDressing final : public DressingBackend {
   Real dt_;
   double dt_s_;
   std::vector<Node> nodes_;
-  std::vector<Vector> force_;                    ///< [nodes] N, from loop 2 on m/s^2
+  std::vector<Vector> force_;                    ///< [nodes] N; m/s^2 from loop 2 on
   std::vector<SpringConstants<Real>> undamped_;  ///< [kinds]
   std::vector<Real> inverse_mass_;               ///< [nodes] 1/kg, 0 for a pin
-  std::vector<Real> free_;                       ///< [nodes] the same, 0 for what friction holds, too
+  std::vector<Real> free_;  ///< [nodes] inverse_mass_, but 0 for nodes that friction holds
   PhaseRule<Real> phase_{};
   CorrectionRule<Real> correction_rule_;
   ClosingRule<Real> closing_rule_;

@@ -1,5 +1,5 @@
-// Algorithm 1 on rows of nodes side by side. Compiled once per instruction set: hwy/foreach_target.h includes
-// this file again for each.
+// Algorithm 1 on vectors of nodes along rows. Compiled once per instruction set: hwy/foreach_target.h
+// includes this file again for each.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -33,16 +33,16 @@ HWY_INLINE void store(Float3Arrays& a, std::size_t at, const Lanes3& value) {
   hn::Store(value.z.v, FloatTag(), a.z.data() + at);
 }
 
-/// What holds for a whole step.
+/// Constants of a step.
 struct StepRule {
   float dt, push_speed;
   PhaseRule<float> phase;
   bool has_joints;
-  bool layers_touch;  ///< before the body is met
+  bool layers_touch;  ///< then the body comes after the collision of layers
 };
 
-/// Forces of the springs that the last rows own, on their own nodes, N: rows of floats in a ring of three
-/// for each direction, with an empty vector on both sides.
+/// Forces, N, of the springs that the last rows own, on their owners: for each direction a ring of three rows
+/// of floats, with an empty vector on both sides.
 class ForceScratch {
  public:
   explicit ForceScratch(const GarmentGrid& grid) {
@@ -50,7 +50,7 @@ class ForceScratch {
     widest_ += 2 * side;
     forces_ = Float3Arrays(panel_stencil.size() * rows * widest_);
   }
-  /// Float of column 0 of a row's forces.
+  /// Index of the float of column 0 of a row's forces.
   HWY_INLINE std::size_t at(std::size_t direction, std::size_t row) const {
     return (direction * rows + row % rows) * widest_ + side;
   }
@@ -66,7 +66,7 @@ class ForceScratch {
   Float3Arrays forces_;
 };
 
-/// The forces of all springs that a row owns.
+/// Computes the forces of all springs that a row owns.
 HWY_INLINE void compute_forces(const GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                                ForceScratch& scratch) {
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
@@ -85,8 +85,8 @@ HWY_INLINE void compute_forces(const GarmentGrid& grid, const GarmentGrid::Panel
   }
 }
 
-/// The sum of all forces on a vector of nodes: of their own springs, and the opposite of those that other
-/// nodes own.
+/// The sum of all forces on a vector of nodes: those of the springs that they own, less those of the springs
+/// that end at them.
 HWY_INLINE Lanes3 force_on(ForceScratch& scratch, std::size_t row, std::size_t column) {
   Lanes3 sum = zero3();
   for (std::size_t d = 0; d < panel_stencil.size(); ++d) {
@@ -100,7 +100,7 @@ HWY_INLINE Lanes3 force_on(ForceScratch& scratch, std::size_t row, std::size_t c
   return sum;
 }
 
-/// Loop 4's second half: what the body does to a vector of nodes. `x` is moved, `v` changed; returns those
+/// Second half of loop 4: contact of a vector of nodes with the body. Changes `x` and `v`; returns the nodes
 /// that friction holds.
 HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real, Lanes3& x, Lanes3& v) {
   constexpr std::size_t lanes = hn::MaxLanes(FloatTag());
@@ -116,8 +116,8 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
   const auto column = whole(next.x, frame.left, frame.columns), row = whole(next.y, frame.bottom, frame.rows);
   HWY_ALIGN std::int32_t pixel[lanes];
   hn::Store(hn::Add(hn::Mul(row, hn::Set(index_tag, frame.columns)), column), index_tag, pixel);
-  // Not gathered, which takes a look at the cache for each float, not for each pixel: 0.90 to 0.97 of the
-  // time of a step on an Intel Xeon.
+  // Not gathered: a gather accesses the cache per float, not per pixel. Steps took 0.90 to 0.97 of the time
+  // on an Intel Xeon.
   const BodyPixel* const pixels = maps.pixels().data();
   const TransposedRecords<lanes> planes_of([&](std::size_t i)
                                                MSSIM_INLINE_LAMBDA { return &pixels[pixel[i]].front_x; });
@@ -134,8 +134,8 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
   return hn::And(inside, hn::Gt(after.stuck.v, hn::Zero(FloatTag())));
 }
 
-/// Loop 4's second half for a row of nodes: from moved positions and velocities to those after the body has
-/// been met, and to what may still move.
+/// Second half of loop 4 for a row of nodes: applies contact with the body to moved positions and velocities,
+/// and sets `free`.
 HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                                   const StepRule& rule) {
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
@@ -152,10 +152,9 @@ HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Panel& p
   }
 }
 
-/// Loops 1, 2 and 4 for the nodes of a block: from the positions of the block and of two rows on either side
-/// to its velocities, its moved positions and what may still move; where layers touch, to its velocities. A
-/// row meets the body in a loop of its own: with that, 0.88 to 0.96 of the time of a step before pixels were
-/// loaded whole.
+/// Loops 1, 2 and 4 for the nodes of a block: computes its velocities, moved positions and `free` from the
+/// positions of the block and of two rows on each side. If layers touch, contact with the body follows later.
+/// It has its own loop per row: steps took 0.88 to 0.96 of the time, before pixels were loaded whole.
 HWY_INLINE void update_velocities(GarmentGrid& grid, const GarmentGrid::Block& block, const StepRule& rule,
                                   ForceScratch& scratch) {
   const GarmentGrid::Panel& panel = grid.panels[block.panel];
@@ -182,16 +181,16 @@ HWY_INLINE void update_velocities(GarmentGrid& grid, const GarmentGrid::Block& b
 }
 
 // Loop 5. kernels/dressing.cl has the same loop over OpenCL C's vectors and, for a GPU, over lines of
-// springs. The impulse is one text (kernels/garment_laws.h); Dressing.CorrectsInVectorsAsTheReferenceDoes
-// and OpenclDressing.CorrectsInEverySweepAsSerialDoes hold both to correction_order.
+// springs. Both use the impulse of kernels/garment_laws.h. Dressing.CorrectsInVectorsAsTheReferenceDoes and
+// OpenclDressing.CorrectsInEverySweepAsSerialDoes compare both with correction_order.
 
 /// Lanes with a spring longer than its limit.
 HWY_INLINE Mask is_elongated(Lanes length_squared, Lanes limit) {
   return hn::Gt(elongation_excess(length_squared, limit).v, hn::Zero(FloatTag()));
 }
 
-/// The springs of a direction between two rows of nodes, a vector of them side by side: no two have a node in
-/// common.
+/// Corrects the springs of a direction between two rows of nodes, a vector at a time: no two have a common
+/// node.
 HWY_INLINE void correct_between_rows(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                                      std::size_t direction, const CorrectionRule<float>& rule) {
   const auto offset =
@@ -216,7 +215,7 @@ HWY_INLINE void correct_between_rows(GarmentGrid& grid, const GarmentGrid::Panel
   }
 }
 
-/// One spring of a row that is longer than its limit, from the node at a float to the next.
+/// Corrects a spring of a row that is longer than its limit, from the node at a float to the next.
 inline void correct_along_row(GarmentGrid& grid, std::size_t at, const CorrectionRule<float>& rule) {
   const Vec3<float> d = grid.moved.at(at + 1) - grid.moved.at(at);
   const Vec3<float> own = grid.velocity.at(at), far = grid.velocity.at(at + 1);
@@ -228,8 +227,8 @@ inline void correct_along_row(GarmentGrid& grid, std::size_t at, const Correctio
   grid.velocity.put(at + 1, far - far_free * impulse * d);
 }
 
-/// The springs along a row, one after the other: a vector of them is looked at together, and those that are
-/// too long, few mostly, are corrected in order.
+/// Corrects the springs along a row: tests a vector of them at once, then corrects those that are too long,
+/// usually few, one after the other.
 HWY_INLINE void correct_row(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                             const CorrectionRule<float>& rule, bool forwards) {
   const std::size_t lanes = lane_count(), vectors = (panel.columns + lanes - 1) / lanes;
@@ -248,7 +247,7 @@ HWY_INLINE void correct_row(GarmentGrid& grid, const GarmentGrid::Panel& panel, 
   }
 }
 
-/// The springs within a block.
+/// Corrects the springs within a block.
 HWY_INLINE void correct_block(GarmentGrid& grid, const GarmentGrid::Block& block,
                               const CorrectionRule<float>& rule, bool forwards) {
   const GarmentGrid::Panel& panel = grid.panels[block.panel];
@@ -266,7 +265,7 @@ HWY_INLINE void correct_block(GarmentGrid& grid, const GarmentGrid::Block& block
   }
 }
 
-/// The springs between a block and the one before it.
+/// Corrects the springs between a block and the one before it.
 HWY_INLINE void correct_seam_of_blocks(GarmentGrid& grid, const GarmentGrid::Block& block,
                                        const CorrectionRule<float>& rule, bool forwards) {
   const GarmentGrid::Panel& panel = grid.panels[block.panel];
@@ -296,8 +295,8 @@ HWY_INLINE void move_block(GarmentGrid& grid, const GarmentGrid::Block& block, L
   }
 }
 
-/// Limits what over-elongated springs do, in the order of correction_order: a thread's own blocks, and the
-/// springs between each of them and the block before it, which is done when all have passed the barrier.
+/// Corrects over-elongated springs in the order of correction_order: a thread's own blocks, and the springs
+/// between each of them and the previous block. The barrier separates the two.
 HWY_INLINE void correct(GarmentGrid& grid, const CorrectionRule<float>& rule, std::uint32_t sweeps,
                         BlockRange range, SpinBarrier& barrier) {
   for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
@@ -315,7 +314,7 @@ HWY_INLINE void correct(GarmentGrid& grid, const CorrectionRule<float>& rule, st
   }
 }
 
-/// What the first thread does between two steps.
+/// Ends a step; called by the first thread.
 void end_step(PanelDressing& dressing) {
   GarmentGrid& grid = dressing.grid;
   const DressingSettings& rules = dressing.garment.dressing;
@@ -325,7 +324,7 @@ void end_step(PanelDressing& dressing) {
   dressing.progress = {0, true, dressing.steps};
 }
 
-/// A thread of a team, its blocks, and what it computes forces in.
+/// A thread of a team, its blocks and its scratch memory.
 struct Worker : Team {
   Worker(const Team& team, const PanelDressing& dressing, ForceScratch& its)
       : Team(team),
@@ -343,7 +342,7 @@ StepRule step_rule(const PanelDressing& dressing) {
           phase_rule<float>(dressing.system, rules, draping), !draping, dressing.layers.has_value()};
 }
 
-/// Loops 1 to 4, up to where layers meet each other.
+/// Loops 1 to 4, up to the collision of layers.
 void accelerate(PanelDressing& dressing, const Worker& worker) {
   const StepRule rule = step_rule(dressing);
   if (rule.has_joints) {
@@ -354,7 +353,7 @@ void accelerate(PanelDressing& dressing, const Worker& worker) {
     update_velocities(dressing.grid, dressing.grid.blocks[b], rule, worker.scratch);
 }
 
-/// What is left of a step.
+/// The rest of a step.
 void move(PanelDressing& dressing, const Worker& worker) {
   GarmentGrid& grid = dressing.grid;
   const DressingSettings& rules = dressing.garment.dressing;
@@ -377,7 +376,7 @@ void move(PanelDressing& dressing, const Worker& worker) {
     move_block(grid, grid.blocks[b], Lanes(rule.dt), dressing.system.floor);
 }
 
-/// Layers of the garment collide.
+/// Collides the layers of the garment.
 void collide_layers(PanelDressing& dressing) {
   GarmentGrid& grid = dressing.grid;
   dressing.layers->collide(
@@ -392,7 +391,7 @@ void collide_layers(PanelDressing& dressing) {
       });
 }
 
-/// A step, until the thread has moved its own nodes.
+/// A step, until this thread has moved its own nodes.
 void take_step(PanelDressing& dressing, const Worker& worker) {
   accelerate(dressing, worker);
   if (dressing.layers) {
@@ -404,7 +403,7 @@ void take_step(PanelDressing& dressing, const Worker& worker) {
 }
 
 void step_panels(PanelDressing& dressing, int count) {
-  // Of each thread, and of one that works alone.
+  // One for each thread, and one for a thread that does the work of all.
   std::vector<std::optional<ForceScratch>> scratch(dressing.threads + 1);
   const auto worker_of = [&](const Team& team, std::size_t number) {
     if (!scratch[number]) scratch[number].emplace(dressing.grid);
@@ -429,7 +428,7 @@ void step_panels(PanelDressing& dressing, int count) {
     with_team(dressing.threads, take_steps, dressing.team_gain);
     return;
   }
-  // The threads of the collision are a team of their own.
+  // The threads of the collision are a separate team.
   for (int step = 0; step < count; ++step) {
     with_team(dressing.threads,
               [&](const Team& team) { accelerate(dressing, worker_of(team, team.thread)); });

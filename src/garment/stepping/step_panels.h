@@ -10,25 +10,25 @@
 
 namespace mssim {
 
-/// A dressing under way.
+/// State of a dressing.
 struct PanelDressing {
   const System& system;
   const Garment& garment;
   GarmentGrid grid;
   std::size_t threads;
   double dt_s;
-  std::optional<ClothClothCollision> layers;  ///< that touch
+  std::optional<ClothClothCollision> layers;  ///< none: layers do not touch
   std::int64_t steps = 0;
   DressingProgress progress = {};
   TeamGain team_gain = {};
 };
 
-/// Loop 3: sews the joints that are near enough, and sets what the others do to the nodes at their ends.
-/// There are as many as a panel has rows, so that one thread does it.
+/// Loop 3: sews the joints whose gap is small enough, and sets the accelerations by the others at their ends.
+/// Joints are as few as the rows of a panel, so that one thread suffices.
 void pull_joints(PanelDressing& dressing);
 
-/// After loop 5, which would open them again: the ends of a sewn joint move as one but for what closes its
-/// gap, and edges that are held keep their height.
+/// Runs after loop 5, which would reopen sewn joints: their ends move as one except for closing the gap, and
+/// held edges keep their height.
 void close_sewn_joints(PanelDressing& dressing);
 
 }  // namespace mssim

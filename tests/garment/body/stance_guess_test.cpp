@@ -82,7 +82,7 @@ TEST(StanceGuess, ABodyThatLooksBetweenTheAxesIsTurned) {
     const StanceGuess guess = guess_stance(posed(person, {1, degrees, {0.1, 0, 2}, degrees > 0}), {});
     SCOPED_TRACE(degrees);
     EXPECT_THAT(guess.doubts,
-                ElementsAre(HasSubstr("facing: its legs stand off the axes, so it is turned by")));
+                ElementsAre(AllOf(StartsWith("facing: its legs are oblique"), HasSubstr("give --facing"))));
     const Surface found = stood_up(posed(person, {1, degrees, {0.1, 0, 2}, degrees > 0}), guess.stance);
     for (std::size_t p = 0; p < found.points.size(); p += 100) {
       EXPECT_NEAR(found.points[p].x, person.points[p].x, 0.02);
@@ -92,14 +92,14 @@ TEST(StanceGuess, ABodyThatLooksBetweenTheAxesIsTurned) {
   const Surface askew = posed(person, {1, 30, {}, false});
   const StanceGuess given = guess_stance(askew, {{}, {}, Facing::plus_z});
   EXPECT_EQ(given.stance.turn_deg, 0);
-  EXPECT_THAT(given.doubts, ElementsAre(HasSubstr("its legs stand 30 degrees off the axis; turn_deg")));
+  EXPECT_THAT(given.doubts, ElementsAre(HasSubstr("30 degrees off the axis; turn_deg")));
 }
 
 TEST(StanceGuess, WhatIsGivenIsKept) {
   const StanceGuess guess = guess_stance(form(), {0.001, UpAxis::y, Facing::minus_z});
   EXPECT_EQ(guess.stance.unit_m, 0.001);
   EXPECT_EQ(guess.stance.facing, Facing::minus_z);
-  EXPECT_THAT(guess.doubts, ElementsAre(HasSubstr("unit: the body is 0.0015 m high in the unit given")));
+  EXPECT_THAT(guess.doubts, ElementsAre(StartsWith("unit: the body is 0.0015 m high")));
   EXPECT_EQ(guess_stance(form(), {{}, {}, Facing::minus_z}).stance.up, UpAxis::y);
   EXPECT_EQ(guess_stance(laid_out(form(), {1, UpAxis::z, Facing::plus_x, 0, {}}), {{}, UpAxis::z, {}})
                 .stance.facing,
@@ -114,10 +114,10 @@ TEST(StanceGuess, WhatCannotBeIsRefused) {
   Surface lying = form();
   for (Vec3d& point : lying.points) point = {point.y, -point.x, point.z};
   EXPECT_THAT(input_error_of([&] { guess_stance(lying, {}); }),
-              HasSubstr("it stands upright neither in y nor in z; turn it"));
+              HasSubstr("upright neither in y nor in z; turn it"));
   Surface huge = form();
   for (Vec3d& point : huge.points) point = 300.0 * point;
-  EXPECT_THAT(input_error_of([&] { guess_stance(huge, {}); }), HasSubstr("m; give the unit with --unit"));
+  EXPECT_THAT(input_error_of([&] { guess_stance(huge, {}); }), HasSubstr("give the unit with --unit"));
   EXPECT_EQ(guess_stance(huge, {0.1, {}, {}}).stance.unit_m, 0.1);
 }
 

@@ -130,7 +130,7 @@ ResultTable table_of(const std::vector<ResultRow>& rows) {
 TEST(GarmentTable, IsLaidOutAsTheFigure) {
   const std::string page = markdown(table_of(garment_rows()).page);
   EXPECT_THAT(page, HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads"));
-  EXPECT_THAT(page, HasSubstr("| milliseconds an iteration | small<br>1,000 | large<br>4,000 |\n"
+  EXPECT_THAT(page, HasSubstr("| milliseconds per iteration | small<br>1,000 | large<br>4,000 |\n"
                               "|---|---:|---:|\n"
                               "| without: `serial` | **0.250** | **2.00** |\n"
                               "| with: `openmp` | failed | **0.500** (4.00×) |\n"));

@@ -224,7 +224,7 @@ TEST(Placement, BadPlacementsAreRefused) {
       [](double) { return -0.1; }};
   EXPECT_THAT(input_error_of([&] { place_panel("front", mesh, {}, short_body); }),
               AllOf(StartsWith("front: the body has the depth nan m at the height 0.7"),
-                    HasSubstr("give a body that reaches along the whole panel")));
+                    HasSubstr("give a body that reaches over")));
 }
 
 /// Two panels, "a" and "b", whose right and left boundary are to be sewn; b's nodes follow a's.

@@ -14,6 +14,7 @@ namespace {
 
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -175,10 +176,9 @@ TEST(JeansDraft, BadMeasuresAreRefused) {
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.girth = [](double) { return -1.0; }; }),
               AllOf(StartsWith("jeans: the body's girth at the height 0.86 m is -1 m"),
                     HasSubstr("from 0.2 to 5 m")));
-  EXPECT_EQ(
-      complaint([](JeansMeasures& m) { m.knee_height = 0.08; }),
-      "jeans: the knee's height, knee_height_m, which lies above the hem's, is 0.08 m; give a length from "
-      "0.1 to 2 m");
+  EXPECT_THAT(complaint([](JeansMeasures& m) { m.knee_height = 0.08; }),
+              AllOf(StartsWith("jeans: the knee's height, knee_height_m,"),
+                    EndsWith("is 0.08 m; give a length from 0.1 to 2 m")));
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.waist_height = 0.86; }),
               StartsWith("jeans: the waist's height"));
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.crotch_height = 0.5; }),

@@ -60,9 +60,8 @@ TEST(Curve, MirroredItsXIsTurnedRound) {
 TEST(Curve, WhatIsNoCurveIsRefused) {
   const auto complaint = [](std::vector<Vec3d> points) { return input_error_of([&] { Curve{points}; }); };
   EXPECT_THAT(complaint({{0, 0, 0}}), HasSubstr("has 1 point; give two or more points"));
-  EXPECT_THAT(
-      complaint({{0, 0, 0}, {1, 2, 0}, {1, 2, 0}}),
-      HasSubstr("point 2 of a boundary curve, (1, 2, 0), is the same as the one before it; leave one"));
+  EXPECT_THAT(complaint({{0, 0, 0}, {1, 2, 0}, {1, 2, 0}}),
+              AllOf(HasSubstr("point 2 of a boundary curve, (1, 2, 0), "), HasSubstr("remove one of them")));
   EXPECT_THAT(complaint({{0, 0, 0}, {1, 2, 3}}),
               HasSubstr("(1, 2, 3), does not lie in the plane of the pattern"));
   EXPECT_THAT(complaint({{0, 0, 0}, {std::numeric_limits<double>::infinity(), 2, 0}}), HasSubstr("finite"));
@@ -158,7 +157,7 @@ TEST(PanelMesh, CellsThatFoldOverAreRefused) {
   piece.left = Curve({{0, 0, 0}, {0.9, 0.45, 0}, {0.9, 0.55, 0}, {0, 1, 0}});
   piece.bottom = Curve({{0, 0, 0}, {0.4, 0, 0}, {0.4, -2, 0}, {0.6, -2, 0}, {0.6, 0, 0}, {1, 0, 0}});
   EXPECT_THAT(complaint(piece, {30, 30}),
-              AllOf(StartsWith("front: the cell of row "), HasSubstr(" folds over at ("),
+              AllOf(StartsWith("front: the cell in row "), HasSubstr(" folds over at ("),
                     HasSubstr("straighten the boundaries there or end the grid lines")));
 }
 

@@ -199,8 +199,8 @@ TEST_F(TraceDamage, IsSaidOfIndicesThatAreOutOfRange) {
   };
   EXPECT_THAT(with(system_, "/connectivity/springs", 20), HasSubstr("spring between the nodes 20 and"));
   EXPECT_THAT(with(block, "/connectivity/tetrahedra", 8), HasSubstr("tetrahedra between its nodes"));
-  EXPECT_THAT(with(garment, "/connectivity/joints", 22), HasSubstr("joints between nodes"));
-  EXPECT_THAT(with(garment, "/parameters/joints/seam", 2), HasSubstr("of seams that there are"));
+  EXPECT_THAT(with(garment, "/connectivity/joints", 22), HasSubstr("a joint of a missing node"));
+  EXPECT_THAT(with(garment, "/parameters/joints/seam", 2), HasSubstr("a joint of a missing node or seam"));
   EXPECT_THAT(with(garment, "/body/triangles", 4), HasSubstr("triangles between its points"));
   EXPECT_THAT(with(garment, "/parameters/panels/first_node", 1),
               HasSubstr("panels of rows and columns, in order"));
