@@ -87,7 +87,7 @@ for release in "$source"/tests/archive/*/; do
   expect compared cloth2500 box-small 12
   "$mssim" render "$release/trace.h5" --time 0.02 --out "$place/picture.png" >/dev/null 2>&1
   mkdir -p "$place/objects"
-  "$mssim" export "$release/trace.h5" --format obj --out "$place/objects/frame.obj" >/dev/null 2>&1
+  "$mssim" export "$release/trace.h5" --format obj --frames all --out "$place/objects/frame.obj" >/dev/null 2>&1
   [[ -s $place/picture.png && $(find "$place" -name '*.obj' | wc -l) -ge 2 ]]
   rm -rf "$place/objects" "$place/picture.png"
 done
