@@ -1,4 +1,5 @@
-// A program that links mssim: steps a scene file with a backend, and says how far it is from the double-precision reference.
+// A program that links mssim: steps a scene file with a backend, and says how far it is from the
+// double-precision reference.
 //   verify_scene SCENE.json [BACKEND]
 
 #include <iostream>
