@@ -1,6 +1,7 @@
 # Installs the headers of the library's interface, from a scene file to a verified backend, and those that they include. Part of an
 # installation: SOURCE is the source folder, HEADERS the folder in the prefix.
 
+cmake_minimum_required(VERSION 3.25)
 set(unread scene/scene_file.h scene/scene_kinds.h integrators/all_integrators.h backends/backends.h bench/verification/verification.h)
 set(read)
 while(unread)
