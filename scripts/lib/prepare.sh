@@ -52,7 +52,7 @@ missing_packages() {
   local -a wanted
   mapfile -t wanted < <(packages_for "$@")
   # dpkg-query fails if it does not know one of them, but still lists the others.
-  comm -23 <(printf '%s\n' "${wanted[@]}" | sort) \
+  comm -23 <(printf '%s\n' "${wanted[@]}" | sort -u) \
     <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
       awk '$1 == "installed" { print $2 }' | sort)
 }

@@ -294,7 +294,9 @@ class Run {
 }  // namespace
 
 std::optional<TetgenProgram> find_tetgen() {
-  const std::optional<fs::path> executable = find_program("tetgen");
+  // An archive of mssim brings its own, which meshes a body alike on every machine.
+  std::optional<fs::path> executable = find_program(helper_program("tetgen"));
+  if (!executable) executable = find_program("tetgen");
   if (!executable) return std::nullopt;
   TetgenProgram program{*executable, "unknown", 0};
   std::vector<fs::path> files = libraries_of(*executable);

@@ -1,0 +1,22 @@
+# Installs the headers of the library's interface, from a scene file to a verified backend, and those that they include. Part of an
+# installation: SOURCE is the source folder, HEADERS the folder in the prefix.
+
+cmake_minimum_required(VERSION 3.25)
+set(unread scene/scene_file.h scene/scene_kinds.h integrators/all_integrators.h backends/backends.h bench/verification/verification.h)
+set(read)
+while(unread)
+  list(POP_FRONT unread header)
+  if(header IN_LIST read)
+    continue()
+  endif()
+  list(APPEND read ${header})
+  set(file ${SOURCE}/src/${header})
+  if(NOT EXISTS ${file})
+    set(file ${SOURCE}/${header})
+  endif()
+  cmake_path(GET header PARENT_PATH folder)
+  file(INSTALL ${file} DESTINATION ${CMAKE_INSTALL_PREFIX}/${HEADERS}/${folder} MESSAGE_NEVER)
+  file(STRINGS ${file} lines REGEX "^#include \"")
+  string(REGEX REPLACE "#include \"([^\"]*)\"[^;]*" "\\1" lines "${lines}")
+  list(APPEND unread ${lines})
+endwhile()
