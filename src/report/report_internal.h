@@ -91,6 +91,25 @@ bool is_for_gpus(std::string_view backend, const PaperLegend& legend);
 /// The families that look the same in every chart which has no others.
 std::vector<std::string> families_of_backends(const PaperLegend& legend);
 
+/// What made the times less certain, as mssim saw it when it started to measure; its remedies come too late.
+std::vector<std::string> noise_seen(const Provenance& provenance);
+
+/// A count of the folder's rows, such as their rounds: "15", or "7 to 15". Zeros are left out.
+std::string range_of(const ReportFolder& folder, int ResultRow::*count);
+
+/// The last two names of the folder's path: folders of several suites may have the same last name.
+std::filesystem::path short_name(const ReportFolder& folder);
+
+/// The table of times: a line for each row, scenes first. Times come second, so that a narrow screen shows
+/// them.
+Table times_of(RowPointers rows, const ReportFolder& folder);
+
+/// What its columns are, with the marks of a Document.
+inline constexpr std::string_view how_to_read_times =
+    "*ms per step* are medians over the rounds. Intervals contain the true median in 95 % of all cases. With "
+    "fewer than six rounds they are the smallest and the largest sample. Speed-ups are over `serial`: "
+    "medians of the ratios within each round.";
+
 /// "Measured on PROCESSOR, N threads"; empty where the provenance does not tell.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);
 
@@ -124,6 +143,16 @@ Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
 /// the timings tell of.
 std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                     const std::string& id);
+
+/// All charts of the folder's speed-ups, with Figure 6, and those over nodes and threads.
+std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id);
+std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id);
+
+/// Where nothing else decides how series look, each backend looks the same in every chart, whatever variants
+/// of backends are beside it.
+std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend);
 
 /// Total energy against time, with the reference curve of the scene that the curve's name begins with, where
 /// there is one.
