@@ -40,6 +40,8 @@ constexpr auto table = std::to_array<Command>({
      "mssim compare results/yesterday results/today", declare_compare},
     {"report", "Write one HTML page about results: verdict, tables, charts, provenance",
      "mssim report results/table1 results/table3 --out report.html", declare_report},
+    {"table", "Write tables, charts, methods and an artifact appendix for a paper in LaTeX",
+     "mssim table results/table1/zen4 --format latex --out paper", declare_table},
     {"measure", "Measure a person's surface, and write a scene of jeans for it",
      "mssim measure scan.obj --scene my.json", declare_measure},
     {"new-backend", "Write a backend of your own to start from, in Python or C++",

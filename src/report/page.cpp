@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "output/folders/provenance_file.h"
 #include "output/tables/results.h"
@@ -13,12 +11,6 @@ namespace {
 std::string element(std::string_view name, std::string_view content, std::string_view attributes = "") {
   return fmt::format("<{0}{1}>{2}</{0}>", name, attributes, content);
 }
-
-/// A mark of a Document, the same before and after the text, and its element.
-struct Mark {
-  std::string_view sign, element;
-};
-constexpr std::array<Mark, 3> text_marks{{{"`", "code"}, {"**", "strong"}, {"*", "em"}}};
 
 struct HtmlBlock {
   int shift;  ///< added to the levels of headings
@@ -158,28 +150,13 @@ std::string html_text(std::string_view text) {
 }
 
 std::string html_prose(std::string_view text) {
-  std::string result, plain;
-  const auto flush = [&] { result += html_text(std::exchange(plain, {})); };
-  for (std::size_t at = 0; at < text.size();) {
-    const auto mark = std::ranges::find_if(
-        text_marks, [&](const Mark& candidate) { return text.substr(at).starts_with(candidate.sign); });
-    const std::size_t inner = mark == text_marks.end() ? at : at + mark->sign.size();
-    const std::size_t end = mark == text_marks.end() ? inner : text.find(mark->sign, inner);
-    if (mark != text_marks.end() && end != std::string_view::npos && end > inner && text[inner] != ' ') {
-      flush();
-      const std::string_view content = text.substr(inner, end - inner);
-      result += element(mark->element, mark->sign == "`" ? html_text(content) : html_prose(content));
-      at = end + mark->sign.size();
-    } else if (text[at] == '\n') {
-      flush();
-      result += "<br>";
-      ++at;
-    } else {
-      plain += text[at++];
-    }
-  }
-  flush();
-  return result;
+  constexpr TextSpelling html{
+      html_text, html_text,
+      [](TextMark mark, const std::string& content) {
+        return element(mark == TextMark::code ? "code" : mark == TextMark::strong ? "strong" : "em", content);
+      },
+      "<br>"};
+  return spelled(text, html);
 }
 
 std::string html_of(const Table& table) {

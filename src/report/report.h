@@ -68,6 +68,7 @@ struct ReportFolder {
   std::optional<Provenance> provenance;
   std::vector<FoundCurve> curves;
   std::vector<FoundPicture> pictures;
+  std::vector<std::string> tables;    ///< those of table_names that lie in it
   std::vector<std::string> problems;  ///< without a full stop
 
   /// The provenance; empty if unknown.
@@ -123,7 +124,7 @@ struct ReportInput {
   PaperLegend legend;
   std::vector<PublishedTable> published;
   std::vector<Claim> claims;           ///< of the papers
-  TableMaker tables;                   ///< of published and measured numbers
+  TableMaker tables;                   ///< of the rows of a folder
   std::vector<FoundCurve> references;  ///< energy curves, named after their scenes
   std::vector<FoundPicture> pictures;  ///< of scenes of the folders, drawn for the report
   std::vector<FoundCurve> curves;      ///< of energy, of scenes simulated for the report
@@ -137,5 +138,27 @@ struct ReportInput {
 /// [{is_warning, sentence}], timings: [a row of timings.csv], provenance: as in provenance.json, or null}]};
 /// folders of guides also have guide: [a row of guide.csv, with the columns that charts show].
 std::string report_page(const ReportInput& input);
+
+/// A page with tables about a folder.
+struct TablePage {
+  std::string name;    ///< letters, digits and hyphens
+  Document page;       ///< its title, where it was measured, and what more there is
+  std::string remark;  ///< for captions: how many rounds; empty for a guide's
+};
+
+/// The tables that lie in the folder, made anew from its rows, and the page of its guide; then `times`, all
+/// rows with their intervals. Throws InputError for a folder without provenance.
+std::vector<TablePage> table_pages(const ReportFolder& folder, const ReportInput& input);
+
+/// A text file by its name.
+struct PaperFile {
+  std::string name, text;
+};
+
+/// What a LaTeX paper about the folders needs: for each folder its table_pages() as NAME.tex, its charts as
+/// SVG and figures.tex, which includes them as PDF, methods.tex and artifact.tex; sources.bib, and mssim.tex,
+/// a document of all of them. If there are several folders, names begin with that of the folder. Throws
+/// like table_pages(), and std::runtime_error if the data folder is missing.
+std::vector<PaperFile> paper_files(const ReportInput& input);
 
 }  // namespace mssim

@@ -220,6 +220,8 @@ ReportFolder read_report_folder(const fs::path& path) {
     folder.problems.push_back(std::string(error.what()) + "; machine and settings are unknown");
   }
   read_pictures_and_curves(path, folder);
+  for (const std::string_view name : table_names)
+    if (is_there(path / (std::string(name) + ".md"))) folder.tables.emplace_back(name);
   return folder;
 }
 

@@ -90,6 +90,24 @@ bool is_for_gpus(std::string_view backend, const PaperLegend& legend);
 /// The families of the backends, which fix their looks in charts (Chart::families).
 std::vector<std::string> families_of_backends(const PaperLegend& legend);
 
+/// The sources of noise that mssim found when it started to measure, without the remedies.
+std::vector<std::string> noise_seen(const Provenance& provenance);
+
+/// The range of a count in the folder's rows, such as rounds: "15" or "7 to 15". Zeros do not count.
+std::string range_of(const ReportFolder& folder, int ResultRow::*count);
+
+/// The last two names of the folder's path: folders of several suites may have the same last name.
+std::filesystem::path short_name(const ReportFolder& folder);
+
+/// The table of times: one line per row. Times are the second column, so that a narrow screen shows them.
+Table times_of(RowPointers rows, const ReportFolder& folder);
+
+/// Explains the columns of times_of(), with the marks of a Document.
+inline constexpr std::string_view how_to_read_times =
+    "*ms per step* are medians over the rounds. Intervals contain the true median in 95 % of all cases. With "
+    "fewer than six rounds they are the smallest and the largest sample. Speed-ups are over `serial`: "
+    "medians of the ratios within each round.";
+
 /// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);
 
@@ -122,6 +140,16 @@ Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
 /// follow from the timings.
 std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                     const std::string& id);
+
+/// All charts of the folder's speed-ups, with Figure 6, and those over nodes and threads.
+std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id);
+std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id);
+
+/// Gives each backend the same look in every chart, whatever the other backends, unless the chart has its own
+/// families.
+std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend);
 
 /// Total energy against time, with the reference curve of the scene with whose name the curve's name begins,
 /// if any.

@@ -27,12 +27,9 @@ std::string of_each_folder(const ReportInput& input, const std::string& without,
   return text.empty() ? without : text;
 }
 
-/// The sources of noise that mssim found when it started to measure, without the remedies. Empty if there
-/// were none.
+/// A warning above the times; empty if mssim found no noise.
 std::string noise_note(const ReportFolder& folder) {
-  std::vector<std::string> noise;
-  for (const std::string& sentence : folder.where_from().noise)
-    noise.push_back(sentence.substr(0, sentence.find(": ")));
+  const std::vector<std::string> noise = noise_seen(folder.where_from());
   return noise.empty() ? ""
                        : fmt::format("<p class=\"problems\">When this run started: {}.</p>\n",
                                      html_text(join(noise, "; ")));
@@ -46,16 +43,6 @@ std::string caches_of(const Machine& machine) {
     caches.push_back(
         fmt::format("L{} {} {} × {} KiB", cache.level, cache.type, cache.count, grouped(cache.bytes / 1024)));
   return join(caches, ", ");
-}
-
-std::string rounds_of(const ReportFolder& folder) {
-  int least = 0, most = 0;
-  for (const ResultRow& row : folder.rows)
-    if (row.rounds > 0) {
-      least = least == 0 ? row.rounds : std::min(least, row.rounds);
-      most = std::max(most, row.rounds);
-    }
-  return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
 /// The names of devices without their platforms; PoCL's include theirs.
@@ -95,7 +82,7 @@ std::string machine_section(const ReportInput& input) {
                {"system", machine.operating_system},
                {"compiler", provenance.build.compiler + ", " + provenance.build.build_type},
                {"mssim", made_by(provenance)},
-               {"rounds", rounds_of(folder)}});
+               {"rounds", range_of(folder, &ResultRow::rounds)}});
   }
   for (Column& column : table.columns) column.align = Align::left;
   return table.rows.empty() ? "<p>The machine of the folders is unknown.</p>\n" : html_of(table);
@@ -190,10 +177,7 @@ std::string outcomes_of(const ReportInput& input) {
       Cell& cell = cells.emplace_back(std::string(name_of(judged.outcome)));
       cell.strong = judged.outcome != ClaimOutcome::undecided;
     }
-    // Folders of several suites may have the same last name.
-    std::filesystem::path name = std::filesystem::path(folder.name).lexically_normal();
-    if (!name.has_filename()) name = name.parent_path();  // it ended with a slash
-    table.columns.push_back({(name.parent_path().filename() / name.filename()).string()});
+    table.columns.push_back({short_name(folder).string()});
   }
   for (const Claim& claim : input.claims) {
     const auto found = outcomes.find(&claim);
@@ -270,42 +254,6 @@ std::string verified_mark(const ResultRow& row) {
   return row.status == "ok" ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
 }
 
-/// Times are the second column, so that a narrow screen shows them.
-Table times_of(const std::vector<const ResultRow*>& rows, const ReportFolder& folder) {
-  const std::vector<const ResultRow*> all = pointers_to(folder.rows);
-  const Provenance provenance = folder.where_from();
-  Table table{{{"scene"},
-               {"ms per step", Align::right},
-               {"backend"},
-               {"integrator"},
-               {"threads"},
-               {"95 % interval (ms)", Align::right},
-               {"speed-up", Align::right, "×"},
-               {"95 % interval", Align::right},
-               {"published (ms)", Align::right},
-               {"of the roof (%)", Align::right},
-               {"verified"}},
-              {}};
-  for (const ResultRow* row : rows) {
-    const ResultRow* serial = find_row(all, row->scene, baseline_name, row->integrator);
-    const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
-    const bool shown = counts(*row);
-    Cell published = row->paper_ms;
-    published.exact = true;
-    table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
-                          look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
-                          row->threads > 0 ? Cell(row->threads) : Cell(),
-                          shown && row->ms_per_step_low && row->ms_per_step_high
-                              ? Cell(interval_text(*row->ms_per_step_low, *row->ms_per_step_high))
-                              : Cell(),
-                          speedup ? Cell(speedup->ratio) : Cell(),
-                          speedup ? Cell(interval_text(speedup->low, speedup->high)) : Cell(), published,
-                          shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
-                          verified_mark(*row)});
-  }
-  return table;
-}
-
 /// The rows of the largest scene of each kind.
 std::vector<const ResultRow*> headline_rows(RowPointers rows) {
   std::map<ContentKind, const ResultRow*> largest;
@@ -323,10 +271,7 @@ std::vector<const ResultRow*> headline_rows(RowPointers rows) {
 }
 
 std::string headline_section(const ReportInput& input) {
-  return "<p>Rows of the largest scene of each kind. <em>ms per step</em> is the median over the rounds. "
-         "Intervals contain the true median in 95 % of all cases. With fewer than six rounds they are the "
-         "smallest and the largest sample. Speed-ups are over <code>serial</code>: medians of the ratios "
-         "within each round.</p>\n" +
+  return "<p>Rows of the largest scene of each kind. " + html_prose(how_to_read_times) + "</p>\n" +
          of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) -> std::string {
            if (folder.rows.empty()) return "<p>There are no rows.</p>\n";
            const std::vector<const ResultRow*> all = pointers_to(folder.rows);
@@ -351,14 +296,6 @@ std::string published_section(const ReportInput& input) {
 
 std::string in_figures(const std::string& figures) {
   return figures.empty() ? figures : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
-}
-
-/// Gives each backend the same look in every chart, whatever the other backends, unless the chart has its own
-/// families.
-std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
-  for (Chart& chart : charts)
-    if (chart.families.empty()) chart.families = families_of_backends(legend);
-  return charts;
 }
 
 /// A chart with has_one_place() as a table, with its title, subtitle and notes.
@@ -400,37 +337,25 @@ std::string speedup_section(const ReportInput& input) {
   return "<p>Published lines are dashed and have open points; measured ones have intervals. Charts of "
          "speed-ups have logarithmic axes, Figure 6 of Vassilev has linear ones. That paper shows its times "
          "as curves without numbers.</p>\n" +
-         of_each_folder(input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
-                        [&](const ReportFolder& folder, const std::string& id) {
-                          std::vector<Chart> charts;
-                          for (const PublishedTable& published : input.published) {
-                            const PaperScenes scenes(folder.rows, input.legend, published);
-                            std::ranges::move(speedup_charts(scenes, folder.where_from(),
-                                                             id + "-" + std::string(published.info().name)),
-                                              std::back_inserter(charts));
-                          }
-                          if (auto figure6 = figure6_chart(folder.rows, folder.where_from(), id))
-                            charts.push_back(std::move(*figure6));
-                          return figures_of(with_looks_of_backends(std::move(charts), input.legend));
-                        });
+         of_each_folder(
+             input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
+             [&](const ReportFolder& folder, const std::string& id) {
+               return figures_of(with_looks_of_backends(all_speedup_charts(folder, input, id), input.legend));
+             });
 }
 
 std::string scaling_section(const ReportInput& input) {
   return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes. It "
          "is 1 if a node costs the same at every size. Speed-ups over threads compare a backend with itself "
          "on the fewest threads.</p>\n" +
-         of_each_folder(
-             input, "<p>No folder has two sizes of a kind of scene, or two numbers of threads.</p>\n",
-             [&](const ReportFolder& folder, const std::string& id) {
-               const Table slopes = slope_table(folder.rows, input.legend, input.published);
-               std::vector<Chart> charts =
-                   scaling_charts(folder.rows, input.legend, input.published, folder.where_from(), id);
-               if (folder.provenance)
-                 std::ranges::move(thread_charts(folder.rows, *folder.provenance, id),
-                                   std::back_inserter(charts));
-               return figures_of(with_looks_of_backends(std::move(charts), input.legend)) +
-                      (slopes.rows.empty() ? "" : html_of(slopes));
-             });
+         of_each_folder(input,
+                        "<p>No folder has two sizes of a kind of scene, or two numbers of threads.</p>\n",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          const Table slopes = slope_table(folder.rows, input.legend, input.published);
+                          return figures_of(with_looks_of_backends(all_scaling_charts(folder, input, id),
+                                                                   input.legend)) +
+                                 (slopes.rows.empty() ? "" : html_of(slopes));
+                        });
 }
 
 std::string roofline_section(const ReportInput& input) {
@@ -580,6 +505,93 @@ constexpr auto sections = std::to_array<PageSection>({
 });
 
 }  // namespace
+
+std::vector<std::string> noise_seen(const Provenance& provenance) {
+  std::vector<std::string> noise;
+  for (const std::string& sentence : provenance.noise)
+    noise.push_back(sentence.substr(0, sentence.find(": ")));
+  return noise;
+}
+
+std::string range_of(const ReportFolder& folder, int ResultRow::*count) {
+  int least = 0, most = 0;
+  for (const ResultRow& row : folder.rows)
+    if (row.*count > 0) {
+      least = least == 0 ? row.*count : std::min(least, row.*count);
+      most = std::max(most, row.*count);
+    }
+  return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+}
+
+std::filesystem::path short_name(const ReportFolder& folder) {
+  std::filesystem::path name = std::filesystem::path(folder.name).lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();  // it ended with a slash
+  return name.parent_path().filename() / name.filename();
+}
+
+Table times_of(RowPointers rows, const ReportFolder& folder) {
+  const std::vector<const ResultRow*> all = pointers_to(folder.rows);
+  const Provenance provenance = folder.where_from();
+  Table table{{{"scene"},
+               {"ms per step", Align::right},
+               {"backend"},
+               {"integrator"},
+               {"threads"},
+               {"95 % interval (ms)", Align::right},
+               {"speed-up", Align::right, "×"},
+               {"95 % interval", Align::right},
+               {"published (ms)", Align::right},
+               {"of the roof (%)", Align::right},
+               {"verified"}},
+              {}};
+  for (const ResultRow* row : rows) {
+    const ResultRow* serial = find_row(all, row->scene, baseline_name, row->integrator);
+    const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
+    const bool shown = counts(*row);
+    Cell published = row->paper_ms;
+    published.exact = true;
+    table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
+                          look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
+                          row->threads > 0 ? Cell(row->threads) : Cell(),
+                          shown && row->ms_per_step_low && row->ms_per_step_high
+                              ? Cell(interval_text(*row->ms_per_step_low, *row->ms_per_step_high))
+                              : Cell(),
+                          speedup ? Cell(speedup->ratio) : Cell(),
+                          speedup ? Cell(interval_text(speedup->low, speedup->high)) : Cell(), published,
+                          shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
+                          verified_mark(*row)});
+  }
+  return table;
+}
+
+std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id) {
+  std::vector<Chart> charts;
+  for (const PublishedTable& published : input.published) {
+    const PaperScenes scenes(folder.rows, input.legend, published);
+    std::ranges::move(
+        speedup_charts(scenes, folder.where_from(), id + "-" + std::string(published.info().name)),
+        std::back_inserter(charts));
+  }
+  if (auto figure6 = figure6_chart(folder.rows, folder.where_from(), id))
+    charts.push_back(std::move(*figure6));
+  return charts;
+}
+
+std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id) {
+  std::vector<Chart> charts =
+      scaling_charts(folder.rows, input.legend, input.published, folder.where_from(), id);
+  if (folder.provenance)
+    std::ranges::move(thread_charts(folder.rows, *folder.provenance, id), std::back_inserter(charts));
+  return charts;
+}
+
+std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
+  for (Chart& chart : charts)
+    if (chart.families.empty()) chart.families = families_of_backends(legend);
+  return charts;
+}
 
 std::span<const PageSection> report_sections() { return sections; }
 

@@ -73,7 +73,7 @@ output/traces         text platform geometry model hdf5 garment/output
 output/pictures       platform geometry render picture model scene/fields garment output/traces
 output/exports        text platform geometry model hdf5 output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
-report                text platform statistics integrators scene/fields charts bench/machine bench/results bench/roofline output/tables garment/output output/folders
+report                text platform statistics integrators scene/fields charts bench/machine bench/results bench/roofline bench/verification output/tables garment/output output/folders
 
 application           text platform integrators garment/contact model mesh garment/body scene/spec scene backends/interface backends/devices backends/process backends/described garment/stepping backends garment/fitting bench/machine bench/results bench/verification bench guide output/tables output/guide output/traces output/pictures output/folders
 application/bench     text platform integrators scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/windows bench/job bench output/tables garment/output output/traces output/folders application

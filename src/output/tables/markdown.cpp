@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "output/tables/table.h"
 #include "text/text.h"
@@ -149,6 +150,34 @@ void add_block(Document& page, std::string_view block) {
 }
 
 }  // namespace
+
+std::string spelled(std::string_view text, const TextSpelling& spelling) {
+  constexpr std::array<std::pair<std::string_view, TextMark>, 3> marks{
+      {{"`", TextMark::code}, {"**", TextMark::strong}, {"*", TextMark::emphasis}}};
+  std::string result, plain;
+  const auto flush = [&] { result += spelling.plain(std::exchange(plain, {})); };
+  for (std::size_t at = 0; at < text.size();) {
+    const auto mark = std::ranges::find_if(
+        marks, [&](const auto& candidate) { return text.substr(at).starts_with(candidate.first); });
+    const std::size_t inner = mark == marks.end() ? at : at + mark->first.size();
+    const std::size_t end = mark == marks.end() ? inner : text.find(mark->first, inner);
+    if (mark != marks.end() && end != std::string_view::npos && end > inner && text[inner] != ' ') {
+      flush();
+      const std::string_view content = text.substr(inner, end - inner);
+      result += spelling.marked(
+          mark->second, mark->second == TextMark::code ? spelling.code(content) : spelled(content, spelling));
+      at = end + mark->first.size();
+    } else if (text[at] == '\n') {
+      flush();
+      result += spelling.line_end;
+      ++at;
+    } else {
+      plain += text[at++];
+    }
+  }
+  flush();
+  return result;
+}
 
 void add_sentence(Document& page, const std::string& sentence) {
   if (!sentence.empty()) page.emplace_back(Paragraph{sentence + '.'});

@@ -127,12 +127,39 @@ struct BulletList {
 /// A page: its blocks from top to bottom.
 using Document = std::vector<std::variant<Heading, Paragraph, BulletList, Table>>;
 
+/// A mark of such text.
+enum class TextMark : std::uint8_t { code, strong, emphasis };
+
+/// How a format spells text with marks.
+struct TextSpelling {
+  std::string (*plain)(std::string_view text);  ///< text without marks or line feeds
+  std::string (*code)(std::string_view text);   ///< the content of `code`
+  std::string (*marked)(TextMark mark, const std::string& spelled_content);
+  std::string_view line_end;
+};
+
+/// The text in that spelling. A mark that is not closed, or has a blank after it, stands for itself.
+std::string spelled(std::string_view text, const TextSpelling& spelling);
+
 /// Adds a paragraph with the sentence and a full stop; nothing for an empty one.
 void add_sentence(Document& page, const std::string& sentence);
 
 /// The page as Markdown (with GitHub's tables), a blank line between blocks; cells as in cell_text().
 /// Characters that would end a cell or a line are escaped only in cells and items.
 std::string markdown(const Document& document);
+
+/// Any text (a name, a message) as LaTeX shows it, in running text, captions and tables. pdfLaTeX has no
+/// letters beyond Latin-1; others become their code points.
+std::string latex_text(std::string_view text);
+
+/// The same for text with the marks of a Document.
+std::string latex_prose(std::string_view text);
+
+/// The page as LaTeX for a paper that loads booktabs, siunitx and graphicx: a float for each table, the other
+/// blocks as text. The page begins with its title and the sentence where it was measured; both, the heading
+/// above a table and `remark`, a sentence, are its caption. `name`: letters, digits and hyphens; the labels
+/// are tab:NAME-1 and so on. Cells are as in cell_text(), with numbers, ranges and units set by siunitx.
+std::string latex(const Document& document, const std::string& name, const std::string& remark);
 
 /// Parses the output of markdown(); all cells are texts. Any other text is accepted: what is not a heading,
 /// list or table is a paragraph; cells that a row lacks are empty, and those beyond the head are dropped.

@@ -94,6 +94,97 @@ TEST(Listing, HasJsonsNumbersInCsv) {
   EXPECT_EQ(to_text({}, ListingFormat::json), "[]\n");
 }
 
+TEST(Latex, ShowsAnyTextAsItIs) {
+  EXPECT_EQ(
+      latex_text("a_b%c&d #1 $2 {e} ~f^g \\h <i> \"j\" `k` [l] *m"),
+      R"(a\_b\%c\&d \#1 \$2 \{e\} \textasciitilde{}f\textasciicircum{}g \textbackslash{}h )"
+      R"(\textless{}i\textgreater{} \textquotedbl{}j\textquotedbl{} \textasciigrave{}k\textasciigrave{} )"
+      R"({[}l] {*}m)");
+  EXPECT_EQ(latex_text("--out ---- a-b ,,c''"), "-{}-{}out -{}-{}-{}-{} a-b ,{},{}c'{}'{}") << "ligatures";
+  EXPECT_EQ(latex_text("2×–µ é ß Ж 字 😀 \xff\x01"),
+            "2$\\times$--\\textmu{} é ß {[}U+0416] {[}U+5B57] {[}U+1F600] "
+            "\\textbackslash{}xff\\textbackslash{}x01");
+}
+
+TEST(Latex, HasTheMarksOfADocument) {
+  EXPECT_EQ(latex_prose("`a_'b'` **is** *so* 5 ms\nbig, **`c`**, 2 * 3"),
+            R"(\texttt{a\_\textquotesingle{}b\textquotesingle{}} \textbf{is} \emph{so} 5 ms big, )"
+            R"(\textbf{\texttt{c}}, 2 {*} 3)");
+}
+
+/// The line of a cell with that text.
+std::string latex_cell(const Cell& cell, const Column& column = {"head", Align::left}) {
+  const std::string text = latex({Table{{column}, {{cell}}}}, "x", "");
+  const std::size_t begin = text.find("\\midrule\n") + 9;
+  return text.substr(begin, text.find(" \\\\\n", begin) - begin);
+}
+
+TEST(Latex, HasNumbersRangesAndUnitsOfSiunitx) {
+  EXPECT_EQ(latex_cell(0.0042), "\\num{0.00420}");
+  EXPECT_EQ(latex_cell(4188004), "\\num{4188004}");
+  EXPECT_EQ(latex_cell(Cell()), "--");
+  EXPECT_EQ(latex_cell(2.5, {"head", Align::right, "×"}), "\\num{2.50}$\\times$");
+  EXPECT_EQ(latex_cell("0.115 to 1,121"), "\\numrange{0.115}{1121}");
+  EXPECT_EQ(latex_cell("**1.41** (2.95×)"), "\\textbf{\\num{1.41}} (\\num{2.95}$\\times$)");
+  EXPECT_EQ(latex_cell("0.0927 s\n1,152"), "\\shortstack[l]{\\qty{0.0927}{\\second}\\\\\\num{1152}}");
+  EXPECT_EQ(latex_cell("95 % interval (ms), -3.6e-05 m"),
+            "\\qty{95}{\\percent} interval (\\unit{\\milli\\second}), \\qty{-3.6e-05}{\\metre}");
+  for (const char* name : {"cloth10k", "2026-11-27", "v1.2", "1.2.3", "12e4567", "threads:10", "m", "s"})
+    EXPECT_EQ(latex_cell(name), name);
+  EXPECT_EQ(latex_cell("`10`"), "\\texttt{10}") << "a name";
+}
+
+TEST(Latex, PutsOriginsIntoTheCaptionOfEachTable) {
+  const Table table{{{"a_b"}, {"ms", Align::right}}, {{"[c]", 1}}};
+  const Document page{Heading{1, "Times"},
+                      Paragraph{"Measured on X."},
+                      Paragraph{"How to read it."},
+                      Heading{2, "First one"},
+                      table,
+                      BulletList{{"an item"}},
+                      Heading{2, "Notes"},
+                      Paragraph{"A note."},
+                      table};
+  EXPECT_EQ(latex(page, "times", "5 rounds."), R"(How to read it.
+
+\begin{table}[!htbp]
+\centering\small
+\caption{Times. First one. Measured on X. 5 rounds.}
+\label{tab:times-1}
+\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%
+\begin{tabular}{lr}
+\toprule
+a\_b & \unit{\milli\second} \\
+\midrule
+{[}c] & \num{1} \\
+\bottomrule
+\end{tabular}}
+\end{table}
+
+\begin{itemize}
+\item an item
+\end{itemize}
+
+\paragraph{Notes}
+A note.
+
+\begin{table}[!htbp]
+\centering\small
+\caption{Times. Notes. Measured on X. 5 rounds.}
+\label{tab:times-2}
+\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%
+\begin{tabular}{lr}
+\toprule
+a\_b & \unit{\milli\second} \\
+\midrule
+{[}c] & \num{1} \\
+\bottomrule
+\end{tabular}}
+\end{table}
+
+)");
+}
+
 TEST(MarkdownReader, ReadsWhatTheWriterWrote) {
   Table table{{{"name"}, {"a | b", Align::right}}, {}};
   table.rows = {{"x|y\nz", 1.5}, {"", Cell()}};

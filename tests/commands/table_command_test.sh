@@ -1,0 +1,169 @@
+#!/usr/bin/env bash
+# mssim table: what a paper in LaTeX needs, of committed results: the values of timings.csv, origins, escaped names, bad input; and that
+# the document can be typeset, where TeX Live is installed (scripts/test --paper).
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+results=$2/results
+
+# check FOLDER PAPER: each time, interval and speed-up that counts is in times.tex, in the table of its scene; each number of a claim and
+# of the provenance is where it should be
+check() {
+  python3 - "$1" "$2" <<'PYTHON' || fail "$2 is not what $1 has"
+import csv, json, math, pathlib, re, sys
+
+folder, paper = map(pathlib.Path, sys.argv[1:])
+wrong = []
+
+
+def digits(value):
+    """Three significant digits, as all tables have them."""
+    before = math.floor(math.log10(value)) + 1 if value > 0 else 1
+    return f"{value:.{max(0, 3 - before)}f}"
+
+
+def demand(condition, what):
+    if not condition:
+        wrong.append(what)
+
+
+texts = {file.name: file.read_text() for file in paper.glob("*.tex")}
+provenance = json.loads((folder / "provenance.json").read_text())
+rows = list(csv.DictReader((folder / "timings.csv").open()))
+captions = [caption for text in texts.values() for caption in re.findall(r"\\caption\{(.*)\}\n", text)]
+demand(len(captions) > 5, "captions are missing")
+for caption in captions:
+    for part in (provenance["cpu"]["model"], provenance["cpu"]["generation"], provenance["build"]["commit"][:12], provenance["started_utc"]):
+        demand(part in caption, f"no {part} in: {caption}")
+    if "Environment" not in caption:
+        demand(f"{max(int(row['rounds']) for row in rows)} rounds" in caption, f"no rounds in: {caption}")
+blocks = {re.search(r"\\caption\{Times per step\. ([^:]*):", block).group(1): block for block in
+          texts["times.tex"].split(r"\begin{table}")[1:]}
+for row in rows:
+    block = blocks[row["scene"].replace("_", r"\_")]
+    lines = [line for line in block.splitlines() if re.search(rf"& {re.escape(row['backend'])}\b[^&]*& {re.escape(row['integrator'])} ", line)]
+    demand(lines, f"no line of {row['scene']}, {row['backend']}, {row['integrator']}")
+    if row["status"] == "ok" and row["verified"] == "true":
+        low, high = digits(float(row["ms_per_step_low"])), digits(float(row["ms_per_step_high"]))
+        parts = [rf"\num{{{digits(float(row['ms_per_step']))}}}", rf"\numrange{{{low}}}{{{high}}}", "yes"]
+        parts += [rf"\num{{{digits(float(row['speedup_vs_serial']))}}}$\times$"] if row["backend"] != "serial" else []
+        parts += [rf"\num{{{row['paper_ms']}}}"] if row["paper_ms"] else []
+        demand(any(all(part in line for part in parts) for line in lines), f"{parts}: {lines}")
+    else:
+        demand(any("& -- &" in line for line in lines), f"a time of a row that does not count: {lines}")
+        demand(any(word in lines[0] for word in ("unsupported", "unavailable", "no", "failed")), f"no mark: {lines}")
+for name in ("table1", "figure6"):
+    if (folder / f"{name}.csv").exists():
+        for line in csv.DictReader((folder / f"{name}.csv").open()):
+            if line["quantity"] in ("measured_ms", "ms_per_iteration"):
+                for scene, value in line.items():
+                    if scene[:5] in ("cloth", "jeans") and value:
+                        demand(rf"\num{{{digits(float(value))}}}" in texts[f"{name}.tex"], f"{name}: no {value}")
+everything = "\n".join(texts.values())
+devices = provenance["opencl_devices"]
+if all(device.startswith("Portable Computing Language") for device in devices):
+    demand("on the CPU (PoCL on" in everything, "OpenCL on the CPU is not called so")
+    demand("GPU" not in texts["times.tex"], "PoCL is called a GPU")
+artifact = texts["artifact.tex"].replace("-{}-{}", "--")
+demand(" ".join(provenance["command_line"][1:]) in artifact, "the command")
+demand(provenance["build"]["commit"] in artifact and provenance["build"]["commit"] in (paper / "sources.bib").read_text(), "the commit")
+samples = sum(int(sample["steps"]) * float(sample["ms_per_step"]) for sample in csv.DictReader((folder / "samples.csv").open()))
+demand(rf"\qty{{{digits(samples / 60000)}}}{{\minute}}" in artifact, "the minutes of the samples")
+trials = sorted(int(row["warm_up_trials"]) for row in rows if row["warm_up_trials"] and int(row["warm_up_trials"]))
+demand(f"({trials[0]} to {trials[-1]} trials)" in texts["methods.tex"] or f"({trials[0]} trials)" in texts["methods.tex"], "the trials")
+for svg in paper.glob("*.svg"):
+    demand(f"{{{svg.stem}.pdf}}" in texts["figures.tex"], f"{svg.name} is in no figure")
+demand(list(paper.glob("*.svg")), "there is no chart")
+print(f"{paper}: {len(texts)} files, {len(captions)} captions, {len(rows)} rows")
+sys.exit("\n".join(wrong[:20]) if wrong else 0)
+PYTHON
+}
+
+# typeset PAPER: the document has no error, no undefined reference or citation, and no character without a glyph
+typeset() {
+  command -v pdflatex >/dev/null && command -v bibtex >/dev/null || { echo "SKIPPED: pdflatex is not installed, $1 is not typeset" && return; }
+  local log=$1/mssim.log
+  (cd "$1" && pdflatex -interaction=nonstopmode -halt-on-error mssim && bibtex mssim && for _ in 1 2; do
+    pdflatex -interaction=nonstopmode -halt-on-error mssim
+  done) >"$work/tex" 2>&1 || fail "$1: $(grep -A3 '^!' "$log" || tail -n 20 "$work/tex")"
+  ! grep -E 'undefined|multiply defined|Missing character|siunitx Warning' "$log" || fail "$1: warnings"
+  [ -s "$1/mssim.pdf" ] || fail "$1: no document"
+}
+
+for folder in table1 garment; do
+  ends 0 table "$results/$folder/zen4" --format latex --out "$work/$folder"
+  [ ! -s "$work/out" ] || fail "stdout is not empty"
+  check "$results/$folder/zen4" "$work/$folder"
+  typeset "$work/$folder"
+  if command -v rsvg-convert >/dev/null; then
+    for svg in "$work/$folder"/*.svg; do
+      [ "$(head -c 5 "${svg%.svg}.pdf")" = %PDF- ] || fail "$svg has no PDF"
+    done
+  else
+    warns 'librsvg2-bin'
+  fi
+done
+grep -q 'parallel-iterations\|An iteration is faster with parallelisation' "$work/garment/artifact.tex" || fail "a claim is missing"
+! grep -q 'on the GPU than with several threads' "$work/table1/artifact.tex" || fail "a claim about a GPU is decided without one"
+[ "$(grep -c '^@' "$work/table1/sources.bib")" -eq 4 ] || fail "sources: $(cat "$work/table1/sources.bib")"
+
+# The sources are those of CITATION.cff.
+python3 - "$2/CITATION.cff" "$work/table1/sources.bib" <<'PYTHON' || fail "the sources are not those of CITATION.cff"
+import re, sys
+citation, sources = (open(name).read() for name in sys.argv[1:])
+cited = re.findall(r"^ *(?:title|doi): (.*)$", citation, re.M)
+missing = [text for text in cited if text not in sources]
+sys.exit(f"missing: {missing}" if len(cited) < 4 or missing else 0)
+PYTHON
+
+# Without rsvg-convert, all but the PDF files is written.
+mkdir "$work/no-programs"
+PATH=$work/no-programs ends 0 table "$results/table1/zen4" --format latex --out "$work/svg"
+warns 'librsvg2-bin'
+[ -s "$work/svg/mssim.tex" ] && [ -z "$(find "$work/svg" -name '*.pdf')" ] || fail "without rsvg-convert: $(ls "$work/svg")"
+
+# Several folders, one of them of a guide.
+ends 0 table "$results/table1/zen4" "$results/guide/zen4" --format latex --out "$work/both"
+[ -s "$work/both/1-table1-zen4-table1.tex" ] && [ -s "$work/both/2-guide-zen4-guide.tex" ] || fail "two folders: $(ls "$work/both")"
+typeset "$work/both"
+
+# Names with what LaTeX takes for its own, on rows that are not verified, too.
+cp -r "$results/table1/zen4" "$work/odd"
+name='a_b%c\&d#e$f{g}~h^i\\jЖ[k'
+sed -i "s/^cloth2500,/$name,/" "$work/odd/timings.csv" "$work/odd/samples.csv"
+sed -i '/^cloth4900,.*,openmp,.*,rk4,/s/,true,ok,/,false,ok,/' "$work/odd/timings.csv"
+ends 0 table "$work/odd" --format latex --out "$work/odd-paper"
+escaped='a\_b\%c\&d\#e\$f\{g\}\textasciitilde{}h\textasciicircum{}i\textbackslash{}j{[}U+0416]{[}k'
+for file in times.tex methods.tex; do grep -qF "$escaped" "$work/odd-paper/$file" || fail "$file does not have $escaped"; done
+grep -F 'cloth4900' "$work/odd-paper/times.tex" | grep 'openmp & rk4' | grep -q '& -- &.*\\textbf{no}' || fail "a row that is not verified is not marked"
+typeset "$work/odd-paper"
+
+# What is printed.
+ends 0 table "$results/garment/zen4"
+says '^# Figure 6 of Vassilev'
+says '^| jeans1k | 0.0748 | serial |'
+ends 0 table "$results/garment/zen4" --format latex
+says '\\label{tab:figure6-1}'
+[ "$(grep -c 'caption.*rounds' "$work/out")" -eq "$(grep -c caption "$work/out")" ] || fail "a caption has no rounds"
+
+# Bad input.
+expect 2 'no folder .*none.*give' table "$work/none" --format latex --out "$work/never"
+mkdir "$work/empty"
+expect 2 'empty has no results: give' table "$work/empty" --format latex --out "$work/never"
+expect 2 'mssim.tex\|[a-z0-9-]*\.[a-z]* already exists: give another --out, or --overwrite' \
+  table "$results/table1/zen4" --format latex --out "$work/table1"
+expect 2 '--format latex' table "$results/table1/zen4" --out "$work/never"
+expect 2 '--format' table "$results/table1/zen4" --format word
+cp -r "$results/table1/zen4" "$work/unknown"
+rm "$work/unknown/provenance.json"
+ends 2 table "$work/unknown" --format latex --out "$work/never"
+warns 'unknown has no provenance.json'
+[ ! -e "$work/never" ] || fail "something was written"
+: >"$work/file"
+ends 4 table "$results/table1/zen4" --format latex --out "$work/file/paper"
+warns 'file'
+echo mine >"$work/table1/notes.tex"
+ends 0 table "$results/table1/zen4" --format latex --out "$work/table1" --overwrite
+[ "$(cat "$work/table1/notes.tex")" = mine ] || fail "--overwrite removes a file of the user's"
