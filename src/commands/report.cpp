@@ -17,6 +17,7 @@
 #include "application/run.h"
 #include "bench/machine/provenance.h"
 #include "commands/command.h"
+#include "output/folders/history_file.h"
 #include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"
 #include "picture/picture.h"
@@ -130,6 +131,7 @@ namespace fs = std::filesystem;
 struct ReportOptions {
   std::vector<std::string> folders;
   std::string out = "report.html";
+  std::string history;
   bool no_runs = false;
 };
 
@@ -175,6 +177,7 @@ int report(const ReportOptions& options) {
   ReportInput input;
   input.made_by = "mssim " + build_info().version;
   input.legend = paper_legend();
+  if (!options.history.empty()) input.history = read_history(options.history);
   try {
     input.published = published_tables();
     input.tables = comparison_of_suite("tables").tables();
@@ -210,6 +213,8 @@ std::function<int()> declare_report(Arguments& arguments) {
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })
       .required();
   arguments.add("--out FILE", options->out, "File to write (default: report.html)");
+  arguments.add("--history FILE", options->history,
+                "Also show the times of commits, which mssim history add keeps in this file");
   arguments.add_flag("--no-runs", options->no_runs,
                      "Simulate no scenes for pictures and energies, which takes seconds; what lies in the "
                      "folders is shown");

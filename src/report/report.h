@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/machine/provenance.h"
+#include "bench/results/history.h"
 #include "bench/results/result.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
@@ -127,7 +128,8 @@ struct ReportInput {
   std::vector<FoundCurve> references;  ///< energy curves, named as their scenes
   std::vector<FoundPicture> pictures;  ///< of scenes of the folders, drawn for the report
   std::vector<FoundCurve> curves;      ///< of energy, of scenes simulated for the report
-  double threshold = 0.05;             ///< a change that matters between two folders
+  std::vector<HistoryEntry> history;   ///< times of commits; may be none
+  double threshold = 0.05;             ///< a change that matters between two folders or commits
   std::vector<std::string> problems;   ///< of all that is no folder, without a full stop
   std::string made_by;                 ///< the program and its version
 };
@@ -136,7 +138,8 @@ struct ReportInput {
 /// as JSON, in the element "mssim-data": {made_by, folders: [{name, problems, claims: [{name, outcome,
 /// published, measured}], findings: [{is_warning, sentence}],
 /// timings: [a row of timings.csv], provenance: as in provenance.json, or null}]}; folders of guides have
-/// guide: [a row of guide.csv, with the columns that charts show].
+/// guide: [a row of guide.csv, with the columns that charts show]. A history is history: [a line of its
+/// file].
 std::string report_page(const ReportInput& input);
 
 }  // namespace mssim

@@ -137,6 +137,10 @@ std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& lege
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& id);
 
+/// For each scene and integrator of a machine's history: times per step by commit, counted from 1, with a
+/// ring where a level begins.
+std::vector<Chart> history_charts(const MachineHistory& machine, const std::string& id);
+
 /// The values of a chart that has one place, as a table, which shows them better. References, which only help
 /// to read a chart, are left out.
 Table values_of(const Chart& chart);
