@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <system_error>
 
@@ -42,21 +43,21 @@ int add(const HistoryOptions& options) {
   return exit_ok;
 }
 
-/// The tables of all machines: for a terminal each below the machine's name, else in one.
+/// The tables of all machines: for a terminal each below the machine's name, else in one, with the name as
+/// the first column.
 std::string to_text(const std::vector<MachineHistory>& machines, double threshold, ListingFormat format) {
   std::string text;
   Table all;
   for (const MachineHistory& machine : machines) {
     Table table = history_table(machine, threshold);
-    if (format == ListingFormat::table) {
-      table.columns.erase(table.columns.begin());
-      for (std::vector<Cell>& row : table.rows) row.erase(row.begin());
-      text += fmt::format("{}{}: {}\n{}", text.empty() ? "" : "\n", machine.name,
-                          pluralize(machine.entries.size(), "commit"), to_text(table, format));
-    } else {
-      all.columns = table.columns;
-      std::ranges::move(table.rows, std::back_inserter(all.rows));
+    text += fmt::format("{}{}: {}\n{}", text.empty() ? "" : "\n", machine.name,
+                        pluralize(machine.entries.size(), "commit"), to_text(table, ListingFormat::table));
+    for (std::vector<Cell>& row : table.rows) row.insert(row.begin(), machine.name);
+    if (all.columns.empty()) {
+      all.columns = std::move(table.columns);
+      all.columns.insert(all.columns.begin(), Column{"machine"});
     }
+    std::ranges::move(table.rows, std::back_inserter(all.rows));
   }
   return format == ListingFormat::table ? text : to_text(all, format);
 }

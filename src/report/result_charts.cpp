@@ -230,7 +230,7 @@ std::vector<Chart> history_charts(const MachineHistory& machine, const std::stri
     if (chart == charts.end()) {
       charts.push_back(chart_of(fmt::format("{}-{}", id, charts.size() + 1), title,
                                 "Measured on " + machine.name, {"commit, counted from 1"},
-                                {"time per step (ms)"}));
+                                {"time per step (ms)", true}));
       chart = charts.end() - 1;
     }
     const auto number = [&](std::size_t time) { return static_cast<double>(row.at[time] + 1); };

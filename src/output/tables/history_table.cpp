@@ -22,8 +22,7 @@ Table history_table(const MachineHistory& machine, double threshold) {
   for (const HistorySeries& series : machine.series) {
     const auto add = [&](std::size_t entry, Cell count, Cell ms, const RatioEstimate* ratio,
                          const std::string& verdict) {
-      table.add({{"machine", machine.name},
-                 {"scene", series.scene},
+      table.add({{"scene", series.scene},
                  {"backend", series.backend},
                  {"integrator", series.integrator},
                  {"device", series.device},
