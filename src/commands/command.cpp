@@ -38,6 +38,8 @@ constexpr auto table = std::to_array<Command>({
      "mssim check my-cloth.json", declare_check},
     {"compare", "Compare two results or programs: which is faster, and is that certain?",
      "mssim compare results/yesterday results/today", declare_compare},
+    {"history", "Keep the times of commits in a file, and find the commit that changed them",
+     "mssim history add results/today --file history.jsonl", declare_history},
     {"report", "Write one HTML page about results: verdict, tables, charts, provenance",
      "mssim report results/table1 results/table3 --out report.html", declare_report},
     {"table", "Write tables, charts, methods and an artifact appendix for a paper in LaTeX",
@@ -53,8 +55,9 @@ constexpr auto table = std::to_array<Command>({
 
 constexpr std::string_view exit_codes =
     "Exit codes: 0 success; 1 a row is not verified, a simulation blew up, a garment\n"
-    "does not fit, or a comparison found a regression; 2 bad usage or input; 3 a\n"
-    "requested device or program is missing; 4 a file could not be read or written.";
+    "does not fit, or a comparison or a history shows a regression; 2 bad usage or\n"
+    "input; 3 a requested device or program is missing; 4 a file could not be read\n"
+    "or written.";
 
 /// A user may name a scene without --scene before it.
 std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }

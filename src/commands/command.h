@@ -29,6 +29,7 @@ std::function<int()> declare_export(Arguments& arguments);
 std::function<int()> declare_guide(Arguments& arguments);
 std::function<int()> declare_check(Arguments& arguments);
 std::function<int()> declare_compare(Arguments& arguments);
+std::function<int()> declare_history(Arguments& arguments);
 std::function<int()> declare_report(Arguments& arguments);
 std::function<int()> declare_table(Arguments& arguments);
 std::function<int()> declare_measure(Arguments& arguments);

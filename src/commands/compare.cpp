@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "commands/command.h"
 #include "commands/options.h"
 #include "output/tables/results.h"
+#include "platform/files.h"
 #include "platform/machine.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -25,6 +27,7 @@ struct CompareOptions {
   bool programs = false;
   double threshold_percent = 5;
   ComparisonFormat format = ComparisonFormat::table;
+  std::string out;  ///< folder for the comparison; empty: none
   bool force = false;
 };
 
@@ -64,8 +67,13 @@ std::vector<std::string> regressions(const RunComparison& comparison) {
   return sentences;
 }
 
-int report(const RunComparison& comparison, ComparisonFormat format) {
-  std::cout << to_text(comparison, format, terminal_of(STDOUT_FILENO).utf8);
+int report(const RunComparison& comparison, const CompareOptions& options) {
+  std::cout << to_text(comparison, options.format, terminal_of(STDOUT_FILENO).utf8);
+  if (!options.out.empty()) {
+    const std::filesystem::path folder = options.out;
+    write_file_atomically(folder / "comparison.md", to_text(comparison, ComparisonFormat::markdown));
+    write_file_atomically(folder / "comparison.json", to_text(comparison, ComparisonFormat::json));
+  }
   tell_first(regressions(comparison));
   const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
   if (undecided > 0)
@@ -85,15 +93,16 @@ int compare_runs(const CompareOptions& options) {
   tell("only BASE has", comparison.only_base);
   tell("only NEW has", comparison.only_new);
   tell("without a verified time in BASE", comparison.untimed);
-  return report(comparison, options.format);
+  return report(comparison, options);
 }
 
 int run(CompareOptions options) {
   options.ab.threshold = options.threshold_percent / 100;
+  if (!options.out.empty()) make_folder(options.out);  // finds what cannot be written before it measures
   if (!options.programs) return compare_runs(options);
   require_few_threads(options.ab.threads);
   if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
-  return report(compare_programs(options.ab), options.format);
+  return report(compare_programs(options.ab), options);
 }
 
 }  // namespace
@@ -112,6 +121,8 @@ std::function<int()> declare_compare(Arguments& arguments) {
                                           {"markdown", ComparisonFormat::markdown},
                                           {"json", ComparisonFormat::json}},
                                          "What to print: table, markdown or json (default: table)");
+  arguments.add("--out DIR", options->out,
+                "Folder for the comparison as comparison.md and, with the samples, comparison.json");
   const Argument ab =
       arguments.add_flag("--ab", options->programs,
                          "BASE and NEW are mssim programs: run them alternately, as a new process each time");

@@ -13,6 +13,7 @@
 #include "application/run.h"
 #include "commands/command.h"
 #include "commands/result_folders.h"
+#include "output/folders/history_file.h"
 #include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"
 #include "picture/picture.h"
@@ -126,6 +127,7 @@ namespace fs = std::filesystem;
 struct ReportOptions {
   std::vector<std::string> folders;
   std::string out = "report.html";
+  std::string history;
   bool no_runs = false;
 };
 
@@ -134,6 +136,7 @@ int report(const ReportOptions& options) {
   require_extension({"--out", out}, "HTML", {".html", ".htm"});
   AtomicFile(out).remove();  // finds what cannot be written before anything is read
   ReportInput input = report_input(options.folders);
+  if (!options.history.empty()) input.history = read_history(options.history);
   if (!options.no_runs) simulate_scenes(input);
   write_file_atomically(out, report_page(input));
   tell_of_problems(input);
@@ -147,6 +150,8 @@ std::function<int()> declare_report(Arguments& arguments) {
   const auto options = std::make_shared<ReportOptions>();
   add_result_folders(arguments, options->folders);
   arguments.add("--out FILE", options->out, "File to write (default: report.html)");
+  arguments.add("--history FILE", options->history,
+                "Also show the times of commits, which mssim history add keeps in this file");
   arguments.add_flag("--no-runs", options->no_runs,
                      "Simulate no scenes for pictures and energies, which takes seconds; what lies in the "
                      "folders is shown");

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "output/folders/history_file.h"
 #include "output/folders/provenance_file.h"
 #include "output/tables/results.h"
 #include "report/report_internal.h"
@@ -124,8 +125,11 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
 std::string embedded_data(const ReportInput& input) {
   std::vector<std::string> folders;
   for (const ReportFolder& folder : input.folders) folders.push_back(json_of(folder, input));
-  return "{\"made_by\": " + json_string(input.made_by) + ", \"folders\": [\n" + join(folders, ",\n") +
-         "\n]}\n";
+  std::vector<std::string> history;
+  for (const HistoryEntry& entry : input.history) history.push_back(history_line(entry));
+  return fmt::format("{{\"made_by\": {}, \"folders\": [\n{}\n]{}}}\n", json_string(input.made_by),
+                     join(folders, ",\n"),
+                     history.empty() ? "" : fmt::format(", \"history\": [\n{}\n]", join(history, ",\n")));
 }
 
 std::string title_of(const ReportInput& input) {

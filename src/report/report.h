@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/machine/provenance.h"
+#include "bench/results/history.h"
 #include "bench/results/result.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
@@ -128,7 +129,8 @@ struct ReportInput {
   std::vector<FoundCurve> references;  ///< energy curves, named after their scenes
   std::vector<FoundPicture> pictures;  ///< of scenes of the folders, drawn for the report
   std::vector<FoundCurve> curves;      ///< of energy, of scenes simulated for the report
-  double threshold = 0.05;             ///< smallest change that matters between two folders
+  std::vector<HistoryEntry> history;   ///< times of commits; may be empty
+  double threshold = 0.05;             ///< smallest change that matters between two folders or commits
   std::vector<std::string> problems;   ///< not of any folder; without a full stop
   std::string made_by;                 ///< the program and its version
 };
@@ -136,7 +138,8 @@ struct ReportInput {
 /// A self-contained page: no network, no script, no other file. The element "mssim-data" has the data as
 /// JSON: {made_by, folders: [{name, problems, claims: [{name, outcome, published, measured}], findings:
 /// [{is_warning, sentence}], timings: [a row of timings.csv], provenance: as in provenance.json, or null}]};
-/// folders of guides also have guide: [a row of guide.csv, with the columns that charts show].
+/// folders of guides also have guide: [a row of guide.csv, with the columns that charts show]. A history is
+/// history: [a line of its file].
 std::string report_page(const ReportInput& input);
 
 /// A page with tables about a folder.

@@ -163,6 +163,10 @@ std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& lege
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& id);
 
+/// For each scene and integrator of a machine's history: times per step by commit, counted from 1, with a
+/// ring where a level begins.
+std::vector<Chart> history_charts(const MachineHistory& machine, const std::string& id);
+
 /// The values of a chart with has_one_place(), as a table; references are left out.
 Table values_of(const Chart& chart);
 /// Whether all values of a chart over whole numbers, such as nodes, are at one of them.

@@ -222,6 +222,29 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& p
   return charts;
 }
 
+std::vector<Chart> history_charts(const MachineHistory& machine, const std::string& id) {
+  std::vector<Chart> charts;
+  for (const HistorySeries& row : machine.series) {
+    const std::string title = row.scene + ", " + row.integrator + ": time per step by commit";
+    auto chart = std::ranges::find(charts, title, &Chart::title);
+    if (chart == charts.end()) {
+      charts.push_back(chart_of(fmt::format("{}-{}", id, charts.size() + 1), title,
+                                "Measured on " + machine.name, {"commit, counted from 1"},
+                                {"time per step (ms)", true}));
+      chart = charts.end() - 1;
+    }
+    const auto number = [&](std::size_t time) { return static_cast<double>(row.at[time] + 1); };
+    Series times{.name = row.backend, .family = row.backend, .low = row.low, .high = row.high};
+    for (std::size_t i = 0; i < row.ms.size(); ++i) times.add(number(i), row.ms[i]);
+    chart->series.push_back(std::move(times));
+    if (row.changes.empty()) continue;
+    Series marks{.name = row.backend + ", change", .origin = Origin::reference, .mark = PointMark::ring};
+    for (const ChangePoint& change : row.changes) marks.add(number(change.first), row.ms[change.first]);
+    chart->series.push_back(std::move(marks));
+  }
+  return charts;
+}
+
 std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                    const std::string& id) {
   Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of jeans", where_measured(provenance),

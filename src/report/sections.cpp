@@ -414,6 +414,24 @@ std::string picture_section(const ReportInput& input) {
              [](const ReportFolder& folder, const std::string&) { return pictures_of(folder.pictures); });
 }
 
+// History
+
+/// The levels of every series, and charts. Empty without a history.
+std::string history_section(const ReportInput& input) {
+  std::string text;
+  int number = 0;
+  for (const MachineHistory& machine : machines_of(input.history))
+    text += fmt::format("<h3>{}</h3>\n{}{}", html_text(machine.name),
+                        html_of(history_table(machine, input.threshold)),
+                        figures_of(with_looks_of_backends(
+                            history_charts(machine, fmt::format("history-{}", ++number)), input.legend)));
+  return text.empty() ? text
+                      : fmt::format(
+                            "<p>A level ends where the times change. A series without a change has "
+                            "a false one with a probability of at most {} %.</p>\n{}",
+                            decimal(100 * change_error), text);
+}
+
 // Guides
 
 /// Splits the page of a guide before each heading of this level; the first part is what comes before, without
@@ -493,6 +511,7 @@ constexpr auto sections = std::to_array<PageSection>({
     {"verdict", "Verdict", verdict_section},
     {"headline", "Times", headline_section},
     {"changes", "What changed", changes_section},
+    {"history", "History", history_section, false},
     {"guide", "Guide", guide_section, false},
     {"machine", "Machine and settings", machine_section, false},
     {"speed-up", "Speed-up", speedup_section},

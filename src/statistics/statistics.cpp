@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numbers>
 #include <numeric>
+#include <random>
 #include <stdexcept>
 
 #include "statistics/rank_tests.h"
@@ -38,6 +39,71 @@ std::vector<double> logarithms(std::span<const double> values) {
 
 RatioEstimate estimate_of(const ShiftEstimate& shift, const RankTest& test) {
   return {std::exp(shift.shift), std::exp(shift.low), std::exp(shift.high), shift.covers, test.p_two_sided()};
+}
+
+/// A division of a part of a series, and how much its sides differ: m n / (m + n) times the energy distance
+/// of m and n values.
+struct Division {
+  std::size_t first = 0;  ///< of the second side
+  double divergence = 0;
+};
+
+/// The division with the largest divergence; each side needs two values.
+Division best_division(std::span<const double> values) {
+  const std::size_t size = values.size();
+  // Sums of the distances of all pairs on the left side, on the right side, and across. At first all are
+  // right.
+  double left = 0, right = 0, across = 0;
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j < i; ++j) right += std::abs(values[i] - values[j]);
+  Division best;
+  for (std::size_t moved = 0; moved + 2 < size; ++moved) {
+    double to_left = 0, to_right = 0;
+    for (std::size_t i = 0; i < moved; ++i) to_left += std::abs(values[moved] - values[i]);
+    for (std::size_t i = moved + 1; i < size; ++i) to_right += std::abs(values[moved] - values[i]);
+    left += to_left;
+    right -= to_right;
+    across += to_right - to_left;
+    const auto m = static_cast<double>(moved + 1), n = static_cast<double>(size - moved - 1);
+    if (moved == 0) continue;
+    const double divergence =
+        m * n / (m + n) * (2 * across / (m * n) - 2 * left / (m * (m - 1)) - 2 * right / (n * (n - 1)));
+    if (divergence > best.divergence) best = {moved + 1, divergence};
+  }
+  return best;
+}
+
+/// The best division of all parts of a series, which begin at `bounds` and end at the next one.
+Division best_of_parts(std::span<const double> values, std::span<const std::size_t> bounds) {
+  Division best;
+  for (std::size_t part = 0; part + 1 < bounds.size(); ++part) {
+    const Division division = best_division(values.subspan(bounds[part], bounds[part + 1] - bounds[part]));
+    if (division.divergence > best.divergence) best = {bounds[part] + division.first, division.divergence};
+  }
+  return best;
+}
+
+/// Random orders of a series that a change is tested against. With 499, the fifth largest of 500 divergences,
+/// the observed one included, is just significant.
+constexpr int random_orders = 499;
+/// Random numbers begin with it in every test, so that the same series gives the same changes.
+constexpr std::uint64_t order_seed = 1;
+
+/// Whether no more than `change_error` of the random orders, the observed one included, have a division at
+/// least as good. Stops when that is decided.
+bool is_significant(const Division& observed, std::vector<double> values,
+                    std::span<const std::size_t> bounds) {
+  constexpr double rounding = 1e-9;
+  std::mt19937_64 random(order_seed);
+  int as_good = 1;
+  for (int order = 0; order < random_orders; ++order) {
+    for (std::size_t part = 0; part + 1 < bounds.size(); ++part)
+      for (std::size_t i = bounds[part + 1] - 1; i > bounds[part]; --i)
+        std::swap(values[i], values[bounds[part] + random() % (i - bounds[part] + 1)]);
+    if (best_of_parts(values, bounds).divergence >= (1 - rounding) * observed.divergence) ++as_good;
+    if (as_good > change_error * (random_orders + 1)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -149,6 +215,22 @@ RatioEstimate paired_ratio(std::span<const double> base, std::span<const double>
 double geometric_mean(std::span<const double> ratios) {
   const std::vector<double> logs = logarithms(ratios);
   return std::exp(std::accumulate(logs.begin(), logs.end(), 0.) / static_cast<double>(logs.size()));
+}
+
+std::vector<ChangePoint> change_points(std::span<const double> times) {
+  if (times.empty()) return {};
+  const std::vector<double> logs = logarithms(times);
+  std::vector<std::size_t> bounds{0, logs.size()};
+  for (;;) {
+    const Division best = best_of_parts(logs, bounds);
+    if (best.first == 0 || !is_significant(best, logs, bounds)) break;
+    bounds.insert(std::ranges::upper_bound(bounds, best.first), best.first);
+  }
+  std::vector<ChangePoint> changes;
+  for (std::size_t i = 1; i + 1 < bounds.size(); ++i)
+    changes.push_back({bounds[i], ratio_of(times.subspan(bounds[i - 1], bounds[i] - bounds[i - 1]),
+                                           times.subspan(bounds[i], bounds[i + 1] - bounds[i]))});
+  return changes;
 }
 
 Look look_at(std::size_t pairs) {

@@ -105,6 +105,31 @@ RatioEstimate paired_ratio(std::span<const double> base, std::span<const double>
 /// The geometric mean. Throws like ratio_of().
 double geometric_mean(std::span<const double> ratios);
 
+/// A place in a series of times from which on they are others.
+struct ChangePoint {
+  std::size_t first = 0;  ///< the first time after the change
+  /// The times from it to the next change, over those before it from the previous one on: ratio_of(). Its
+  /// interval takes the place of the change as known.
+  RatioEstimate ratio;
+};
+
+/// Probability that change_points() finds a change in a series without one, or one more than there are.
+inline constexpr double change_error = 0.01;
+
+/// The changes of a series of times, in its order: E-divisive means, on logarithms. The place that divides a
+/// part of the series best, by the energy distance of its two sides, is a change if at most `change_error` of
+/// random orders have a place that divides them as well. All parts are searched again until none has one. A
+/// random order shuffles each part between known changes, so the test needs no distribution of the times. It
+/// needs that all orders are equally likely without a change: a trend counts as changes. The same series
+/// gives the same changes.
+///
+/// Sources: D. S. Matteson, N. A. James, A nonparametric approach for multiple change point analysis of
+/// multivariate data, Journal of the American Statistical Association 109 (2014), 334-345, with exponent 1,
+/// and without the search for the end of the second side; D. Daly et al., The use of change point detection
+/// to identify software performance regressions in a continuous integration system, ICPE 2020, 67-75, do so
+/// with the times of commits. Throws std::invalid_argument for a time that is not finite and positive.
+std::vector<ChangePoint> change_points(std::span<const double> times);
+
 /// When pairs are tested while more are being measured, and how much error each test may spend.
 ///
 /// Testing after every round and stopping at the first significant result inflates the false-positive rate.

@@ -87,6 +87,13 @@ assert all(len(row["base_samples_ms"]) == len(row["new_samples_ms"]) > 4 for row
 assert math.isclose(result["geometric_means"][0]["geometric_mean_ratio"], math.sqrt(1.12), rel_tol=1e-9), result
 PYTHON
 
+# A folder keeps both.
+compare 1 "$work/base" "$work/slower" --format markdown --out "$work/kept/comparison"
+cmp "$work/out" "$work/kept/comparison/comparison.md" || fail "the kept page is not the printed one"
+compare 1 "$work/base" "$work/slower" --format json --out "$work/kept/comparison"
+cmp "$work/out" "$work/kept/comparison/comparison.json" || fail "the kept JSON is not the printed one"
+expect 4 'timings.csv' compare "$work/base" "$work/slower" --out "$work/base/timings.csv"
+
 # Runs that are not alike.
 cp -r "$work/base" "$work/cpu"
 sed -i 's/"model": "[^"]*"/"model": "Another CPU"/' "$work/cpu/provenance.json"

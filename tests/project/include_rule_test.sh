@@ -72,13 +72,13 @@ garment/output        text garment garment/stepping bench/results hdf5 output/ta
 output/traces         text platform geometry model hdf5 garment/output
 output/pictures       platform geometry render picture model scene/fields garment output/traces
 output/exports        text platform geometry model hdf5 output/traces
-output/folders        text platform bench/machine bench/results output/tables garment/output
+output/folders        text platform scene/fields bench/machine bench/results output/tables garment/output
 report                text platform statistics integrators scene/fields charts bench/machine bench/results bench/roofline bench/verification output/tables garment/output output/folders
 
 application           text platform integrators garment/contact model mesh garment/body scene/spec scene backends/interface backends/devices backends/process backends/described garment/stepping backends garment/fitting bench/machine bench/results bench/verification bench guide output/tables output/guide output/traces output/pictures output/folders
 application/bench     text platform integrators scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/windows bench/job bench output/tables garment/output output/traces output/folders application
 commands/arguments    text
-commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench output/tables output/traces output/pictures output/exports report application application/bench commands/arguments
+commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench output/tables output/folders output/traces output/pictures output/exports report application application/bench commands/arguments
 main.cpp              platform commands
 ask_opencl.cpp        backends/devices
 supervise.cpp         platform
@@ -124,7 +124,7 @@ backends/process      process_backend
 backends/described    backend_description
 ranks                 requests
 bench/machine         provenance
-bench/results         result comparison
+bench/results         result comparison history
 bench/roofline        roofline
 bench/verification    verification reference_cache
 bench/windows         windows
@@ -136,7 +136,7 @@ output/pictures       painter
 output/tables         table results suite_tables
 output/traces         h5md_trace trace_reader energy_curve
 output/exports        exports
-output/folders        result_folder provenance_file
+output/folders        result_folder provenance_file history_file
 report                report
 application           prepared_scene choices console outputs run guide_run
 application/bench     suites bench_plan bench_results bench_run ab_comparison

@@ -12,6 +12,7 @@
 
 #include "bench/machine/provenance.h"
 #include "bench/results/comparison.h"
+#include "bench/results/history.h"
 #include "bench/results/result.h"
 #include "output/tables/table.h"
 #include "platform/machine.h"
@@ -109,6 +110,11 @@ enum class ComparisonFormat { table, markdown, json };
 /// regression, rows, geometric_means} with finite numbers. Ends with a newline. `utf8`: whether columns may
 /// have characters outside ASCII.
 std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8 = true);
+
+/// The levels of each series of a machine's history: the first commit of each level, the number of commits,
+/// the median of their times in ms, the ratio to the level before with its interval, and the verdict. A
+/// series that vanished has a row without a time.
+Table history_table(const MachineHistory& machine, double threshold);
 
 // Tables of results, and helpers of tables of measured rows.
 

@@ -1,0 +1,135 @@
+#include "bench/results/history.h"
+
+#include <algorithm>
+
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+std::string machine_of(const HistoryEntry& entry) {
+  return fmt::format("{}, {}, {}", entry.processor, pluralize(entry.logical_cpus, "logical CPU"),
+                     pluralize(entry.threads, "thread"));
+}
+
+bool is_of(const HistorySeries& series, const HistoryRow& row) {
+  return same_combination(series, row) && series.device == row.device && series.nodes == row.nodes;
+}
+
+/// Adds the rows of the machine's last entry to its series.
+void add_rows(MachineHistory& machine) {
+  for (const HistoryRow& row : machine.entries.back()->rows) {
+    if (!row.verified || !row.ms_per_step) continue;
+    auto series =
+        std::ranges::find_if(machine.series, [&](const HistorySeries& known) { return is_of(known, row); });
+    if (series == machine.series.end()) {
+      machine.series.emplace_back();
+      series = machine.series.end() - 1;
+      series->scene = row.scene;
+      series->backend = row.backend;
+      series->integrator = row.integrator;
+      series->device = row.device;
+      series->nodes = row.nodes;
+    }
+    series->at.push_back(machine.entries.size() - 1);
+    series->ms.push_back(*row.ms_per_step);
+    series->low.push_back(row.ms_per_step_low.value_or(*row.ms_per_step));
+    series->high.push_back(row.ms_per_step_high.value_or(*row.ms_per_step));
+  }
+}
+
+}  // namespace
+
+HistoryEntry entry_of(const Provenance& provenance, std::span<const ResultRow> rows,
+                      const std::string& commit) {
+  const BuildInfo& build = provenance.build;
+  if (commit.empty() && build.commit == "unknown")
+    throw UsageError(
+        "the program that measured was built outside a git repository: name the commit with --commit");
+  if (rows.empty())
+    throw UsageError("timings.csv has no rows: give a folder in which something was measured");
+  HistoryEntry entry{commit.empty() ? build.commit + (build.dirty ? ", changed" : "") : commit,
+                     provenance.started_utc,
+                     cpu_name(provenance.machine),
+                     static_cast<std::uint32_t>(provenance.machine.logical_cpus),
+                     static_cast<std::uint32_t>(provenance.threads),
+                     fmt::format("mssim {}, {}, {}", build.version, build.compiler, build.build_type),
+                     {}};
+  for (const ResultRow& row : rows) {
+    HistoryRow& kept = entry.rows.emplace_back();
+    kept.scene = row.scene;
+    kept.backend = row.backend;
+    kept.integrator = row.integrator;
+    kept.device = row.device;
+    kept.nodes = static_cast<std::uint32_t>(row.nodes);
+    kept.verified = row.verified;
+    kept.samples = static_cast<std::uint32_t>(row.samples_ms.size());
+    if (!counts(row)) continue;
+    kept.ms_per_step = row.ms_per_step;
+    kept.ms_per_step_low = row.ms_per_step_low;
+    kept.ms_per_step_high = row.ms_per_step_high;
+  }
+  return entry;
+}
+
+void add_entry(std::vector<HistoryEntry>& history, HistoryEntry entry, bool replace) {
+  const auto known = std::ranges::find_if(history, [&](const HistoryEntry& other) {
+    return other.commit == entry.commit && machine_of(other) == machine_of(entry);
+  });
+  if (known == history.end())
+    history.push_back(std::move(entry));
+  else if (replace)
+    *known = std::move(entry);
+  else
+    throw UsageError(
+        "the history has commit {} on {} already, measured {}: keep that, or give --replace to put this "
+        "folder in its place",
+        printable(entry.commit), printable(machine_of(entry)), known->started_utc);
+}
+
+std::vector<MachineHistory> machines_of(std::span<const HistoryEntry> history) {
+  std::vector<MachineHistory> machines;
+  for (const HistoryEntry& entry : history) {
+    const std::string name = machine_of(entry);
+    auto machine = std::ranges::find(machines, name, &MachineHistory::name);
+    if (machine == machines.end()) machine = machines.insert(machine, MachineHistory{name, {}, {}});
+    machine->entries.push_back(&entry);
+    add_rows(*machine);
+  }
+  for (MachineHistory& machine : machines)
+    for (HistorySeries& series : machine.series) {
+      series.changes = change_points(series.ms);
+      if (series.at.back() + 1 < machine.entries.size()) series.vanished = series.at.back() + 1;
+    }
+  return machines;
+}
+
+std::string judged(const ChangePoint& change, double threshold) {
+  if (change.ratio.ratio > 1 + threshold) return "slower";
+  if (change.ratio.ratio < 1 / (1 + threshold)) return "faster";
+  return fmt::format("within {} %", decimal(100 * threshold));
+}
+
+std::vector<std::string> regressions(const MachineHistory& machine, double threshold, std::size_t count) {
+  std::vector<std::string> sentences;
+  for (const HistorySeries& series : machine.series) {
+    const auto tell = [&](std::size_t entry, std::string_view what) {
+      if (machine.is_recent(entry, count))
+        sentences.push_back(fmt::format("{}: {} (on {})", combination_name(series), what, machine.name));
+    };
+    if (series.vanished)
+      tell(*series.vanished,
+           fmt::format("without a verified time since commit {}; measure it again, or see why it failed",
+                       machine.entries[*series.vanished]->commit));
+    if (series.changes.empty()) continue;
+    const ChangePoint& last = series.changes.back();
+    if (judged(last, threshold) == "slower")
+      tell(series.at[last.first],
+           fmt::format("slower since commit {}, {:.3g} times the time ({:.3g} to {:.3g})",
+                       machine.commit_of(series, last), last.ratio.ratio, last.ratio.low, last.ratio.high));
+  }
+  return sentences;
+}
+
+}  // namespace mssim

@@ -1,0 +1,108 @@
+#include "bench/results/history.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <system_error>
+
+#include "application/bench/bench_results.h"
+#include "application/console.h"
+#include "commands/command.h"
+#include "commands/options.h"
+#include "output/folders/history_file.h"
+#include "output/tables/results.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+struct HistoryOptions {
+  std::string action, folder;
+  std::string file = "history.jsonl";
+  std::string commit;
+  bool replace = false;
+  double threshold_percent = 5;
+  int last = 10;
+  ListingFormat format = ListingFormat::table;
+};
+
+int add(const HistoryOptions& options) {
+  if (options.folder.empty())
+    throw UsageError("FOLDER is missing: give the folder that mssim bench --out wrote");
+  std::error_code error;
+  std::vector<HistoryEntry> history;
+  if (std::filesystem::exists(options.file, error)) history = read_history(options.file);
+  const MeasuredRun run = read_run(options.folder);
+  add_entry(history, entry_of(run.provenance, run.rows, options.commit), options.replace);
+  write_history(options.file, history);
+  std::cerr << fmt::format("mssim: {} has {}\n", printable(options.file),
+                           history.size() == 1 ? "1 entry" : fmt::format("{} entries", history.size()));
+  return exit_ok;
+}
+
+/// The tables of all machines: for a terminal each below the machine's name, else in one, with the name as
+/// the first column.
+std::string to_text(const std::vector<MachineHistory>& machines, double threshold, ListingFormat format) {
+  std::string text;
+  Table all;
+  for (const MachineHistory& machine : machines) {
+    Table table = history_table(machine, threshold);
+    text += fmt::format("{}{}: {}\n{}", text.empty() ? "" : "\n", machine.name,
+                        pluralize(machine.entries.size(), "commit"), to_text(table, ListingFormat::table));
+    for (std::vector<Cell>& row : table.rows) row.insert(row.begin(), machine.name);
+    if (all.columns.empty()) {
+      all.columns = std::move(table.columns);
+      all.columns.insert(all.columns.begin(), Column{"machine"});
+    }
+    std::ranges::move(table.rows, std::back_inserter(all.rows));
+  }
+  return format == ListingFormat::table ? text : to_text(all, format);
+}
+
+int show(const HistoryOptions& options) {
+  if (!options.folder.empty())
+    throw UsageError("show takes no FOLDER, but was given {}: give the file with --file",
+                     printable(options.folder));
+  const std::vector<HistoryEntry> history = read_history(options.file);
+  const std::vector<MachineHistory> machines = machines_of(history);
+  const double threshold = options.threshold_percent / 100;
+  std::cout << to_text(machines, threshold, options.format);
+  std::vector<std::string> sentences;
+  for (const MachineHistory& machine : machines)
+    std::ranges::move(regressions(machine, threshold, static_cast<std::size_t>(options.last)),
+                      std::back_inserter(sentences));
+  tell_first(sentences);
+  return sentences.empty() ? exit_ok : exit_regression;
+}
+
+}  // namespace
+
+std::function<int()> declare_history(Arguments& arguments) {
+  const auto options = std::make_shared<HistoryOptions>();
+  arguments
+      .add("ACTION", options->action,
+           "add: append a result folder to the file; show: list levels and changes of every series",
+           one_of("action", {"add", "show"}))
+      .required();
+  arguments.add("FOLDER", options->folder,
+                "With add: a folder that mssim bench --out wrote, or a file in it");
+  arguments.add("--file FILE", options->file, "The history, a JSON object per line (default: history.jsonl)");
+  arguments.add("--commit TEXT", options->commit,
+                "With add: the commit that was measured (default: that of mssim's source)");
+  arguments.add_flag("--replace", options->replace,
+                     "With add: replace the entry of the same commit and machine");
+  arguments.add_number("--threshold PERCENT", options->threshold_percent,
+                       "With show: smallest slowdown that counts, in percent (default: 5)",
+                       positive_number());
+  arguments.add_number("--last N", options->last,
+                       "With show: slowdowns and vanished rows count in the last N commits of a machine "
+                       "(default: 10)",
+                       whole_number(1, 1000000));
+  declare_listing_format(arguments, options->format);
+  return [options] { return options->action == "add" ? add(*options) : show(*options); };
+}
+
+}  // namespace mssim

@@ -1,0 +1,50 @@
+#include <algorithm>
+
+#include "output/tables/results.h"
+#include "statistics/statistics.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// A commit's hash in as many digits as usual.
+std::string short_commit(const std::string& commit) {
+  constexpr std::size_t digits = 12, all_digits = 40;
+  const bool is_hash =
+      commit.size() >= all_digits && commit.find_first_not_of("0123456789abcdef") >= all_digits;
+  return is_hash ? commit.substr(0, digits) + commit.substr(all_digits) : commit;
+}
+
+}  // namespace
+
+Table history_table(const MachineHistory& machine, double threshold) {
+  Table table;
+  for (const HistorySeries& series : machine.series) {
+    const auto add = [&](std::size_t entry, Cell count, Cell ms, const RatioEstimate* ratio,
+                         const std::string& verdict) {
+      table.add({{"scene", series.scene},
+                 {"backend", series.backend},
+                 {"integrator", series.integrator},
+                 {"device", series.device},
+                 {"since", short_commit(machine.entries[entry]->commit)},
+                 {"commits", std::move(count)},
+                 {"ms", std::move(ms)},
+                 {"ratio", ratio ? Cell(ratio->ratio) : Cell()},
+                 {"low", ratio ? Cell(ratio->low) : Cell()},
+                 {"high", ratio ? Cell(ratio->high) : Cell()},
+                 {"verdict", verdict.empty() ? Cell() : Cell(verdict)}});
+    };
+    const std::span<const double> times = series.ms;
+    for (std::size_t level = 0; level <= series.changes.size(); ++level) {
+      const ChangePoint* change = level == 0 ? nullptr : &series.changes[level - 1];
+      const std::size_t first = change ? change->first : 0;
+      const std::size_t end = level < series.changes.size() ? series.changes[level].first : times.size();
+      add(series.at[first], end - first, median(times.subspan(first, end - first)),
+          change ? &change->ratio : nullptr, change ? judged(*change, threshold) : "");
+    }
+    if (series.vanished) add(*series.vanished, {}, {}, nullptr, "vanished");
+  }
+  return table;
+}
+
+}  // namespace mssim

@@ -1,0 +1,175 @@
+#include "bench/results/history.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "output/folders/history_file.h"
+#include "output/tables/results.h"
+#include "scene/fields/fields.h"
+#include "tests/support/files_fixture.h"
+#include "tests/support/result_fixture.h"
+#include "text/error.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::size_t recent = 10;
+
+/// An entry of two rows; `openmp` takes that long, or was not verified.
+HistoryEntry entry(int number, std::optional<double> openmp_ms, int threads = 2) {
+  Provenance provenance = made_up_provenance();
+  provenance.threads = threads;
+  const std::vector<ResultRow> rows{
+      measured_row("serial", 1 + 0.001 * (number % 3), 1.0),
+      openmp_ms ? measured_row("openmp", *openmp_ms, 2.0) : failed_row("openmp", "failed: step 7")};
+  return entry_of(provenance, rows, fmt::format("commit-{}", number));
+}
+
+/// Commits of a first level and of a second one, which is `ratio` times as long.
+std::vector<HistoryEntry> two_levels(int first, int second, double ratio) {
+  std::vector<HistoryEntry> history;
+  for (int i = 0; i < first + second; ++i)
+    history.push_back(entry(i, (0.5 + 0.0005 * (i % 5)) * (i < first ? 1 : ratio)));
+  return history;
+}
+
+TEST(History, NamesTheCommitOfASlowdown) {
+  const std::vector<HistoryEntry> history = two_levels(12, 6, 1.08);
+  const std::vector<MachineHistory> machines = machines_of(history);
+  ASSERT_EQ(machines.size(), 1U);
+  ASSERT_EQ(machines[0].series.size(), 2U);
+  EXPECT_THAT(machines[0].series[0].changes, IsEmpty());
+  EXPECT_THAT(regressions(machines[0], threshold, recent),
+              ElementsAre(AllOf(HasSubstr("openmp"), HasSubstr("commit-12"), HasSubstr("slower"))));
+  EXPECT_THAT(regressions(machines[0], 0.1, recent), IsEmpty()) << "below the threshold";
+  EXPECT_THAT(regressions(machines[0], threshold, 5), IsEmpty()) << "six commits ago";
+  EXPECT_THAT(regressions(machines[0], threshold, 6), testing::SizeIs(1));
+}
+
+TEST(History, AcceptsProgressAndARepairedSlowdown) {
+  std::vector<HistoryEntry> history = two_levels(12, 8, 0.8);
+  EXPECT_THAT(regressions(machines_of(history)[0], threshold, recent), IsEmpty());
+  history = two_levels(12, 8, 1.2);
+  for (int i = 20; i < 28; ++i) history.push_back(entry(i, 0.5 + 0.0005 * (i % 5)));
+  const std::vector<MachineHistory> machines = machines_of(history);
+  EXPECT_EQ(machines[0].series[1].changes.size(), 2U);
+  EXPECT_THAT(regressions(machines[0], threshold, 28), IsEmpty());
+}
+
+TEST(History, MissesARowThatIsNoLongerVerifiedOrMeasured) {
+  std::vector<HistoryEntry> history = two_levels(5, 0, 1);
+  history.push_back(entry(5, std::nullopt));
+  history.push_back(entry(6, std::nullopt));
+  EXPECT_THAT(regressions(machines_of(history)[0], threshold, recent),
+              ElementsAre(AllOf(HasSubstr("openmp"), HasSubstr("commit-5"))));
+  EXPECT_THAT(regressions(machines_of(history)[0], threshold, 1), IsEmpty());
+  history.back().rows.clear();
+  EXPECT_THAT(regressions(machines_of(history)[0], threshold, recent), testing::SizeIs(2));
+  history.push_back(entry(7, 0.5));
+  EXPECT_THAT(regressions(machines_of(history)[0], threshold, recent), IsEmpty()) << "both are back";
+}
+
+TEST(History, NeverComparesMachinesDevicesOrSizes) {
+  std::vector<HistoryEntry> history = two_levels(10, 0, 1);
+  for (int i = 0; i < 10; ++i) history.push_back(entry(i, 5 + 0.005 * (i % 5), 1));
+  std::vector<MachineHistory> machines = machines_of(history);
+  ASSERT_EQ(machines.size(), 2U);
+  for (const MachineHistory& machine : machines) {
+    EXPECT_THAT(machine.entries, testing::SizeIs(10));
+    for (const HistorySeries& series : machine.series) EXPECT_THAT(series.changes, IsEmpty());
+  }
+  history[9].rows[0].device = "cpu avx512";
+  history[9].rows[1].nodes = 2501;
+  machines = machines_of(history);
+  EXPECT_THAT(machines[0].series, testing::SizeIs(4));
+  EXPECT_THAT(regressions(machines[0], threshold, recent), testing::SizeIs(2)) << "the former rows vanished";
+}
+
+TEST(History, HasOneEntryOfACommitAndMachine) {
+  std::vector<HistoryEntry> history{entry(1, 0.5)};
+  EXPECT_THAT([&] { add_entry(history, entry(1, 0.7), false); },
+              testing::ThrowsMessage<UsageError>(AllOf(HasSubstr("commit-1"), HasSubstr("--replace"))));
+  add_entry(history, entry(1, 0.7), true);
+  ASSERT_EQ(history.size(), 1U);
+  EXPECT_EQ(history[0].rows[1].ms_per_step, 0.7);
+  add_entry(history, entry(1, 0.9, 1), false);
+  add_entry(history, entry(2, 0.9), false);
+  EXPECT_EQ(history.size(), 3U);
+}
+
+TEST(History, TakesTheCommitOfTheProgramUnlessOneIsGiven) {
+  Provenance provenance = made_up_provenance();
+  const std::vector<ResultRow> rows{measured_row("serial", 1, 1.0)};
+  EXPECT_EQ(entry_of(provenance, rows).commit, provenance.build.commit + ", changed");
+  EXPECT_EQ(entry_of(provenance, rows, "mine").commit, "mine");
+  EXPECT_THROW(entry_of(provenance, {}), UsageError);
+  provenance.build.commit = "unknown";
+  EXPECT_THAT([&] { entry_of(provenance, rows); }, testing::ThrowsMessage<UsageError>(HasSubstr("--commit")));
+}
+
+TEST(History, ShowsEachLevelAndWhatVanished) {
+  std::vector<HistoryEntry> history = two_levels(12, 6, 1.08);
+  history.push_back(entry(18, std::nullopt));
+  history.back().commit = "0123456789abcdef0123456789abcdef01234567, changed";
+  const Table table = history_table(machines_of(history)[0], threshold);
+  ASSERT_EQ(table.rows.size(), 4U);
+  const auto cell = [&](std::size_t row, std::string_view column) {
+    const auto found = std::ranges::find(table.columns, column, &Column::name);
+    return cell_text(table.rows[row][static_cast<std::size_t>(found - table.columns.begin())], *found);
+  };
+  EXPECT_EQ(cell(0, "verdict"), "–");
+  EXPECT_EQ(cell(1, "commits"), "12");
+  EXPECT_EQ(cell(2, "since"), "commit-12");
+  EXPECT_EQ(cell(2, "verdict"), "slower");
+  EXPECT_EQ(cell(3, "since"), "0123456789ab, changed");
+  EXPECT_EQ(cell(3, "verdict"), "vanished");
+}
+
+class HistoryFile : public TemporaryFolderTest {
+ protected:
+  /// The sentence that refuses the text.
+  static std::string refusal(const std::string& text) {
+    try {
+      parse_history("h.jsonl", text);
+    } catch (const InputError& error) {
+      return error.what();
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+TEST_F(HistoryFile, ReadsBackWhatWasWritten) {
+  std::vector<HistoryEntry> history = two_levels(3, 0, 1);
+  history.push_back(entry(3, std::nullopt));
+  history[1].rows[0].device = std::string(300, 'd') + '\n';
+  write_history(folder() / "h.jsonl", history);
+  const std::vector<HistoryEntry> read = read_history(folder() / "h.jsonl");
+  ASSERT_EQ(read.size(), history.size());
+  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(history_line(read[i]), history_line(history[i]));
+  EXPECT_EQ(read[0].rows[1].ms_per_step, history[0].rows[1].ms_per_step);
+  EXPECT_FALSE(read[3].rows[1].verified);
+  EXPECT_FALSE(read[3].rows[1].ms_per_step);
+}
+
+TEST_F(HistoryFile, NamesTheLineThatIsWrong) {
+  const std::string line = history_line(entry(1, 0.5));
+  EXPECT_EQ(refusal(line + "\r\n\n" + line), "accepted");
+  EXPECT_THAT(refusal(line + '\n' + line.substr(0, 100) + '\n'), HasSubstr("h.jsonl, line 2"));
+  EXPECT_THAT(refusal("\n\n" + with_change(line, "\"threads\":2", "\"threads\":-2")),
+              AllOf(HasSubstr("h.jsonl, line 3"), HasSubstr("/threads"), HasSubstr("-2")));
+  EXPECT_THAT(refusal(with_change(line, "\"ms_per_step\":0.5,", "\"ms_per_step\":0,")),
+              AllOf(HasSubstr("line 1"), HasSubstr("/rows/1/ms_per_step")));
+  EXPECT_THAT(refusal(with_change(line, "\"schema_version\":1", "\"schema_version\":2,\"new\":3")),
+              AllOf(HasSubstr("line 1"), HasSubstr("/schema_version is 2"), HasSubstr("version 1")));
+  EXPECT_THAT(refusal("{}"), AllOf(HasSubstr("line 1"), HasSubstr("/schema_version")));
+}
+
+}  // namespace
+}  // namespace mssim

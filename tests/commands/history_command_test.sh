@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# mssim history: result folders, made up here, become lines of a file; the commit of a slowdown and rows that vanish are named.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+source_run=$2/results/table1/zen5
+cd "$work"
+
+# make FOLDER BACKEND=MS...: a result folder in which only the times are made up
+make() {
+  local folder=$1 pair
+  shift
+  rm -rf "$folder"
+  mkdir "$folder"
+  cp "$source_run/provenance.json" "$folder"
+  head -n 1 "$source_run/timings.csv" >"$folder/timings.csv"
+  head -n 1 "$source_run/samples.csv" >"$folder/samples.csv"
+  for pair in "$@"; do
+    awk -F, -v OFS=, -v b="${pair%%=*}" -v ms="${pair#*=}" '
+      NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next }
+      $c["scene"] == "cloth2500" && $c["backend"] == b && $c["integrator"] == "semi-euler" {
+        $c["ms_per_step"] = ms; $c["ms_per_step_low"] = 0.99 * ms; $c["ms_per_step_high"] = 1.01 * ms; print }' \
+      "$source_run/timings.csv" >>"$folder/timings.csv"
+    awk -v b="${pair%%=*}" -v ms="${pair#*=}" \
+      'BEGIN { for (i = 1; i <= 15; ++i) print "cloth2500," b ",semi-euler," i ",10," ms ","  }' >>"$folder/samples.csv"
+  done
+}
+
+# Twelve commits, and five that are 8 % slower with openmp.
+for number in {10..26}; do
+  factor=1
+  [ "$number" -lt 22 ] || factor=1.08
+  make run "serial=$(awk -v i="$number" 'BEGIN { print 1 + 0.002 * (i % 4) }')" \
+    "openmp=$(awk -v i="$number" -v f="$factor" 'BEGIN { print 0.1 * f * (1 + 0.001 * (i % 3)) }')"
+  ends 0 history add run --file h.jsonl --commit "commit-$number"
+  warns "h.jsonl has $((number - 9)) entr"
+done
+[ "$(wc -l <h.jsonl)" -eq 17 ] || fail "the file has not a line per folder: $(cat h.jsonl)"
+ends 1 history show --file h.jsonl
+says 'openmp .* commit-22 .* slower'
+warns '^mssim: cloth2500, openmp, semi-euler: slower since commit commit-22, 1\.0[78]'
+[ "$(grep -c . err)" -eq 1 ] || fail "more than the one slowdown is told: $(cat err)"
+ends 0 history show --file h.jsonl --threshold 10
+says 'within 10 %'
+ends 0 history show --file h.jsonl --last 4
+ends 1 history show --file h.jsonl --last 5 --format json
+/usr/bin/python3 - out <<'END' || fail "the JSON is not what it should be: $(cat out)"
+import json, sys
+levels = json.load(open(sys.argv[1]))
+assert [(row["backend"], row["since"], row["commits"]) for row in levels] == [
+    ("serial", "commit-10", 17), ("openmp", "commit-10", 12), ("openmp", "commit-22", 5)], levels
+assert levels[2]["low"] <= levels[2]["ratio"] <= levels[2]["high"] and abs(levels[2]["ratio"] - 1.08) < 0.01, levels
+END
+
+# A commit has one entry per machine. Without --commit it is that of the program.
+expect 2 'commit-26.*--replace' history add run --file h.jsonl --commit commit-26
+ends 0 history add run --file h.jsonl --commit commit-26 --replace
+[ "$(wc -l <h.jsonl)" -eq 17 ] || fail "--replace does not replace"
+ends 0 history add run/timings.csv --file own.jsonl
+grep -q "\"commit\":\"$(grep -o '"commit": "[0-9a-f]*' run/provenance.json | cut -d'"' -f4)" own.jsonl || fail "the commit is not the program's"
+
+# Another machine is another series: its times, ten times as long, change nothing.
+cp h.jsonl mixed.jsonl
+make other serial=10 openmp=1
+sed -i 's/"model": "[^"]*"/"model": "Another CPU"/' other/provenance.json
+ends 0 history add other --file mixed.jsonl --commit commit-26
+ends 1 history show --file mixed.jsonl
+says '^Another CPU.*: 1 commit$'
+says '^[^ ].*: 17 commits$'
+[ "$(grep -c . err)" -eq 1 ] || fail "machines are mixed: $(cat err)"
+
+# A row that vanishes is an error, named; and so is one that is no longer verified.
+head -n 12 h.jsonl >gone.jsonl
+make run serial=1
+ends 0 history add run --file gone.jsonl --commit without
+ends 1 history show --file gone.jsonl
+warns 'cloth2500, openmp, semi-euler.*without'
+says 'openmp .* without .* vanished'
+make run serial=1 openmp=0.1
+sed -i '/,openmp,/s/,true,ok,/,false,failed: step 7 is not finite,/' run/timings.csv
+ends 0 history add run --file gone.jsonl --commit without --replace
+ends 1 history show --file gone.jsonl
+warns 'cloth2500, openmp, semi-euler.*without'
+ends 0 history add other --file gone.jsonl --commit later
+ends 1 history show --file gone.jsonl --last 1
+make run serial=1 openmp=0.1
+ends 0 history add run --file gone.jsonl --commit back
+ends 0 history show --file gone.jsonl
+
+# The report has its levels and a chart, and the entries as data.
+ends 0 report "$source_run" --no-runs --history h.jsonl --out with.html
+for text in 'id="history"' 'commit-22' 'time per step by commit' '"history": \['; do
+  grep -q -- "$text" with.html || fail "the report has no $text"
+done
+ends 0 report "$source_run" --no-runs --out plain.html
+! grep -q 'id="history"' plain.html || fail "a report without a history has its section"
+
+# Bad files and bad usage.
+sed '3s/"threads":[0-9]*/"threads":"two"/' h.jsonl >bad.jsonl
+expect 2 'bad.jsonl, line 3: /threads.*two.*give' history show --file bad.jsonl
+expect 2 'bad.jsonl, line 3: /threads' history add run --file bad.jsonl --commit new
+cut -c 1-200 h.jsonl >bad.jsonl
+expect 2 'bad.jsonl, line 1: malformed JSON' history show --file bad.jsonl
+expect 2 'bad.jsonl, line 1: malformed JSON' report "$source_run" --no-runs --history bad.jsonl --out bad.html
+[ ! -e bad.html ] || fail "a report of a damaged history is written"
+sed '2s/"schema_version":1/"schema_version":9,"more":[]/' h.jsonl >bad.jsonl
+expect 2 'bad.jsonl, line 2: /schema_version is 9.*version 1' history show --file bad.jsonl
+expect 2 'none.jsonl: there is no such file.*history add' history show --file none.jsonl
+expect 2 'FOLDER.*bench --out' history add --file h.jsonl
+expect 2 'no FOLDER.*--file' history show run --file h.jsonl
+expect 2 'there is no nowhere' history add nowhere --file h.jsonl
+expect 2 'remove.*add and show' history remove --file h.jsonl
+sed -i 's/"commit": "[^"]*"/"commit": "unknown"/' run/provenance.json
+expect 2 'git.*--commit' history add run --file h.jsonl
+expect 4 'nowhere' history add other --file nowhere/h.jsonl --commit x

@@ -1,0 +1,163 @@
+#!/bin/bash
+# What docs/ci.md says of a CI: the steps of action.yml and of the example for GitLab run as a shell runs them, in a repository with a
+# backend that becomes slower, with mssim from an archive; and git bisect finds the commit. Arguments: mssim, the source folder, and what
+# runs a program that was built (nothing where it runs by itself).
+set -euo pipefail
+[[ $# -lt 3 || -z $3 ]] || { echo "skipped: an emulated program measures nothing" && exit 77; }
+mssim=$(realpath -e -- "$1") source=$2
+build=${mssim%/bin/mssim}
+place=$(realpath -- "$(mktemp -d)")
+trap 'rm -rf "$place"' EXIT
+fail() { echo "$1"; [[ ! -e $place/log ]] || tail -n 60 "$place/log"; exit 1; } >&2
+mkdir -p "$place"/{tools,mssim-0,runner}
+export PATH=$place/tools:$PATH GIT_CONFIG_GLOBAL=$place/gitconfig GIT_CONFIG_NOSYSTEM=1
+printf '[user]\nname = t\nemail = t@localhost\n[advice]\ndetachedHead = false\n' >"$place/gitconfig"
+tool() { # NAME: a stand-in, with the script on stdin
+  { echo '#!/bin/bash' && cat; } >"$place/tools/$1"
+  chmod +x "$place/tools/$1"
+}
+tool gh <<<'echo "$*" >>'"$place"'/gh && [[ " $* " != *" --edit-last "* ]]'
+tool apt-get <<<'echo "$*" >>'"$place"'/apt-get'
+# shellcheck disable=SC2016 # the stand-in expands it
+tool make <<<'cp mine.in "$1" && chmod +x "$1"'
+
+cmake --install "$build" --prefix "$place/mssim-0" >/dev/null
+tar -C "$place" -czf "$place/mssim.tar.gz" mssim-0
+# The repository of mssim, as the action and a clone have it.
+mkdir "$place/action"
+cp -r "$source"/{action.yml,CMakeLists.txt,scripts} "$place/action"
+git -C "$place/action" init --quiet --initial-branch main
+git -C "$place/action" add -A
+git -C "$place/action" commit --quiet -m mssim
+
+# The user's repository: on the branch `change`, the third of four commits makes the backend slower.
+repository=$place/builds/mine
+mkdir -p "$repository"
+cd "$repository"
+# backend WORD: what mine.in says then
+backend() { printf '#!/bin/sh\nexec %q/bin/own_backend %s\n' "$build" "$1" >mine.in; }
+commit() { git add -A && git commit --quiet -m "$1"; }
+git init --quiet --initial-branch main
+printf 'mine\nmssim-comparison\n' >.gitignore
+backend right
+commit first
+git checkout --quiet -b change
+echo 1 >notes && commit second
+backend slower && commit third
+slow=$(git rev-parse HEAD)
+echo 2 >notes && commit fourth
+git clone --quiet --bare . "$place/origin.git"
+git remote add origin "$place/origin.git"
+git fetch --quiet origin
+brief='--scene cloth2500 --threads 1 --threshold 40 --time-budget 40'
+
+# The action. GitHub runs each step so, and hands on what a step writes to GITHUB_PATH.
+cat >"$place/run_action.py" <<'PYTHON'
+import json, os, re, subprocess, sys
+import yaml
+
+source, place, given = sys.argv[1], sys.argv[2], json.loads(sys.argv[3])
+action = yaml.safe_load(open(source + "/action.yml"))
+inputs = {name: given.get(name, field.get("default", "")) for name, field in action["inputs"].items()}
+assert set(given) <= set(inputs), given
+assert all(name in given for name, field in action["inputs"].items() if field.get("required")), given
+values = {"github.server_url": "https://localhost", "github.action_repository": "a/mssim", "github.action_ref": "v0",
+          "github.token": "secret", "github.event_name": "pull_request", "github.event.pull_request.number": "7"}
+values |= {"inputs." + name: value for name, value in inputs.items()}
+name_of_value = r"(?:inputs|github)\.[a-z_.]+"
+
+
+def text_of(text):
+    return re.sub(r"\$\{\{ (" + name_of_value + r") \}\}", lambda found: values[found[1]], text)
+
+
+def holds(condition):
+    inner = re.fullmatch(r"\$\{\{ (.*) \}\}", condition)[1].replace("!cancelled()", "True").replace("&&", "and")
+    return eval(re.sub(name_of_value, lambda found: repr(values[found[0]]), inner))
+
+
+environment = os.environ | {"GITHUB_ACTION_PATH": source, "GITHUB_BASE_REF": "main", "GITHUB_REPOSITORY": "a/mine",
+                            "GITHUB_STEP_SUMMARY": place + "/summary.md", "GITHUB_PATH": place + "/path", "RUNNER_TEMP": place + "/runner"}
+failed = False
+for step in action["runs"]["steps"]:
+    if not holds(step["if"]) if "if" in step else failed:
+        continue
+    print("step:", step["name"], flush=True)
+    if "uses" in step:
+        kept = {key: text_of(value) for key, value in step["with"].items()}
+        assert step["uses"].startswith("actions/upload-artifact@") and os.path.isdir(kept["path"]), (step, kept)
+        continue
+    assert step["shell"] == "bash" and "${{" not in step["run"], step
+    open(place + "/step", "w").write(step["run"])
+    own = {key: text_of(value) for key, value in step.get("env", {}).items()}
+    code = subprocess.run(["bash", "--noprofile", "--norc", "-eo", "pipefail", place + "/step"], env=environment | own).returncode
+    if code and not step.get("continue-on-error"):
+        print("exit code", code)
+        failed = True
+    if os.path.exists(place + "/path"):
+        environment["PATH"] = open(place + "/path").read().strip() + ":" + os.environ["PATH"]
+sys.exit(failed)
+PYTHON
+acts() { # CODE JSON
+  local code=0
+  rm -f "$place"/{path,summary.md,gh}
+  /usr/bin/python3 "$place/run_action.py" "$place/action" "$place" "$2" >"$place/log" 2>&1 || code=$?
+  [[ $code == "$1" ]] || fail "the action ends with $code instead of $1"
+}
+acts 1 '{"archive": "'"$place"'/mssim.tar.gz", "build": "make mine", "options": "--backend ./mine '"$brief"'"}'
+# shellcheck disable=SC2016 # the backquotes are Markdown's
+grep -q '`mine`.*\*\*slower\*\*' "$place/summary.md" || fail "the summary has no slower row: $(cat "$place/summary.md")"
+cmp mssim-comparison/comparison.md "$place/summary.md"
+grep -q '"base_samples_ms"' mssim-comparison/comparison.json || fail "the samples are not kept"
+[[ $(wc -l <"$place/gh") -eq 2 ]] || fail "not one comment, after none to edit: $(cat "$place/gh")"
+grep -q 'pr comment 7 --repo a/mine --body-file mssim-comparison/comparison.md$' "$place/gh" || fail "the comment: $(cat "$place/gh")"
+[[ -z $(git status --porcelain) ]] || fail "files are left in the repository: $(git status --porcelain)"
+# Nothing that failed before the comparison is hidden.
+rm -r mssim-comparison "$place/runner/mssim"
+acts 1 '{"archive": "'"$place"'/none.tar.gz", "comment": "false", "options": "--backend ./mine", "folder": "."}'
+[[ ! -e $place/gh && ! -e $place/summary.md ]] || fail "a table is shown of nothing"
+
+# The example for GitLab, with fewer nodes and seconds; and that for GitHub names only inputs that there are.
+cat >"$place/gitlab.py" <<'PYTHON'
+import sys
+import yaml
+
+source, brief = sys.argv[1:]
+page = open(source + "/docs/ci.md").read()
+
+
+def example(heading):
+    lines = page.split(heading + "\n", 1)[1].split("\n## ", 1)[0].split("\n")
+    return yaml.safe_load("\n".join(line[4:] for line in lines if line.startswith("    ")))
+
+
+steps = example("## A pull request on GitHub")["jobs"]["speed"]["steps"]
+inputs = yaml.safe_load(open(source + "/action.yml"))["inputs"]
+assert set(steps[-1]["with"]) <= set(inputs), steps
+job = example("## A merge request on GitLab")["speed"]
+assert set(job) == {"image", "rules", "variables", "before_script", "script", "artifacts"}, job
+assert job["artifacts"]["paths"] == ["mssim-comparison"] and job["artifacts"]["when"] == "always", job
+text = "\n".join(job["before_script"] + job["script"])
+long = "--scene cloth40k --time-budget 600"
+assert long in text, text
+print("set -eo pipefail\n" + text.replace(long, brief))
+PYTHON
+/usr/bin/python3 "$place/gitlab.py" "$source" "$brief" >"$place/gitlab"
+code=0
+MSSIM_REPOSITORY=file://$place/action MSSIM_ARCHIVE=file://$place/mssim.tar.gz CI_MERGE_REQUEST_TARGET_BRANCH_NAME=main \
+  bash "$place/gitlab" >"$place/log" 2>&1 || code=$?
+[[ $code -eq 1 ]] || fail "the job of GitLab ends with $code"
+grep -q slower mssim-comparison/comparison.md || fail "the job of GitLab keeps no table"
+grep -q 'install.* curl' "$place/apt-get" || fail "the job of GitLab installs nothing"
+
+# Bisecting, with the script of the page.
+awk '/^    #!\/bin\/bash/ { inside = 1 } inside && !/^    / { exit } inside { print substr($0, 5) }' "$source/docs/ci.md" |
+  sed "s#/path/to/mssim#$place/action#" >"$place/tools/bisect-speed"
+chmod +x "$place/tools/bisect-speed"
+git bisect start change main >"$place/log" 2>&1
+# shellcheck disable=SC2086 # the options are words of their own
+git bisect run bisect-speed main --mssim "$mssim" --build 'make mine' --backend ./mine $brief >>"$place/log" 2>&1 || fail "git bisect run ends with $?"
+[[ $(git rev-parse refs/bisect/bad) == "$slow" ]] || fail "git bisect names another commit than $slow"
+code=0
+bisect-speed no-such-revision >"$place/log" 2>&1 || code=$?
+[[ $code -eq 125 ]] || fail "git bisect does not skip what cannot be compared: $code"
