@@ -127,6 +127,7 @@ warns 'librsvg2-bin'
 # Several folders, one of them of a guide.
 ends 0 table "$results/table1/zen4" "$results/guide/zen4" --format latex --out "$work/both"
 [ -s "$work/both/1-table1-zen4-table1.tex" ] && [ -s "$work/both/2-guide-zen4-guide.tex" ] || fail "two folders: $(ls "$work/both")"
+! grep -h 'U+' "$work"/both/*.tex || fail "a sign of mssim's own tables is not known to LaTeX"
 typeset "$work/both"
 
 # Names with what LaTeX takes for its own, on rows that are not verified, too.

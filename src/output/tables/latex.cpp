@@ -39,6 +39,7 @@ constexpr auto replacements = std::to_array<Replacement>({{"\\", "\\textbackslas
                                                           {"—", "---"},
                                                           {"…", "\\ldots{}"},
                                                           {"†", "\\textdagger{}"},
+                                                          {"‡", "\\textdaggerdbl{}"},
                                                           {"√", "$\\surd$"},
                                                           {"µ", "\\textmu{}"},
                                                           {"⁹", "\\textsuperscript{9}"},
@@ -88,7 +89,8 @@ constexpr auto units = std::to_array<Replacement>({{"ms", "\\milli\\second"},
 /// Whether a number or unit may end before this text.
 bool ends_before(std::string_view text) {
   constexpr std::string_view ends = " ),;";
-  return text.empty() || ends.find(text.front()) != std::string_view::npos || text.starts_with("×");
+  return text.empty() || ends.find(text.front()) != std::string_view::npos ||
+         static_cast<unsigned char>(text.front()) >= 0x80;  // × and marks
 }
 
 /// The number that a text begins with, such as "1,054", "0.0898" or "-3.6e-05"; empty for a version, a date

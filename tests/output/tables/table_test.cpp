@@ -124,6 +124,7 @@ TEST(Latex, HasNumbersRangesAndUnitsOfSiunitx) {
   EXPECT_EQ(latex_cell(4188004), "\\num{4188004}");
   EXPECT_EQ(latex_cell(Cell()), "--");
   EXPECT_EQ(latex_cell(2.5, {"head", Align::right, "×"}), "\\num{2.50}$\\times$");
+  EXPECT_EQ(latex_cell("5.4e-05‡"), "\\num{5.4e-05}\\textdaggerdbl{}");
   EXPECT_EQ(latex_cell("0.115 to 1,121"), "\\numrange{0.115}{1121}");
   EXPECT_EQ(latex_cell("**1.41** (2.95×)"), "\\textbf{\\num{1.41}} (\\num{2.95}$\\times$)");
   EXPECT_EQ(latex_cell("0.0927 s\n1,152"), "\\shortstack[l]{\\qty{0.0927}{\\second}\\\\\\num{1152}}");
