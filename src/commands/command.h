@@ -31,6 +31,7 @@ std::function<int()> declare_check(Arguments& arguments);
 std::function<int()> declare_compare(Arguments& arguments);
 std::function<int()> declare_report(Arguments& arguments);
 std::function<int()> declare_measure(Arguments& arguments);
+std::function<int()> declare_web(Arguments& arguments);
 std::function<int()> declare_new_backend(Arguments& arguments);
 std::function<int()> declare_list(Arguments& arguments);
 std::function<int()> declare_help(Arguments& arguments);

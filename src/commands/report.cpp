@@ -23,6 +23,7 @@
 #include "platform/files.h"
 #include "text/error.h"
 #include "text/text.h"
+#include "web/web.h"
 
 namespace mssim {
 namespace {
@@ -148,6 +149,10 @@ std::vector<fs::path> folders_of(const ReportOptions& options) {
   std::vector<fs::path> folders;
   for (const std::string& given : options.folders) {
     std::error_code error;
+    if (is_web_results(given)) {
+      folders.emplace_back(given);
+      continue;
+    }
     if (!fs::is_directory(given, error))
       throw UsageError("there is no folder {}: give folders that mssim bench --out wrote", printable(given));
     std::vector<fs::path> found = result_folders(given);
@@ -155,6 +160,16 @@ std::vector<fs::path> folders_of(const ReportOptions& options) {
     std::ranges::move(found, std::back_inserter(folders));
   }
   return folders;
+}
+
+/// The results that a page has saved in one file (docs/web.md).
+ReportFolder page_folder(const fs::path& file) {
+  MeasuredRun run = read_web_results(file);
+  ReportFolder folder;
+  folder.name = file.string();
+  folder.rows = std::move(run.rows);
+  folder.provenance = std::move(run.provenance);
+  return folder;
 }
 
 std::vector<FoundCurve> reference_curves() {
@@ -188,7 +203,8 @@ int report(const ReportOptions& options) {
     input.problems.push_back(std::string(error.what()) + "; no claim of the papers is judged");
   }
   for (const fs::path& folder : folders) {
-    ReportFolder& read = input.folders.emplace_back(read_report_folder(folder));
+    ReportFolder& read =
+        input.folders.emplace_back(is_web_results(folder) ? page_folder(folder) : read_report_folder(folder));
     mark_own_scenes(read.rows, read.provenance.value_or(Provenance()));
   }
   if (!options.no_runs) simulate_scenes(input);
@@ -206,7 +222,9 @@ std::function<int()> declare_report(Arguments& arguments) {
   const auto options = std::make_shared<ReportOptions>();
   arguments
       .add_list("DIR...", options->folders,
-                "Folders that mssim bench --out wrote; a folder of such folders stands for all in it",
+                "Folders that mssim bench --out wrote, a folder of such folders, or files that the page of "
+                "mssim web "
+                "saved",
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })
       .required();
   arguments.add("--out FILE", options->out, "File to write (default: report.html)");

@@ -80,18 +80,20 @@ std::string devices_of(std::span<const ResultRow> rows, const Provenance& proven
 Finding about_speedups(std::span<const ResultRow> rows) {
   const std::vector<const ResultRow*> pointers = pointers_to(rows);
   std::vector<std::string> near_one;
+  std::string_view baseline = baseline_name;
   std::size_t all = 0;
   for (const ResultRow& row : rows) {
-    const ResultRow* serial = find_row(pointers, row.scene, baseline_name, row.integrator);
+    const ResultRow* serial = baseline_of(pointers, row);
     const auto ratio = serial == &row ? std::nullopt : times_as_fast(&row, serial);
     if (!ratio) continue;
     ++all;
+    baseline = serial->backend;
     if (ratio->side_of_one() == 0)
       near_one.push_back(
           fmt::format("{} ({} to {})", row_name(row), three_digits(ratio->low), three_digits(ratio->high)));
   }
   if (all == 0) return {false, "There are no speed-ups: no row that counts stands beside one of `serial`."};
-  return {false, "Of " + pluralize(all, "speed-up") + " over `serial`, " +
+  return {false, "Of " + pluralize(all, "speed-up") + fmt::format(" over `{}`, ", baseline) +
                      (near_one.empty()
                           ? "all have an interval that does not hold 1."
                           : subject(near_one.size(), "interval", " holds 1", " hold 1") +

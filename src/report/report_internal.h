@@ -161,9 +161,6 @@ std::string html_of(const Document& document, int level);
 /// Raw data for programs, in an element that no browser runs or shows. `json` is JSON.
 std::string html_data(std::string_view id, std::string_view json);
 
-/// The bytes in base 64 (RFC 4648), for an address that holds its picture.
-std::string base64(std::string_view bytes);
-
 /// A part of the page under a heading of its own.
 struct PageSection {
   std::string_view id, title;

@@ -286,7 +286,7 @@ Table times_of(const std::vector<const ResultRow*>& rows, const ReportFolder& fo
                {"verified"}},
               {}};
   for (const ResultRow* row : rows) {
-    const ResultRow* serial = find_row(all, row->scene, baseline_name, row->integrator);
+    const ResultRow* serial = baseline_of(all, *row);
     const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
     const bool shown = counts(*row);
     Cell published = row->paper_ms;
