@@ -44,8 +44,40 @@ json constants_of(const SpringMaterial& material) {
   return constants;
 }
 
+/// Shapes of bodies, each once: many bodies of the paper are copies of nine.
+class Shapes {
+ public:
+  /// The bodies of a system, which follow each other, as {shape, mass of a node in kg}.
+  json bodies_of(const System& system) {
+    std::vector<bool> is_inside(system.nodes() + 1, false);  // a spring passes between the node before and it
+    for (const Spring& spring : system.springs)
+      std::fill(is_inside.begin() + std::min(spring.first, spring.second) + 1,
+                is_inside.begin() + std::max(spring.first, spring.second) + 1, true);
+    json bodies = json::array();
+    auto spring = system.springs.begin();
+    for (std::uint32_t begin = 0, end = 1; begin < system.nodes(); begin = end++) {
+      while (is_inside[end]) ++end;
+      std::vector<std::uint32_t> ends;
+      std::vector<float> rest;
+      for (; spring != system.springs.end() && spring->first < end; ++spring) {
+        ends.insert(ends.end(), {spring->first - begin, spring->second - begin});
+        rest.push_back(spring->rest_length);
+      }
+      const json shape{{"nodes", end - begin}, {"ends", packed(ends)}, {"rest_lengths", packed(rest)}};
+      const auto known = std::ranges::find(all_, shape);
+      bodies.push_back({known - all_.begin(), system.node_mass[begin]});
+      if (known == all_.end()) all_.push_back(shape);
+    }
+    return bodies;
+  }
+  json all() const { return all_; }
+
+ private:
+  std::vector<json> all_;
+};
+
 /// Everything of a system but its start.
-json laws_of(const System& system) {
+json laws_of(const System& system, Shapes& shapes) {
   json materials = json::array();
   for (const SpringMaterial& material : system.materials) materials.push_back(constants_of(material));
   json laws{{"nodes", system.nodes()},
@@ -60,17 +92,12 @@ json laws_of(const System& system) {
     json rest = json::array();
     for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
       rest.push_back(grid->rest_length(static_cast<GridSpringKind>(kind)));
-    laws["grid"] = {{"rows", grid->rows}, {"columns", grid->columns}, {"rest_lengths", rest}};
-    laws["node_mass"] = packed(std::vector<double>{system.node_mass.front()});
+    laws["grid"] = {{"rows", grid->rows},
+                    {"columns", grid->columns},
+                    {"rest_lengths", rest},
+                    {"node_mass", system.node_mass.front()}};
   } else {
-    std::vector<std::uint32_t> ends;
-    std::vector<float> rest;
-    for (const Spring& spring : system.springs) {
-      ends.insert(ends.end(), {spring.first, spring.second});
-      rest.push_back(spring.rest_length);
-    }
-    laws["springs"] = {{"ends", packed(ends)}, {"rest_lengths", packed(rest)}};
-    laws["node_mass"] = packed(system.node_mass);
+    laws["bodies"] = shapes.bodies_of(system);
   }
   return laws;
 }
@@ -98,7 +125,7 @@ json ripple_of(const ClothSpec& cloth, const System& system) {
 }
 
 /// What the verification of each integrator needs (bench/verification/verification.h).
-json checks_of(const System& system, double dt_s) {
+json checks_of(const System& system, double dt_s, Shapes& shapes) {
   json checks = json::object();
   for (const Integrator* integrator : all_integrators) {
     if (is_implicit(*integrator)) continue;
@@ -112,7 +139,7 @@ json checks_of(const System& system, double dt_s) {
           {"floor_height", stretch.system.floor.height},
           {"start", start_of(stretch.system)},
           {"position", packed(numbers_of<double>(stretch.state.position))}}}};
-    checks["second_system"] = laws_of(stretch.system);
+    checks["second_system"] = laws_of(stretch.system, shapes);
   }
   return checks;
 }
@@ -129,10 +156,11 @@ json published_of(const PreparedScene& scene, std::span<const PublishedTable> pu
   return times;
 }
 
-json scene_of(const std::string& name, std::span<const PublishedTable> published, Provenance& provenance) {
+json scene_of(const std::string& name, std::span<const PublishedTable> published, Provenance& provenance,
+              Shapes& shapes) {
   const PreparedScene scene = prepare_scene(find_scene(name));
   add_scene(provenance, name, scene.spec.source);
-  json result = laws_of(scene.system);
+  json result = laws_of(scene.system, shapes);
   const auto* cloth = std::get_if<ClothSpec>(&scene.spec.content);
   result.update({{"name", name},
                  {"kind", cloth != nullptr ? "cloth" : "bodies"},
@@ -141,7 +169,7 @@ json scene_of(const std::string& name, std::span<const PublishedTable> published
                  {"springs_unique", scene.counts.springs_unique},
                  {"springs_published", scene.counts.springs_published.value_or(0)},
                  {"start", cloth != nullptr ? ripple_of(*cloth, scene.system) : start_of(scene.system)},
-                 {"checks", checks_of(scene.system, scene.dt_s)},
+                 {"checks", checks_of(scene.system, scene.dt_s, shapes)},
                  {"published", published_of(scene, published)}});
   return result;
 }
@@ -177,11 +205,12 @@ json page_data() {
   provenance.build = build_info();
   provenance.threads = 1;
   const std::vector<PublishedTable> published = published_tables();
+  Shapes shapes;
   json scenes = json::array(), names = json::array(), stencil = json::array(), columns = json::array(),
        slots = json::array(), laws = json::array();
   for (const char* suite : {"table1", "table3"})
     for (const std::string& name : scenes_of_suite(suite, true))
-      scenes.push_back(scene_of(name, published, provenance));
+      scenes.push_back(scene_of(name, published, provenance, shapes));
   for (const SpringConstantInfo& constant : spring_constants) names.push_back(constant.name);
   for (const GridSpring& spring : grid_stencil)
     stencil.push_back({spring.rows, spring.columns, static_cast<int>(spring.kind)});
@@ -195,6 +224,7 @@ json page_data() {
           {"integrators", integrators_json()},
           {"stencil", stencil},
           {"scenes", scenes},
+          {"shapes", shapes.all()},
           {"columns", columns},
           {"paper_device", paper_device},
           {"energy_tolerance", energy_tolerance},

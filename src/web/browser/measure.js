@@ -185,7 +185,7 @@ class Session {
     const row = {scene: scene.name, nodes: scene.nodes, springs_unique: scene.springs_unique,
                  springs_published: scene.springs_published || '', backend, device: backend === 'webgpu' ? this.adapterName : 'cpu',
                  threads: 1, integrator: integrator.name, dt_s: scene.dt, rounds: 0, paper_ms: published ?? '', verified: false,
-                 status: 'ok', note: scene.note, warm_up_trials: 0, samples: [], steps: 1};
+                 status: 'ok', note: scene.note, warm_up_trials: 0, outliers: 0, samples: [], steps: 1};
     this.rows.push(row);
     return row;
   }
@@ -244,7 +244,8 @@ class Session {
       if (row.backend === 'webgpu' && this.lost) throw new Error(this.lost);
     } catch (error) {
       if (error instanceof Stopped) throw error;
-      if (row.samples.length && this.lost) return void (row.note = [row.note, this.lost].filter(Boolean).join('; '));
+      if (row.samples.length && this.lost)
+        return void (row.note.includes(this.lost) || (row.note = [row.note, this.lost].filter(Boolean).join('; ')));
       row.verified = false;
       row.status = /^(failed|unsupported): /.test(error.message) ? error.message : `failed: ${this.lost || error.message}`;
     }
@@ -309,7 +310,7 @@ class Session {
                         ms_per_step_min: Math.min(...row.samples)});
     // A device that becomes hot slows down from round to round.
     const third = Math.floor(row.samples.length / 3);
-    if (third > 0) row.drift = median(row.samples.slice(-third)) / median(row.samples.slice(0, third));
+    if (third > 1) row.drift = median(row.samples.slice(-third)) / median(row.samples.slice(0, third));
     const base = this.rows.find(it => it.scene === row.scene && it.integrator === row.integrator && it.backend === 'javascript');
     if (base && base !== row && base.samples.length === row.samples.length)
       row.speedup = median(base.samples.map((ms, i) => ms / row.samples[i]));
@@ -329,8 +330,9 @@ class Session {
     const notes = [...this.notes];
     if (this.drift() > 1.05) notes.push(`a row became ${((this.drift() - 1) * 100).toFixed(0)} % slower from the first to the ` +
                                         'last third of its rounds: the device may have become hot');
-    for (const row of this.rows)
-      if (row.compile_s) notes.push(`compiling ${row.scene}, ${row.integrator} took ${row.compile_s.toPrecision(3)} s, not timed`);
+    const compiled = this.rows.flatMap(row => row.compile_s || []);
+    if (compiled.length) notes.push(`compiling the kernels of a row took ${Math.min(...compiled).toPrecision(3)} to ` +
+                                    `${Math.max(...compiled).toPrecision(3)} s, which no time contains`);
     const provenance = {...data.provenance, started_utc: this.started, command_line: ['mssim', 'web', ...about.settings],
                         cpu: {...data.provenance.cpu, model: about.device, logical_cpus: about.logicalCpus},
                         operating_system: about.system, kernel: about.browser, memory_bytes: about.memoryBytes,

@@ -58,11 +58,10 @@ const sumOfTerms = (terms, product) =>
 function buildSystem(scene, start = scene.start, floor = scene.floor) {
   const n = scene.nodes, pins = new Set(scene.pins);
   const system = {...scene, floor, pins, free: Uint8Array.from({length: n}, (_, node) => pins.has(node) ? 0 : 1)};
-  const masses = unpack(scene.node_mass, Float64Array);
-  system.mass = masses.length === 1 ? new Float64Array(n).fill(masses[0]) : masses;
+  system.mass = new Float64Array(n);
   system.materials = scene.materials.map(values => Object.fromEntries(values.map((value, i) => [data.spring_constants[i], value])));
   if (scene.grid) {
-    const {rows, columns, rest_lengths} = scene.grid, first = [], second = [], kind = [];
+    const {rows, columns, rest_lengths, node_mass} = scene.grid, first = [], second = [], kind = [];
     for (let row = 0; row < rows; ++row)
       for (let column = 0; column < columns; ++column)
         for (const [down, right, of] of data.stencil)
@@ -73,12 +72,20 @@ function buildSystem(scene, start = scene.start, floor = scene.floor) {
           }
     Object.assign(system, {first: Uint32Array.from(first), second: Uint32Array.from(second), kind: Uint8Array.from(kind)});
     system.restLengths = Float64Array.from(kind, of => rest_lengths[of]);
+    system.mass.fill(node_mass);
   } else {
-    const ends = unpack(scene.springs.ends, Uint32Array);
-    system.first = ends.filter((_, i) => i % 2 === 0);
-    system.second = ends.filter((_, i) => i % 2 === 1);
-    system.restLengths = Float64Array.from(unpack(scene.springs.rest_lengths, Float32Array));
-    system.kind = new Uint8Array(system.first.length);
+    const ends = [], rest = [];
+    let begin = 0;
+    for (const [number, mass] of scene.bodies) {
+      const shape = data.shapes[number];
+      for (const end of unpack(shape.ends, Uint32Array)) ends.push(begin + end);
+      for (const length of unpack(shape.rest_lengths, Float32Array)) rest.push(length);
+      system.mass.fill(mass, begin, begin += shape.nodes);
+    }
+    system.first = Uint32Array.from(rest, (_, i) => ends[2 * i]);
+    system.second = Uint32Array.from(rest, (_, i) => ends[2 * i + 1]);
+    system.restLengths = Float64Array.from(rest);
+    system.kind = new Uint8Array(rest.length);
   }
   system.start = start.position ? {position: Float64Array.from(unpack(start.position, Float32Array)),
                                    velocity: Float64Array.from(unpack(start.velocity, Float32Array))}
