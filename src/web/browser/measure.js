@@ -137,7 +137,7 @@ class Session {
     Object.assign(this, {options, device, adapterName, show, rows: [], notes: [], stopping: false, hidden: false, lost: '', done: 0});
     this.granularity = clockGranularity();
     this.started = new Date().toISOString().replace(/\.\d+Z$/, 'Z');
-    this.notes.push(`the browser's clock has steps of ${(1e6 * this.granularity).toPrecision(3)} microseconds`);
+    this.notes.push(`the browser's clock has steps of ${Number((1e6 * this.granularity).toPrecision(3))} microseconds`);
     if (!device) this.notes.push('there was no WebGPU; only javascript was measured');
     device?.lost.then(({reason, message}) => {
       if (this.finished) return;
@@ -176,6 +176,9 @@ class Session {
       else this.notes.push('the user stopped the measurement');
     }
     if (this.hidden) this.notes.push('the page was hidden for a while; what it measured meanwhile was measured again');
+    const compiled = this.rows.flatMap(row => row.compile_s || []);
+    if (compiled.length) this.notes.push(`compiling the kernels of a row took ${Math.min(...compiled).toPrecision(3)} to ` +
+                                         `${Math.max(...compiled).toPrecision(3)} s, which no time contains`);
     this.finished = true;
     this.show(this);
   }
@@ -330,9 +333,6 @@ class Session {
     const notes = [...this.notes];
     if (this.drift() > 1.05) notes.push(`a row became ${((this.drift() - 1) * 100).toFixed(0)} % slower from the first to the ` +
                                         'last third of its rounds: the device may have become hot');
-    const compiled = this.rows.flatMap(row => row.compile_s || []);
-    if (compiled.length) notes.push(`compiling the kernels of a row took ${Math.min(...compiled).toPrecision(3)} to ` +
-                                    `${Math.max(...compiled).toPrecision(3)} s, which no time contains`);
     const provenance = {...data.provenance, started_utc: this.started, command_line: ['mssim', 'web', ...about.settings],
                         cpu: {...data.provenance.cpu, model: about.device, logical_cpus: about.logicalCpus},
                         operating_system: about.system, kernel: about.browser, memory_bytes: about.memoryBytes,

@@ -196,9 +196,9 @@ element('version').textContent = `Made by mssim ${version}, commit ${commit.slic
   const device = await openDevice().catch(() => null);
   element('support').textContent = device ? `WebGPU runs on ${adapterName()}.` : `${missingWebGpu()} Only JavaScript will be measured.`;
   device?.destroy();
+  await animate();
   if (autoScenes.length) {
     await measure();
     await send();
   }
-  animate();
 })();
