@@ -53,12 +53,12 @@ function showRows({rows}) {
     const scene = data.scenes.find(({name}) => name === row.scene);
     const {paper_name} = data.integrators.find(({name}) => name === row.integrator);
     const published = name => scene.published[paper_name]?.[name];
-    const timed = row.status === 'ok' && row.ms_per_step;
+    const together = published('gpu+multi-thread-cpu'), timed = row.status === 'ok' && row.ms_per_step;
     const verdict = row.verified ? `verified, error ${digits(row.position_error)}` : row.status === 'ok' ? '' : row.status;
     return create('tr', {}, create('th', {scope: 'row', textContent: `${row.scene} (${row.nodes.toLocaleString('en')})`}), ...[
       row.integrator, row.backend, timed ? digits(row.ms_per_step) : '', timed ? `${digits(row.ms_per_step_low)} to ${digits(row.ms_per_step_high)}` : '',
       timed && row.speedup ? `${digits(row.speedup)}×` : '', timed && row.drift ? row.drift.toFixed(2) : '',
-      published('cpu-only') ?? '', published('gpu') ?? '',
+      published('cpu-only') ?? '', published('gpu') ?? (together ? `${together} with threads` : ''),
       row.verified && row.status !== 'ok' ? `${verdict}; ${row.status}` : verdict,
     ].map((text, i) => create('td', {textContent: text, className: i === 8 && !row.verified ? 'bad' : ''})));
   }));
@@ -78,7 +78,7 @@ function showChart({rows}) {
     row.scene === scene.name && row.integrator === name && row.backend === 'webgpu' && row.status === 'ok')?.speedup);
   const all = lines.flatMap(({points}) => points.map(([, value]) => value));
   if (!lines.some(({label}) => label.endsWith('here'))) return element('chart').replaceChildren();
-  const width = 640, height = 320, left = 48, log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
+  const width = Math.max(300, Math.min(element('chart').clientWidth, 720)), height = 320, left = 48, log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
   const xs = [2000, 400000], ys = [Math.min(1, ...all) / 1.2, Math.max(...all) * 1.2];
   const x = nodes => left + (width - left - 12) * log(nodes, xs), y = value => height - 32 - (height - 44 - 16 * lines.length) * log(value, ys);
   let svg = '';
