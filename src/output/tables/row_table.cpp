@@ -58,8 +58,8 @@ RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
   const std::string_view mark = mark_of_speedup(rows, row);
   return {three_digits(ratio) + (utf8 ? "×" : "x"),
           is_baseline(row.backend) ? dim
-          : ratio < 1                  ? red
-                                       : green,
+          : ratio < 1              ? red
+                                   : green,
           mark.empty() || utf8 ? mark : ascii_ratio_mark};
 }
 
