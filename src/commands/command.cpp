@@ -46,6 +46,8 @@ constexpr auto table = std::to_array<Command>({
      "mssim table results/table1/zen4 --format latex --out paper", declare_table},
     {"measure", "Measure a person's surface, and write a scene of jeans for it",
      "mssim measure scan.obj --scene my.json", declare_measure},
+    {"web", "Write or serve a page that measures a phone's GPU in its browser",
+     "mssim web --serve --results results/phone", declare_web},
     {"new-backend", "Write a backend of your own to start from, in Python or C++",
      "mssim new-backend mine --language python", declare_new_backend},
     {"list", "List scenes, suites, backends, methods, integrators, devices or a schema",

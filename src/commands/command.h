@@ -33,6 +33,7 @@ std::function<int()> declare_history(Arguments& arguments);
 std::function<int()> declare_report(Arguments& arguments);
 std::function<int()> declare_table(Arguments& arguments);
 std::function<int()> declare_measure(Arguments& arguments);
+std::function<int()> declare_web(Arguments& arguments);
 std::function<int()> declare_new_backend(Arguments& arguments);
 std::function<int()> declare_list(Arguments& arguments);
 std::function<int()> declare_help(Arguments& arguments);

@@ -18,6 +18,7 @@
 #include "platform/machine.h"
 #include "text/error.h"
 #include "text/text.h"
+#include "web/web.h"
 
 namespace mssim {
 namespace {
@@ -83,7 +84,10 @@ int report(const RunComparison& comparison, const CompareOptions& options) {
 }
 
 int compare_runs(const CompareOptions& options) {
-  const MeasuredRun base = read_run(options.ab.base), next = read_run(options.ab.next);
+  const auto read = [](const std::string& path) {
+    return is_web_results(path) ? read_web_results(path) : read_run(path);
+  };
+  const MeasuredRun base = read(options.ab.base), next = read(options.ab.next);
   require_comparable(base, next, options.force);
   const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
   if (comparison.rows.empty())
@@ -111,9 +115,11 @@ std::function<int()> declare_compare(Arguments& arguments) {
   const auto options = std::make_shared<CompareOptions>();
   arguments
       .add("BASE", options->ab.base,
-           "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
+           "A folder that mssim bench --out wrote, a file in it, or one that the page of mssim web saved; "
+           "with "
+           "--ab an mssim program")
       .required();
-  arguments.add("NEW", options->ab.next, "Folder or program to compare with BASE").required();
+  arguments.add("NEW", options->ab.next, "Folder, file or program to compare with BASE").required();
   arguments.add_number("--threshold PERCENT", options->threshold_percent,
                        "Smallest change that counts, in percent (default: 5)", positive_number());
   arguments.add_choice<ComparisonFormat>("--format", options->format,

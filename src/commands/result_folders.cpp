@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include "application/bench/suites.h"
 #include "application/console.h"
@@ -13,6 +14,7 @@
 #include "platform/files.h"
 #include "text/error.h"
 #include "text/text.h"
+#include "web/web.h"
 
 namespace mssim {
 namespace {
@@ -34,6 +36,10 @@ std::vector<fs::path> folders_of(const std::vector<std::string>& all_given) {
   std::vector<fs::path> folders;
   for (const std::string& given : all_given) {
     std::error_code error;
+    if (is_web_results(given)) {
+      folders.emplace_back(given);
+      continue;
+    }
     if (!fs::is_directory(given, error))
       throw UsageError("there is no folder {}: give folders that mssim bench --out wrote", printable(given));
     std::vector<fs::path> found = result_folders(given);
@@ -41,6 +47,16 @@ std::vector<fs::path> folders_of(const std::vector<std::string>& all_given) {
     std::ranges::move(found, std::back_inserter(folders));
   }
   return folders;
+}
+
+/// The results that a page has saved in one file (docs/web.md).
+ReportFolder page_folder(const fs::path& file) {
+  MeasuredRun run = read_web_results(file);
+  ReportFolder folder;
+  folder.name = file.string();
+  folder.rows = std::move(run.rows);
+  folder.provenance = std::move(run.provenance);
+  return folder;
 }
 
 std::vector<FoundCurve> reference_curves() {
@@ -58,7 +74,8 @@ std::vector<FoundCurve> reference_curves() {
 void add_result_folders(Arguments& arguments, std::vector<std::string>& target) {
   arguments
       .add_list("DIR...", target,
-                "Folders that mssim bench --out wrote; a folder of such folders stands for all in it",
+                "Folders that mssim bench --out wrote, a folder of such folders, or files that the page of "
+                "mssim web saved",
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })
       .required();
 }
@@ -81,7 +98,8 @@ ReportInput report_input(const std::vector<std::string>& given) {
     input.problems.push_back(std::string(error.what()) + "; no claim of the papers is judged");
   }
   for (const fs::path& folder : folders) {
-    ReportFolder& read = input.folders.emplace_back(read_report_folder(folder));
+    ReportFolder& read =
+        input.folders.emplace_back(is_web_results(folder) ? page_folder(folder) : read_report_folder(folder));
     mark_own_scenes(read.rows, read.provenance.value_or(Provenance()));
   }
   return input;

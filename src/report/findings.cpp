@@ -80,19 +80,23 @@ std::string devices_of(std::span<const ResultRow> rows, const Provenance& proven
 Finding about_speedups(std::span<const ResultRow> rows) {
   const std::vector<const ResultRow*> pointers = pointers_to(rows);
   std::vector<std::string> near_one;
+  std::string_view baseline = baseline_name;
   std::size_t all = 0;
   for (const ResultRow& row : rows) {
-    const ResultRow* serial = find_row(pointers, row.scene, baseline_name, row.integrator);
+    const ResultRow* serial = baseline_of(pointers, row);
     const auto ratio = serial == &row ? std::nullopt : times_as_fast(&row, serial);
     if (!ratio) continue;
     ++all;
+    baseline = serial->backend;
     if (ratio->side_of_one() == 0)
       near_one.push_back(
           fmt::format("{} ({} to {})", row_name(row), three_digits(ratio->low), three_digits(ratio->high)));
   }
   if (all == 0)
-    return {false, "There are no speed-ups: no row that counts has a row of `serial` to compare with."};
-  return {false, pluralize(all, "speed-up") + " over `serial`: " +
+    return {false,
+            fmt::format("There are no speed-ups: no row that counts has a row of `{}` to compare with.",
+                        baseline)};
+  return {false, pluralize(all, "speed-up") + fmt::format(" over `{}`: ", baseline) +
                      (near_one.empty()
                           ? "no interval includes 1."
                           : subject(near_one.size(), "interval", " includes 1", " include 1") +

@@ -189,9 +189,6 @@ std::string html_of(const Document& document, int level);
 /// JSON for programs, in an element that browsers neither run nor show.
 std::string html_data(std::string_view id, std::string_view json);
 
-/// The bytes in base 64 (RFC 4648), for data URLs.
-std::string base64(std::string_view bytes);
-
 /// A section of the page, with a heading.
 struct PageSection {
   std::string_view id, title;

@@ -187,7 +187,8 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& p
                                   const std::string& id) {
   std::vector<Chart> charts;
   const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
-  if (std::ranges::find(one_thread, baseline_name) == one_thread.end()) return charts;
+  if (std::ranges::none_of(one_thread, is_baseline)) return charts;
+  const std::vector<const ResultRow*> all = pointers_to(scenes.rows());
   for (const PaperLegend::Integrator& integrator : scenes.legend().integrators) {
     if (integrator.name != integrator.paper_name) continue;
     Chart chart =
@@ -205,8 +206,8 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& p
       for (const std::string& backend : backends) {
         Series measured = measured_series(look_of(scenes.rows(), backend, provenance));
         for (const PaperScene& scene : scenes.scenes()) {
-          const auto speedup = times_as_fast(scenes.row(scene, backend, integrator.name),
-                                             scenes.row(scene, baseline_name, integrator.name));
+          const ResultRow* row = scenes.row(scene, backend, integrator.name);
+          const auto speedup = times_as_fast(row, row != nullptr ? baseline_of(all, *row) : nullptr);
           if (!speedup) continue;
           add_point(measured, scene.nodes, speedup->ratio);
           measured.low.push_back(speedup->low);

@@ -564,7 +564,7 @@ Table times_of(RowPointers rows, const ReportFolder& folder) {
                {"verified"}},
               {}};
   for (const ResultRow* row : rows) {
-    const ResultRow* serial = find_row(all, row->scene, baseline_name, row->integrator);
+    const ResultRow* serial = baseline_of(all, *row);
     const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
     const bool shown = counts(*row);
     Cell published = row->paper_ms;

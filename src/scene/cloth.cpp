@@ -14,13 +14,9 @@
 namespace mssim {
 namespace {
 
-/// Ratio of the ripple's displacement in the plane to that out of it. A small ripple only out of the plane
-/// would strain the springs in second order only.
-constexpr double in_plane_share = 0.5;
-
 /// Largest height of the ripple over its wavelength. The displacement u in the plane has a gradient of at
-/// most sqrt(2) in_plane_share height 2 pi / wavelength in the Frobenius norm; below 1 no two nodes can
-/// coincide, and at this slope it is 0.44.
+/// most sqrt(2) ripple_in_plane_share height 2 pi / wavelength in the Frobenius norm; below 1 no two nodes
+/// can coincide, and at this slope it is 0.44.
 constexpr double steepest_ripple = 0.1;
 
 const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.content); }
@@ -56,20 +52,14 @@ class Ripple {
   static constexpr std::size_t position = 0, velocity = 3;
 
  private:
-  static constexpr std::size_t components = 6;
-  /// Phases along x and z, in radians. A component is zero along lines of constant x and of constant z. No
-  /// two phases of the velocity on one axis differ by a multiple of pi, so no point is on zero lines of all
-  /// three, and no node starts at rest.
-  static constexpr std::array<std::array<double, 2>, components> phase{
-      {{0.2, 0.9}, {1.2, 1.9}, {2.2, 2.9}, {0.4, 1.3}, {1.5, 2.5}, {2.6, 0.3}}};
-
+  static constexpr std::size_t components = ripple_phases.size();
   using Sines = std::vector<std::array<double, components>>;
   static Sines sines(const ClothSpec& cloth, std::uint32_t count, std::size_t axis) {
     const double wave_number = 2 * std::numbers::pi / cloth.ripple.wavelength_m;
     Sines result(count);
     for (std::uint32_t i = 0; i < count; ++i)
       for (std::size_t c = 0; c < components; ++c)
-        result[i][c] = std::sin(wave_number * (i * cloth.spacing_m) + phase[c][axis]);
+        result[i][c] = std::sin(wave_number * (i * cloth.spacing_m) + ripple_phases[c][axis]);
     return result;
   }
 
@@ -185,7 +175,7 @@ System build_cloth_window(const SceneSpec& spec, const GridWindow& window) {
       } else {
         velocity = speed * ripple.at(row, column, Ripple::velocity);
         const Vec3d wave = ripple.at(row, column, Ripple::position);
-        position += height * Vec3d{in_plane_share * wave.x, wave.y, in_plane_share * wave.z};
+        position += height * Vec3d{ripple_in_plane_share * wave.x, wave.y, ripple_in_plane_share * wave.z};
       }
       system.start.position.push_back(position);
       system.start.velocity.push_back(velocity);

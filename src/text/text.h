@@ -148,4 +148,7 @@ std::string bar(double fraction, std::size_t width, bool utf8);
 /// The text without the byte-order mark that some editors and spreadsheets put before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// The bytes in base 64 (RFC 4648), for pages that hold pictures or data.
+std::string base64(std::string_view bytes);
+
 }  // namespace mssim

@@ -208,6 +208,8 @@ PaperLegend paper_legend() {
     for (const std::string_view variant : variants)
       if (is_variant(variant, backend->name)) add(variant);
   }
+  for (const BrowserBackend& backend : browser_backends)
+    legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
   for (const Integrator* integrator : all_integrators)
     legend.integrators.push_back({std::string(integrator->name), std::string(integrator->paper_name),
                                   static_cast<int>(integrator->stage_count)});

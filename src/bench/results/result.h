@@ -15,6 +15,23 @@ namespace mssim {
 /// The backend that the others are compared with (speedup_vs_serial): the one marked BackendRole::baseline.
 inline constexpr std::string_view baseline_name = "serial";
 
+/// A row of the TABLE of backends that the page of `mssim web` measures in a browser.
+struct BrowserBackend {
+  std::string_view name;
+  std::string_view paper_configuration;  ///< as BackendInfo::paper_configuration
+};
+inline constexpr auto browser_backends = std::to_array<BrowserBackend>({
+    {"javascript", "cpu-only"},
+    {"webgpu", "gpu"},
+});
+/// What `serial` is to the others, in a browser.
+inline constexpr std::string_view browser_baseline_name = browser_backends[0].name;
+
+/// Whether other backends are compared with this one.
+inline bool is_baseline(std::string_view backend) {
+  return backend == baseline_name || backend == browser_baseline_name;
+}
+
 /// Suffix, before a number of threads, of the names of rows that step one body after the other.
 inline constexpr std::string_view each_suffix = ":each";
 
@@ -134,7 +151,9 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      "process",
      &ResultRow::roofline_fraction},
     {"speedup_vs_serial", "",
-     "times as fast as `serial`: the median of the ratios within each round; empty without `serial`",
+     "times as fast as `serial`, or as `javascript` in a browser: the median of the ratios within each "
+     "round; "
+     "empty without it",
      &ResultRow::speedup_vs_serial},
     {"paper_ms", "ms", "time published for this scene, integrator and configuration", &ResultRow::paper_ms},
     {"position_error", "",

@@ -250,7 +250,7 @@ class PaperTable {
       Cell& cell = cells.emplace_back(measured_cell(row, timing.ms));
       if (!timing.ms) continue;
       cell.suffix = mark_of_excess(*row, provenance_);
-      if (timing.speedup && backend.name != baseline_name)
+      if (timing.speedup && !is_baseline(backend.name))
         cell.suffix.append(in_brackets(*timing.speedup)).append(mark_of_speedup(rows_, *row));
     }
     return cells;

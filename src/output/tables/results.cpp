@@ -57,6 +57,11 @@ const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_
   return row == rows.end() ? nullptr : *row;
 }
 
+const ResultRow* baseline_of(RowPointers rows, const ResultRow& row) {
+  const ResultRow* serial = find_row(rows, row.scene, baseline_name, row.integrator);
+  return serial != nullptr ? serial : find_row(rows, row.scene, browser_baseline_name, row.integrator);
+}
+
 std::string made_by(const Provenance& provenance) {
   const BuildInfo& build = provenance.build;
   return fmt::format("mssim {}, commit {}{}; {}", build.version, build.commit.substr(0, 12),
@@ -139,7 +144,7 @@ Column scene_column(const ResultRow& row) { return {row.scene + '\n' + grouped(r
 std::string in_brackets(double ratio) { return " (" + three_digits(ratio) + "×)"; }
 
 std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row) {
-  const ResultRow* serial = find_row(rows, row.scene, baseline_name, row.integrator);
+  const ResultRow* serial = baseline_of(rows, row);
   if (serial == nullptr || !serial->ms_per_step || !row.ms_per_step || !row.speedup_vs_serial) return "";
   return mark_of_ratio(*row.speedup_vs_serial, *serial->ms_per_step, *row.ms_per_step);
 }
@@ -173,7 +178,7 @@ std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow
 }
 
 std::string reason_without_speedups(std::span<const std::string_view> backends) {
-  if (backends.empty() || std::ranges::find(backends, baseline_name) != backends.end()) return {};
+  if (backends.empty() || std::ranges::any_of(backends, is_baseline)) return {};
   std::string all(baseline_name);
   for (const std::string_view backend : backends) {
     const std::size_t colon = backend.rfind(':');  // before a number of threads

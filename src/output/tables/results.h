@@ -152,6 +152,9 @@ using TableMaker =
 const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_view backend,
                           std::string_view integrator);
 
+/// The row that this one is compared with, is_baseline(), of its scene and integrator; null if there is none.
+const ResultRow* baseline_of(RowPointers rows, const ResultRow& row);
+
 /// Version, commit and time, without a full stop.
 std::string made_by(const Provenance& provenance);
 

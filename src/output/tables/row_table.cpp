@@ -57,9 +57,9 @@ RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
   const double ratio = *row.speedup_vs_serial;
   const std::string_view mark = mark_of_speedup(rows, row);
   return {three_digits(ratio) + (utf8 ? "×" : "x"),
-          row.backend == baseline_name ? dim
-          : ratio < 1                  ? red
-                                       : green,
+          is_baseline(row.backend) ? dim
+          : ratio < 1              ? red
+                                   : green,
           mark.empty() || utf8 ? mark : ascii_ratio_mark};
 }
 

@@ -1,0 +1,80 @@
+#include "web/web.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "application/bench/suites.h"
+#include "application/outputs.h"
+#include "commands/command.h"
+#include "output/folders/result_folder.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct WebOptions {
+  std::string out, results = "web-results";
+  bool serve = false, once = false;
+  int port = 0;
+};
+
+/// Writes what a page has sent into a folder of its own, named by its start, and says which.
+std::string keep(const fs::path& results, const std::string& text) {
+  const MeasuredRun run = parse_web_results("the page's results", text);
+  std::string name = run.provenance.started_utc;
+  std::ranges::replace_if(
+      name, [](char c) { return std::string_view("0123456789-TZ").find(c) == std::string_view::npos; }, '-');
+  const fs::path folder = results / name;
+  ResultFolder written(folder, run.provenance, comparison_of_suite("tables").tables());
+  written.replace_results();
+  written.write(run.rows);
+  std::cerr << "mssim: wrote " << printable(folder.string()) << '\n';
+  return folder.string();
+}
+
+int web(const WebOptions& options) {
+  if (options.out.empty() && !options.serve)
+    throw UsageError("give --out FILE.html to write the page, or --serve to serve it");
+  if (!options.out.empty()) {
+    const fs::path out = target_of(options.out);
+    require_extension({"--out", out}, "HTML", {".html", ".htm"});
+    AtomicFile(out).remove();  // finds what cannot be written before bodies are meshed
+    const std::string page = web_page();
+    write_file_atomically(out, page);
+    std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
+    return exit_ok;
+  }
+  serve_page(
+      web_page(), options.port, options.once,
+      [&](const std::string& text) { return keep(options.results, text); },
+      [](const std::string& address) { std::cout << address << std::endl; });
+  return exit_ok;
+}
+
+}  // namespace
+
+std::function<int()> declare_web(Arguments& arguments) {
+  const auto options = std::make_shared<WebOptions>();
+  const Argument out =
+      arguments.add("--out FILE", options->out, "Write the page to this file, for any static host");
+  Argument serve = arguments.add_flag(
+      "--serve", options->serve, "Serve the page on this machine's loopback address, and print the address");
+  serve.excludes(out);
+  arguments
+      .add("--results DIR", options->results,
+           "With --serve: folder for the results that pages send, a folder each (default: web-results)")
+      .needs(serve);
+  arguments
+      .add_number("--port N", options->port, "With --serve: port (default: any free one)",
+                  whole_number(0, 65535))
+      .needs(serve);
+  arguments.add_flag("--once", options->once, "With --serve: end after the first result").needs(serve);
+  return [options] { return web(*options); };
+}
+
+}  // namespace mssim

@@ -1,0 +1,204 @@
+// What the page shows, and the buttons. ?auto=SCENE,... measures at once, and sends the results to mssim web --serve; further
+// settings in the address: integrators=NAME,..., rounds=N, seconds=S (of a sample), webgpu=no.
+'use strict';
+
+const element = id => document.getElementById(id);
+const address = new URLSearchParams(location.search);
+const listIn = name => (address.get(name) || '').split(',').filter(Boolean);
+const digits = value => Number(value.toPrecision(3)).toString();
+const create = (tag, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+};
+let session, adapter, lock;
+
+// The device.
+
+async function openDevice() {
+  if (address.get('webgpu') === 'no' || !navigator.gpu) return null;
+  adapter = await navigator.gpu.requestAdapter({powerPreference: 'high-performance'});
+  // The most that the adapter offers, so that no default limit shuts out a scene.
+  const wanted = ['maxStorageBufferBindingSize', 'maxBufferSize'];
+  return adapter && adapter.requestDevice({requiredLimits: Object.fromEntries(wanted.map(name => [name, adapter.limits[name]]))});
+}
+
+function adapterName() {
+  const {description, vendor, architecture, device} = adapter?.info || {};
+  return description || [vendor, architecture, device].filter(Boolean).join(' ') || 'an adapter without a name';
+}
+
+function missingWebGpu() {
+  if (!isSecureContext) return 'WebGPU needs a page from https or from localhost, and this page is from neither.';
+  if (!navigator.gpu) return 'This browser has no WebGPU.';
+  return 'This browser has WebGPU, but offers no adapter.';
+}
+
+async function about() {
+  const hints = await navigator.userAgentData?.getHighEntropyValues?.(['model', 'platformVersion', 'fullVersionList']).catch(() => 0) || {};
+  const system = [hints.platform, hints.platformVersion].filter(Boolean).join(' ') || navigator.platform || 'an unnamed system';
+  return {
+    settings: [location.search].filter(Boolean), device: hints.model || `a device with ${system}`, system,
+    browser: navigator.userAgent, logicalCpus: navigator.hardwareConcurrency || 0, memoryBytes: (navigator.deviceMemory || 0) * 2 ** 30,
+    adapters: adapter ? [`WebGPU: ${adapterName()}`] : [],
+    limits: adapter ? [`the adapter's limits: ${['maxStorageBufferBindingSize', 'maxBufferSize', 'maxComputeWorkgroupsPerDimension']
+      .map(name => `${name} ${adapter.limits[name]}`).join(', ')}`] : [],
+  };
+}
+
+// Results.
+
+function showRows({rows}) {
+  element('rows').replaceChildren(...rows.map(row => {
+    const scene = data.scenes.find(({name}) => name === row.scene);
+    const {paper_name} = data.integrators.find(({name}) => name === row.integrator);
+    const published = name => scene.published[paper_name]?.[name];
+    const together = published('gpu+multi-thread-cpu'), timed = row.status === 'ok' && row.ms_per_step;
+    const verdict = row.verified ? `verified, error ${digits(row.position_error)}` : row.status === 'ok' ? '' : row.status;
+    return create('tr', {}, create('th', {scope: 'row', textContent: `${row.scene} (${row.nodes.toLocaleString('en')})`}), ...[
+      row.integrator, row.backend, timed ? digits(row.ms_per_step) : '', timed ? `${digits(row.ms_per_step_low)} to ${digits(row.ms_per_step_high)}` : '',
+      timed && row.speedup ? `${digits(row.speedup)}×` : '', timed && row.drift ? row.drift.toFixed(2) : '',
+      published('cpu-only') ?? '', published('gpu') ?? (together ? `${together} with threads` : ''),
+      row.verified && row.status !== 'ok' ? `${verdict}; ${row.status}` : verdict,
+    ].map((text, i) => create('td', {textContent: text, className: i === 8 && !row.verified ? 'bad' : ''})));
+  }));
+}
+
+/** The speed-ups of cloths over one thread, published and measured: the chart of Table 1. */
+function showChart({rows}) {
+  const cloths = data.scenes.filter(({kind}) => kind === 'cloth'), name = 'semi-euler', lines = [];
+  const add = (label, colour, dash, of) => {
+    const points = cloths.map(scene => [scene.nodes, of(scene)]).filter(([, value]) => value > 0);
+    if (points.length) lines.push({label, colour, dash, points});
+  };
+  for (const configuration of ['gpu', 'multi-thread-cpu'])
+    add(`published ${configuration === 'gpu' ? 'GPU' : 'threads'}, ${data.paper_device}`, 'var(--two)', configuration === 'gpu' ? '' : '3 4',
+        ({published}) => published[name]?.['cpu-only'] / published[name]?.[configuration]);
+  add('webgpu here', 'var(--one)', '', scene => rows.find(row =>
+    row.scene === scene.name && row.integrator === name && row.backend === 'webgpu' && row.status === 'ok')?.speedup);
+  const all = lines.flatMap(({points}) => points.map(([, value]) => value));
+  if (!lines.some(({label}) => label.endsWith('here'))) return element('chart').replaceChildren();
+  const width = Math.max(300, Math.min(element('chart').clientWidth, 720)), height = 320, left = 48, log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
+  const xs = [2000, 400000], ys = [Math.min(1, ...all) / 1.2, Math.max(...all) * 1.2];
+  const x = nodes => left + (width - left - 12) * log(nodes, xs), y = value => height - 32 - (height - 44 - 16 * lines.length) * log(value, ys);
+  let svg = '';
+  for (const nodes of [2500, 10000, 40000, 350000])
+    svg += `<text x="${x(nodes)}" y="${height - 12}" text-anchor="middle">${nodes.toLocaleString('en')}</text>`;
+  for (let value = 10 ** Math.ceil(Math.log10(ys[0])); value <= ys[1]; value *= 10)
+    svg += `<text x="${left - 6}" y="${y(value) + 4}" text-anchor="end">${value}×</text>` +
+      `<line x1="${left}" x2="${width}" y1="${y(value)}" y2="${y(value)}" stroke="var(--line)" stroke-width="0.5"/>`;
+  lines.forEach(({label, colour, dash, points}, i) => {
+    svg += `<polyline fill="none" stroke="${colour}" stroke-width="2.5" stroke-dasharray="${dash}" points="${points.map(([nodes, value]) => `${x(nodes)},${y(value)}`).join(' ')}"/>` +
+      points.map(([nodes, value]) => `<circle r="4" cx="${x(nodes)}" cy="${y(value)}" fill="${colour}"/>`).join('') +
+      `<line x1="${left}" x2="${left + 28}" y1="${12 + 16 * i}" y2="${12 + 16 * i}" stroke="${colour}" stroke-width="2.5" stroke-dasharray="${dash}"/>` +
+      `<text x="${left + 34}" y="${16 + 16 * i}">${label}</text>`;
+  });
+  element('chart').innerHTML = `<figcaption>Cloth, ${name}: times as fast as one thread, against nodes. The table has the numbers.</figcaption>` +
+    `<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="Speed-ups of cloths over one thread, published and measured">${svg}</svg>`;
+}
+
+function show(its) {
+  const left = its.left();
+  element('state').textContent = its.finished ? `Done: ${its.rows.filter(row => row.verified).length} of ${its.rows.length} rows are verified.`
+    : its.what + (left > 0 ? `; about ${left < 90000 ? `${Math.ceil(left / 1000)} s` : `${Math.ceil(left / 60000)} min`} left` : '');
+  element('bar').value = its.finished ? 1 : its.done / its.units;
+  const notes = its.drift() > 1.05 ? [...its.notes, `a row became ${((its.drift() - 1) * 100).toFixed(0)} % slower over its rounds: the device may be hot`] : its.notes;
+  element('notes').replaceChildren(...notes.map(note => create('li', {textContent: note})));
+  showRows(its);
+  showChart(its);
+  for (const id of ['save', 'send']) element(id).disabled = !its.rows.some(row => row.samples.length || row.status !== 'ok');
+}
+
+// The cloth, while nothing is timed.
+
+async function animate() {
+  const scene = data.scenes[0], integrator = data.integrators[0], system = buildSystem(scene), {rows, columns} = scene.grid;
+  const backend = new ListBackend(system, integrator, scene.dt, Float32Array), canvas = element('cloth'), pen = canvas.getContext('2d');
+  await backend.setState(system.start);
+  const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  let frame = 0;
+  const draw = () => {
+    if (!session || session.finished) {
+      if (frame++ > 1500) backend.setState(system.start), frame = 0;
+      backend.steps(backend.list, still ? 2000 : 30);
+      const at = backend.list.pairs[0], place = node => {
+        const x = at[6 * node] - 0.245, y = at[6 * node + 1], z = at[6 * node + 2];
+        return [320 + 560 * (0.9 * x - 0.35 * z), 270 - 480 * y - 90 * (z + 0.3 * x)];
+      };
+      pen.clearRect(0, 0, canvas.width, canvas.height);
+      pen.strokeStyle = getComputedStyle(document.body).color;
+      pen.lineWidth = 0.6;
+      pen.beginPath();
+      for (let row = 0; row < rows; ++row)
+        for (let column = 0; column < columns; ++column) {
+          const node = row * columns + column;
+          if (column + 1 < columns) pen.moveTo(...place(node)), pen.lineTo(...place(node + 1));
+          if (row + 1 < rows) pen.moveTo(...place(node)), pen.lineTo(...place(node + columns));
+        }
+      pen.stroke();
+    }
+    if (!still) requestAnimationFrame(draw);
+  };
+  draw();
+}
+
+// Buttons.
+
+const chosen = id => [...element(id).querySelectorAll('input:checked')].map(({value}) => value);
+
+async function measure() {
+  const options = {scenes: chosen('scenes'), integrators: chosen('integrators'), rounds: Number(element('rounds').value) || 10,
+                   sampleSeconds: Number(address.get('seconds')) || 0.1};
+  if (session && !session.finished) return;
+  if (!options.scenes.length || !options.integrators.length) return void (element('state').textContent = 'Choose a scene and an integrator.');
+  element('start').disabled = true;
+  element('stop').disabled = false;
+  const device = await openDevice().catch(() => null);
+  lock = await navigator.wakeLock?.request('screen').catch(() => null);  // a phone that sleeps ends the measurement
+  session = new Session(options, device, adapterName(), show);
+  if (address.get('lose')) setTimeout(() => device?.destroy(), 1000 * Number(address.get('lose')));
+  show(session);
+  await session.run();
+  lock?.release();
+  device?.destroy();
+  element('start').disabled = false;
+  element('stop').disabled = true;
+}
+
+async function send() {
+  const answer = await fetch('/results', {method: 'POST', body: session.results(await about())}).catch(error => error);
+  element('sent').textContent = answer.ok ? `mssim has written ${await answer.text()}.` : `mssim has not taken them: ${answer.text ? await answer.text() : answer.message}`;
+}
+
+element('choices').addEventListener('submit', event => {
+  event.preventDefault();
+  measure();
+});
+element('stop').addEventListener('click', () => session.stopping = true);
+element('save').addEventListener('click', async () => {
+  const url = URL.createObjectURL(new Blob([session.results(await about())], {type: 'application/json'}));
+  create('a', {href: url, download: `mssim-web-${session.started.replaceAll(':', '-')}.json`}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 60000);
+});
+element('send').addEventListener('click', send);
+element('send').hidden = !['localhost', '127.0.0.1'].includes(location.hostname);
+
+const box = (value, checked) => create('label', {}, create('input', {type: 'checkbox', value, checked}), value);
+const [autoScenes, integrators] = [listIn('auto'), listIn('integrators')];
+element('scenes').append(...data.scenes.map(({name}) => box(name, !autoScenes.length || autoScenes.includes(name))));
+element('integrators').append(...data.integrators.map(({name, paper_name}) =>
+  box(name, integrators.length ? integrators.includes(name) : name === paper_name)));
+if (address.get('rounds')) element('rounds').value = address.get('rounds');
+const {version, commit, dirty} = data.provenance.build;
+element('version').textContent = `Made by mssim ${version}, commit ${commit.slice(0, 12)}${dirty ? ' with changes' : ''}.`;
+
+(async () => {
+  const device = await openDevice().catch(() => null);
+  element('support').textContent = device ? `WebGPU runs on ${adapterName()}.` : `${missingWebGpu()} Only JavaScript will be measured.`;
+  device?.destroy();
+  await animate();
+  if (autoScenes.length) {
+    await measure();
+    await send();
+  }
+})();

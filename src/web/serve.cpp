@@ -1,0 +1,118 @@
+#include <netinet/in.h>
+#include <strings.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "platform/process.h"
+#include "text/error.h"
+#include "text/text.h"
+#include "web/web.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t largest_request_bytes = std::size_t{64} << 20;
+
+/// A listening socket on the loopback address, which no other machine can reach.
+Descriptor listener(int port, std::string& address) {
+  Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  at.sin_port = htons(static_cast<std::uint16_t>(port));
+  socklen_t size = sizeof at;
+  auto* name = reinterpret_cast<sockaddr*>(&at);
+  if (::bind(socket.get(), name, size) != 0 || ::listen(socket.get(), 8) != 0 ||
+      ::getsockname(socket.get(), name, &size) != 0)
+    throw UsageError("cannot serve on port {} ({}): give another --port", port, std::strerror(errno));
+  address = fmt::format("http://localhost:{}/", ntohs(at.sin_port));
+  return socket;
+}
+
+/// The value of a header of a request, whose names have any case; empty if it has none.
+std::string header(std::string_view head, const std::string& name) {
+  for (std::size_t line = head.find("\r\n"); line != std::string_view::npos;
+       line = head.find("\r\n", line + 2)) {
+    const std::string_view rest = head.substr(line + 2);
+    if (rest.size() > name.size() && ::strncasecmp(rest.data(), name.data(), name.size()) == 0 &&
+        rest[name.size()] == ':') {
+      std::string_view value = rest.substr(name.size() + 1, rest.find("\r\n") - name.size() - 1);
+      while (value.starts_with(' ')) value.remove_prefix(1);
+      return std::string(value);
+    }
+  }
+  return {};
+}
+
+struct Request {
+  std::string line, body;  ///< the first line, for example "GET / HTTP/1.1"
+};
+
+/// Reads a request; an empty line if it is none, or too large.
+Request read_request(int socket) {
+  std::string text;
+  std::size_t end = std::string::npos, length = 0;
+  std::array<char, 65536> bytes;
+  while (end == std::string::npos || text.size() < end + 4 + length) {
+    const ssize_t count = ::recv(socket, bytes.data(), bytes.size(), 0);
+    if (count <= 0 || text.size() > largest_request_bytes) return {};
+    text.append(bytes.data(), static_cast<std::size_t>(count));
+    if (end != std::string::npos || (end = text.find("\r\n\r\n")) == std::string::npos) continue;
+    const std::string_view head = std::string_view(text).substr(0, end + 2);
+    // A page of another host, whose name may lead here, must not post results.
+    if (!header(head, "Host").starts_with("localhost:") && !header(head, "Host").starts_with("127.0.0.1:"))
+      return {};
+    length = number_in<std::size_t>(header(head, "Content-Length")).value_or(0);
+    if (length > largest_request_bytes) return {};
+  }
+  return {text.substr(0, text.find("\r\n")), text.substr(end + 4, length)};
+}
+
+void answer(int socket, std::string_view status, std::string_view type, std::string_view body) {
+  // Isolation from other origins makes the browser's clock finer.
+  std::string text = fmt::format(
+      "HTTP/1.1 {}\r\nContent-Type: {}; charset=utf-8\r\nContent-Length: {}\r\nConnection: close\r\n"
+      "Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\r\n",
+      status, type, body.size());
+  text += body;
+  for (std::string_view rest = text; !rest.empty();) {
+    const ssize_t count = ::send(socket, rest.data(), rest.size(), MSG_NOSIGNAL);
+    if (count <= 0) return;
+    rest.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+}  // namespace
+
+void serve_page(const std::string& page, int port, bool once,
+                const std::function<std::string(const std::string& text)>& taken,
+                const std::function<void(const std::string& address)>& ready) {
+  std::string address;
+  const Descriptor socket = listener(port, address);
+  ready(address);
+  for (;;) {
+    const Descriptor connection(::accept4(socket.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (!connection.is_open()) continue;
+    // A browser may connect long before it asks, or never ask.
+    const timeval patience{.tv_sec = 2, .tv_usec = 0};
+    ::setsockopt(connection.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    const Request request = read_request(connection.get());
+    if (request.line.starts_with("GET / ") || request.line.starts_with("GET /?")) {
+      answer(connection.get(), "200 OK", "text/html", page);
+    } else if (request.line.starts_with("POST /results ")) {
+      try {
+        answer(connection.get(), "200 OK", "text/plain", taken(request.body));
+        if (once) return;
+      } catch (const Error& error) {
+        answer(connection.get(), "400 Bad Request", "text/plain", error.what());
+      }
+    } else if (!request.line.empty()) {
+      answer(connection.get(), "404 Not Found", "text/plain", "there is only the page /");
+    }
+  }
+}
+
+}  // namespace mssim

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# mssim web: the page measures and verifies in a real browser, notices wrong kernels, and says when a device is lost or missing; report
+# and compare read what it saves, and refuse what is damaged.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+expect 2 --serve web
+expect 2 html web --out page.txt
+expect 2 --serve web --out page.html --serve
+expect 2 --serve web --out page.html --port 8000
+
+ends 0 web --out page.html
+(($(stat -c %s page.html) < 8000000)) || fail "the page has more than 8 MB"
+if grep -qE '(src|href)="?https?:|@import|import\(' page.html; then fail "the page needs something beside it"; fi
+
+chromium=$(command -v chromium) || {
+  echo "chromium is missing: the page is not opened" >&2
+  exit 77
+}
+python3 "$2/tests/commands/web.py" "$chromium" page.html . || fail "the page in the browser"
+
+# What it saved, beside a folder.
+ends 0 report result.json lost.json without.json "$2/results/table1/zen5" --no-runs --out report.html
+grep -q 'webgpu, ' report.html || fail "the report does not name the device"
+grep -q 'result.json' report.html || fail "the report does not name the file"
+ends 0 compare result.json result.json
+says javascript
+
+# damaged PATTERN EDIT: a result changed by a statement of Python on its document d is refused
+damaged() {
+  python3 -c 'import json, sys
+d = json.load(open("result.json"))
+exec(sys.argv[1])
+json.dump(d, open("damaged.json", "w"))' "$2"
+  expect 2 "$1" report damaged.json --no-runs --out damaged.html
+  [[ ! -e damaged.html ]] || fail "a report of a damaged file: $2"
+}
+damaged 'damaged.json' 'd["mssim_web_results"] = 2'
+damaged 'my-gpu' 'd["timings_csv"] = d["timings_csv"].replace("javascript", "my-gpu"); d["samples_csv"] = d["samples_csv"].replace("javascript", "my-gpu")'
+damaged 'best-euler' 'd["timings_csv"] = d["timings_csv"].replace("semi-euler", "best-euler")'
+damaged 'samples' 'd["samples_csv"] = d["samples_csv"].splitlines()[0] + "\n"'
+damaged 'samples' 'd["samples_csv"] = d["samples_csv"].replace(d["samples_csv"].splitlines()[1].split(",")[5], "1e-6")'
+damaged 'samples_csv' 'del d["samples_csv"]'
+damaged 'build' 'd["provenance"]["build"] = 1'
+head -c 1000 result.json >cut.json
+expect 2 cut.json report cut.json --no-runs --out damaged.html
+
+# The page sends its results to mssim.
+begins web --serve --once --results sent
+soon 60 test -s "$work/out" || fail "mssim does not serve the page"
+profile=$(mktemp -d)
+"$chromium" --headless=new --no-sandbox --user-data-dir="$profile" --remote-debugging-port=0 \
+  "$(<"$work/out")?auto=cloth2500&rounds=2&seconds=0.002&integrators=semi-euler" >/dev/null 2>&1 &
+browser=$!
+soon 60 is_gone "$process" || fail "mssim takes no result"
+kill "$browser"
+wait "$browser" || true
+rm -rf "$profile"
+grep -q '^cloth2500,2500,.*,javascript,cpu,1,semi-euler,.*,true,ok' sent/*/timings.csv || fail "mssim has not written what it was sent"
+ends 0 report sent --no-runs --out sent.html
