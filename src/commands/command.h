@@ -32,6 +32,7 @@ std::function<int()> declare_compare(Arguments& arguments);
 std::function<int()> declare_report(Arguments& arguments);
 std::function<int()> declare_measure(Arguments& arguments);
 std::function<int()> declare_new_backend(Arguments& arguments);
+std::function<int()> declare_doctor(Arguments& arguments);
 std::function<int()> declare_list(Arguments& arguments);
 std::function<int()> declare_help(Arguments& arguments);
 

@@ -205,7 +205,7 @@ int report(const ReportOptions& options) {
 std::function<int()> declare_report(Arguments& arguments) {
   const auto options = std::make_shared<ReportOptions>();
   arguments
-      .add_list("DIR...", options->folders,
+      .add_list("DIR... DIR", options->folders,
                 "Folders that mssim bench --out wrote; a folder of such folders stands for all in it",
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })
       .required();
