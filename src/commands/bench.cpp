@@ -278,15 +278,15 @@ std::function<int()> declare_bench(Arguments& arguments) {
                 "Scenes, and what to compare on them: " + listed(suites, "or") +
                     " (see mssim list suites); tables stands for table1, table2 and table3",
                 one_of("suite", names, {{"all", "tables"}}));
-  arguments.add_list(
-      "--backend NAME|FILE,...", options->backends,
+  add_backends(
+      arguments, options->backends,
       "Backends, or methods with --suite races (default: all of mssim's); NAME:each steps each body for "
-      "itself, NAME:4 takes four threads; a path with a slash, or a described name, is a program of your own",
-      names_and_files_in);
+      "itself, NAME:4 takes four threads; a path with a slash, or a described name, is a program of your "
+      "own");
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);
-  arguments.add_list("--integrator NAME,...", options->integrators,
-                     fmt::format("Integrators, or all (default: {})", default_integrators()));
+  add_integrators(arguments, options->integrators,
+                  fmt::format("Integrators, or all (default: {})", default_integrators()));
   declare_execution(arguments, options->execution, &options->threads);
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",

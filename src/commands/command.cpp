@@ -50,6 +50,8 @@ constexpr auto table = std::to_array<Command>({
      "mssim web --serve --results results/phone", declare_web},
     {"new-backend", "Write a backend of your own to start from, in Python or C++",
      "mssim new-backend mine --language python", declare_new_backend},
+    {"doctor", "Check this machine: what mssim needs, what is missing, how to get it", "mssim doctor",
+     declare_doctor},
     {"list", "List scenes, suites, backends, methods, integrators, devices or a schema",
      "mssim list scenes --format csv", declare_list},
     {"help", "Show this page, or the page of a command", "mssim help bench", declare_help},
@@ -60,6 +62,10 @@ constexpr std::string_view exit_codes =
     "does not fit, or a comparison or a history shows a regression; 2 bad usage or\n"
     "input; 3 a requested device or program is missing; 4 a file could not be read\n"
     "or written.";
+
+/// mssim's first argument when a shell asks what may stand in the place of the last of the words that follow
+/// (src/completion).
+constexpr std::string_view complete_word = "--complete";
 
 /// A user may name a scene without --scene before it.
 std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }
@@ -132,7 +138,17 @@ int run_program(int argc, char** argv) {
   }
   parser.end_help_with(fmt::format(
       "mssim help COMMAND explains a command and its options.\n\nExamples:{}\n\n{}", examples, exit_codes));
-  const ProgramParser::Request request = parser.parse(argc, argv, option_of_scene);
+  if (argc > 1 && argv[1] == complete_word)
+    return run_guarded([&] {
+      std::cout << parser.completions(std::vector<std::string>(argv + 2, argv + argc)) << std::flush;
+      return exit_ok;
+    });
+  ProgramParser::Request request;
+  const auto parse = [&] {  // which looks scenes up
+    request = parser.parse(argc, argv, option_of_scene);
+    return exit_ok;
+  };
+  if (const int failed = run_guarded(parse); failed != exit_ok) return failed;
   if (!request.refusal.empty()) return fail(exit_bad_input, request.refusal);
   int code = exit_ok;
   if (!request.page.empty()) {

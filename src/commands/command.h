@@ -35,6 +35,7 @@ std::function<int()> declare_table(Arguments& arguments);
 std::function<int()> declare_measure(Arguments& arguments);
 std::function<int()> declare_web(Arguments& arguments);
 std::function<int()> declare_new_backend(Arguments& arguments);
+std::function<int()> declare_doctor(Arguments& arguments);
 std::function<int()> declare_list(Arguments& arguments);
 std::function<int()> declare_help(Arguments& arguments);
 

@@ -114,12 +114,12 @@ int run(CompareOptions options) {
 std::function<int()> declare_compare(Arguments& arguments) {
   const auto options = std::make_shared<CompareOptions>();
   arguments
-      .add("BASE", options->ab.base,
+      .add("BASE FOLDER|FILE", options->ab.base,
            "A folder that mssim bench --out wrote, a file in it, or one that the page of mssim web saved; "
-           "with "
-           "--ab an mssim program")
+           "with --ab an mssim program")
       .required();
-  arguments.add("NEW", options->ab.next, "Folder, file or program to compare with BASE").required();
+  arguments.add("NEW FOLDER|FILE", options->ab.next, "Folder, file or program to compare with BASE")
+      .required();
   arguments.add_number("--threshold PERCENT", options->threshold_percent,
                        "Smallest change that counts, in percent (default: 5)", positive_number());
   arguments.add_choice<ComparisonFormat>("--format", options->format,
@@ -137,16 +137,12 @@ std::function<int()> declare_compare(Arguments& arguments) {
                 "Compare runs of different machines, builds, threads or scenes anyway")
       .excludes(ab);
   add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
-  arguments
-      .add_list("--backend NAME|FILE,...", options->ab.backends,
-                "With --ab: backends, which may be programs of your own (default: openmp)",
-                names_and_files_in)
+  add_backends(arguments, options->ab.backends,
+               "With --ab: backends, which may be programs of your own (default: openmp)")
       .needs(ab);
   declare_backend_folders(arguments, options->ab.own_backends).needs(ab);
   declare_backend_limit(arguments, options->ab.own_backends).needs(ab);
-  arguments
-      .add_list("--integrator NAME,...", options->ab.integrators,
-                "With --ab: integrators (default: semi-euler)")
+  add_integrators(arguments, options->ab.integrators, "With --ab: integrators (default: semi-euler)")
       .needs(ab);
   arguments
       .add_number("--threads N", options->ab.threads, "With --ab: threads (default: one per available CPU)",

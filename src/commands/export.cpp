@@ -104,7 +104,7 @@ int run(const ExportOptions& options) {
 
 std::function<int()> declare_export(Arguments& arguments) {
   const auto options = std::make_shared<ExportOptions>();
-  arguments.add("TRACE", options->trace, "Trace to export, NAME.h5 (mssim run --trace)").required();
+  arguments.add("TRACE FILE", options->trace, "Trace to export, NAME.h5 (mssim run --trace)").required();
   arguments
       .add_choice("--format", options->format,
                   {{"obj", ExportFormat::obj}, {"ply", ExportFormat::ply}, {"vtkhdf", ExportFormat::vtkhdf}},

@@ -77,11 +77,8 @@ std::string steps_of(const BackendInfo& backend) {
 
 Table list_backends(const ListOptions& options) {
   Table table;
-  std::vector<const BackendInfo*> all = with_garment_backends(table_backends());
-  BackendChoice choice(all, options.own_backends);
-  std::ranges::copy(choice.shipped(), std::back_inserter(all));
-  std::ranges::copy(choice.described(), std::back_inserter(all));
-  for (const BackendInfo* backend : all) {
+  BackendChoice choice(with_garment_backends(table_backends()), options.own_backends);
+  for (const BackendInfo* backend : every_backend(choice)) {
     const std::string reason = unavailable_reason(*backend, options.execution);
     table.add({{"backend", backend->name},
                {"steps", steps_of(*backend)},

@@ -337,7 +337,9 @@ std::map<std::string, std::optional<Value>> choices_of(const std::array<std::str
 
 std::function<int()> declare_measure(Arguments& arguments) {
   const auto options = std::make_shared<MeasureOptions>();
-  arguments.add("BODY", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
+  arguments
+      .add("BODY FILE|NAME", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
+      .offers(scene_names)
       .required();
   arguments.add(
       "--unit UNIT", options->unit,

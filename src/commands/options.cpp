@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
+#include "integrators/all_integrators.h"
 #include "picture/picture.h"
 #include "scene/scene_file.h"
 #include "text/error.h"
@@ -142,12 +144,50 @@ std::vector<std::string> names_and_files_in(std::string_view argument) {
   return names;
 }
 
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const SceneSpec& spec : shipped_scenes()) names.push_back(spec.name);
+  return names;
+}
+
+std::vector<const BackendInfo*> every_backend(BackendChoice& choice) {
+  std::vector<const BackendInfo*> all = with_garment_backends(table_backends());
+  std::ranges::copy(choice.shipped(), std::back_inserter(all));
+  std::ranges::copy(choice.described(), std::back_inserter(all));
+  return all;
+}
+
+std::vector<std::string> backend_names() {
+  BackendChoice choice(with_garment_backends(table_backends()), {});
+  std::vector<std::string> names;
+  for (const BackendInfo* backend : every_backend(choice)) names.emplace_back(backend->name);
+  return names;
+}
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const Integrator* integrator : all_integrators) names.emplace_back(integrator->name);
+  return names;
+}
+
 Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,
                     const std::string& description) {
-  return arguments.add_list(
-      name + " NAME|FILE,...", target,
-      description + ", separated by commas (but not at a comma in the name of an existing file)",
-      names_and_files_in);
+  return arguments
+      .add_list(name + " NAME|FILE,...", target,
+                description + ", separated by commas (but not at a comma in the name of an existing file)",
+                names_and_files_in)
+      .offers(scene_names);
+}
+
+Argument add_backends(Arguments& arguments, std::vector<std::string>& target,
+                      const std::string& description) {
+  return arguments.add_list("--backend NAME|FILE,...", target, description, names_and_files_in)
+      .offers(backend_names);
+}
+
+Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
+                         const std::string& description) {
+  return arguments.add_list("--integrator NAME,...", target, description).offers(integrator_names);
 }
 
 void declare_listing_format(Arguments& arguments, ListingFormat& target) {
@@ -203,12 +243,15 @@ void declare_stepping(Arguments& arguments, RunOptions& options, const std::stri
   const auto of_a_simulation = [&](Argument argument) {
     if (needed) argument.needs(*needed);
   };
-  of_a_simulation(arguments.add("--backend NAME|FILE", options.backend,
-                                "Backend: a name (see mssim list backends), or the path of your own program, "
-                                "with a slash (default: openmp)"));
+  of_a_simulation(arguments
+                      .add("--backend NAME|FILE", options.backend,
+                           "Backend: a name (see mssim list backends), or the path of your own program, "
+                           "with a slash (default: openmp)")
+                      .offers(backend_names));
   of_a_simulation(declare_backend_folders(arguments, options.own_backends));
   of_a_simulation(declare_backend_limit(arguments, options.own_backends));
-  of_a_simulation(arguments.add("--integrator NAME", options.integrator, "Integrator (default: semi-euler)"));
+  of_a_simulation(arguments.add("--integrator NAME", options.integrator, "Integrator (default: semi-euler)")
+                      .offers(integrator_names));
   of_a_simulation(
       arguments.add_number("--duration SECONDS", options.duration_s,
                            "Simulated time (default: 1); for a garment, the limit for it to settle "

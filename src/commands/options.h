@@ -70,9 +70,25 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_v
 /// names between commas are ignored.
 std::vector<std::string> names_and_files_in(std::string_view argument);
 
+/// The names of the scenes that come with mssim. Throws SceneError.
+std::vector<std::string> scene_names();
+
+/// Every backend that a command may use: the rows of `choice`'s tables, those that come with mssim, and those
+/// that the user has described. Throws like BackendChoice::require.
+std::vector<const BackendInfo*> every_backend(BackendChoice& choice);
+
+/// The names of every backend, and of every integrator.
+std::vector<std::string> backend_names();
+std::vector<std::string> integrator_names();
+
 /// Declares an argument that takes scenes, by name or file. `target` must outlive the parsing.
 Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,
                     const std::string& description);
+
+/// Declares --backend and --integrator, which take several. `target` must outlive the parsing.
+Argument add_backends(Arguments& arguments, std::vector<std::string>& target, const std::string& description);
+Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
+                         const std::string& description);
 
 /// Declares --format for a listing. `target` must outlive the parsing.
 void declare_listing_format(Arguments& arguments, ListingFormat& target);

@@ -184,10 +184,12 @@ int render(const RenderOptions& options) {
 
 std::function<int()> declare_render(Arguments& arguments) {
   const auto options = std::make_shared<RenderOptions>();
-  const Argument trace = arguments.add("TRACE", options->trace, "Trace to draw, NAME.h5 (mssim run --trace)");
+  const Argument trace =
+      arguments.add("TRACE FILE", options->trace, "Trace to draw, NAME.h5 (mssim run --trace)");
   const Argument scene =
       arguments
           .add("--scene NAME|FILE", options->run.scene, "Simulate this scene and draw it: a name or a file")
+          .offers(scene_names)
           .excludes(trace);
   arguments.add("--out FILE", options->out,
                 "File to write (default: the trace's or the scene's name with .png or .webp)");

@@ -12,6 +12,7 @@ std::function<int()> declare_run(Arguments& arguments) {
   const auto look = std::make_shared<PictureChoice>();
   arguments
       .add("--scene NAME|FILE", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
+      .offers(scene_names)
       .required();
   declare_stepping(
       arguments, *options,

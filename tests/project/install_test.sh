@@ -22,4 +22,10 @@ diff "$place/scenes" <("$1" list scenes --format csv)
 "${run[@]}" "$place/second/bin/mssim" new-backend mine --language c++ --out "$place" >"$place/commands" 2>&1
 cmp "$place/mssim_backend.h" "$place/second/include/mssim_backend.h"
 cmp "$place/second/share/mssim/python/mssim_backend.py" "$2/src/starters/python/mssim_backend.py"
+# What shells and man look for.
+share=$place/second/share
+cmp "$share/man/man1/mssim.1" <("$1" help --manual)
+cmp "$share/bash-completion/completions/mssim" "$2/src/completion/mssim.bash"
+cmp "$share/zsh/site-functions/_mssim" "$2/src/completion/_mssim"
+cmp "$share/fish/vendor_completions.d/mssim.fish" "$2/src/completion/mssim.fish"
 [[ -z $(find "$place/second" -xtype l) ]]

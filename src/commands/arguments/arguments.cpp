@@ -57,17 +57,20 @@ ValueRule whole_numbers(std::int64_t low, std::int64_t high) {
 }
 
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others) {
-  return [what = std::move(what), words = std::move(words),
-          others = std::move(others)](std::string& text) -> std::string {
+  ValueRule rule = [what = std::move(what), words,
+                    others = std::move(others)](std::string& text) -> std::string {
     const auto match = std::ranges::find(words, to_lower(text));
     if (match == words.end())
       return unknown_name(what, text, std::vector<std::string_view>(words.begin(), words.end()), others);
     text = *match;
     return "";
   };
+  rule.words = std::move(words);
+  return rule;
 }
 
-Argument::Argument(CLI::Option& option, const std::string& name) : option_(&option) {
+Argument::Argument(CLI::Option& option, const std::string& name, OffersOfOptions& offers)
+    : option_(&option), offers_(&offers) {
   if (const std::size_t blank = name.find(' '); blank != std::string::npos)
     option.type_name(name.substr(blank + 1));
 }
@@ -87,20 +90,28 @@ Argument& Argument::excludes(const Argument& other) {
   return *this;
 }
 
+Argument& Argument::offers(OfferedWords words) {
+  (*offers_)[option_] = std::move(words);
+  return *this;
+}
+
 Argument Arguments::add(const std::string& name, std::string& target, const std::string& description,
                         const ValueRule& rule) {
+  ValueRule filled_rule = [rule](std::string& text) {
+    return text.empty() ? filled(text) : rule ? rule(text) : "";
+  };
+  filled_rule.words = rule.words;
   return add_taken(
-      name, [&target](const std::string& text) { target = text; }, description,
-      [rule](std::string& text) { return text.empty() ? filled(text)
-                                         : rule       ? rule(text)
-                                                      : ""; });
+      name, [&target](const std::string& text) { target = text; }, description, filled_rule);
 }
 
 Argument Arguments::add_taken(const std::string& name, const std::function<void(const std::string&)>& take,
                               const std::string& description, const ValueRule& rule) {
   CLI::Option* option = command_->add_option_function<std::string>(name_alone(name), take, description);
   if (rule) option->transform(CLI::Validator(rule, ""));
-  return {*option, name};
+  Argument argument(*option, name, *offers_);
+  if (!rule.words.empty()) argument.offers([words = rule.words] { return words; });
+  return argument;
 }
 
 Argument Arguments::add_list(const std::string& name, std::vector<std::string>& target,
@@ -109,37 +120,41 @@ Argument Arguments::add_list(const std::string& name, std::vector<std::string>& 
   const CLI::Validator all_filled(filled, "");
   if (!split)
     return {*command_->add_option(name_alone(name), target, description)->delimiter(',')->check(all_filled),
-            name};
+            name, *offers_};
   const auto take = [&target, split](const std::vector<std::string>& texts) {
     target.clear();
     for (const std::string& text : texts) std::ranges::move(split(text), std::back_inserter(target));
   };
   using Texts = std::vector<std::string>;
-  return {*command_->add_option_function<Texts>(name_alone(name), take, description)->check(all_filled),
-          name};
+  return {*command_->add_option_function<Texts>(name_alone(name), take, description)->check(all_filled), name,
+          *offers_};
 }
 
 Argument Arguments::add_flag(const std::string& name, bool& target, const std::string& description) {
-  return {*command_->add_flag(name, target, description), name};
+  return {*command_->add_flag(name, target, description), name, *offers_};
 }
 
 Argument Arguments::add_flag_with_text(const std::string& name, std::optional<std::string>& target,
                                        const std::string& description) {
   CLI::Option* option = command_->add_option_function<std::string>(
       name_alone(name), [&target](const std::string& text) { target = text; }, description);
-  return {*option->expected(0, 1)->default_str(""), name};
+  return {*option->expected(0, 1)->default_str(""), name, *offers_};
+}
+
+const CLI::App& Arguments::program() const {
+  const CLI::App* program = command_;
+  while (program->get_parent() != nullptr) program = program->get_parent();
+  return *program;
 }
 
 std::string Arguments::help_page(const std::string& name) const {
-  const CLI::App* program = command_;
-  while (program->get_parent() != nullptr) program = program->get_parent();
   // App::help() would show the page of the command that has been parsed.
   const auto page = [](const CLI::App& app, const std::string& typed_name) {
     return app.get_formatter()->make_help(&app, typed_name, CLI::AppFormatMode::Normal);
   };
-  if (name.empty()) return page(*program, program->get_name());
-  for (const CLI::App* command : program->get_subcommands({}))
-    if (command->get_name() == name) return page(*command, program->get_name() + ' ' + name);
+  if (name.empty()) return page(program(), program().get_name());
+  for (const CLI::App* command : program().get_subcommands({}))
+    if (command->get_name() == name) return page(*command, program().get_name() + ' ' + name);
   return {};
 }
 

@@ -21,7 +21,10 @@ namespace mssim {
 /// Checks the value of an argument. Returns why the value is wrong ("\"x\" is not a positive number"), or an
 /// empty text if it is right. ProgramParser adds the argument's name and the rest of the sentence. A rule may
 /// replace the text by its canonical form. An empty function accepts any text.
-using ValueRule = std::function<std::string(std::string& text)>;
+struct ValueRule : std::function<std::string(std::string& text)> {
+  using function::function;
+  std::vector<std::string> words = {};  ///< the only texts that it accepts, if it is a list of them
+};
 
 /// Accepts finite numbers above zero.
 ValueRule positive_number();
@@ -35,29 +38,40 @@ ValueRule whole_numbers(std::int64_t low, std::int64_t high);
 /// their kind; `others` are alternative spellings.
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others = {});
 
+/// Makes the texts that a shell may complete the value of an argument to.
+using OfferedWords = std::function<std::vector<std::string>()>;
+/// Of each argument that offers some.
+using OffersOfOptions = std::map<const CLI::Option*, OfferedWords>;
+
 /// A declared argument: an option, a flag, or a positional argument.
 class Argument {
  public:
-  /// `name`: as in Arguments.
-  Argument(CLI::Option& option, const std::string& name);
+  /// `name`: as in Arguments. `offers` must outlive it.
+  Argument(CLI::Option& option, const std::string& name, OffersOfOptions& offers);
 
   Argument& required();
   /// Makes it an error to give this without `other`.
   Argument& needs(const Argument& other);
   /// Makes it an error to give this together with `other`.
   Argument& excludes(const Argument& other);
+  /// Has shells complete its value to these words, which are made only for that. A rule that is a list of
+  /// words offers them by itself.
+  Argument& offers(OfferedWords words);
 
  private:
   CLI::Option* option_;
+  OffersOfOptions* offers_;
 };
 
-/// Declares the arguments of a command. Only arguments.cpp and program_parser.cpp include the command-line
-/// library, because its header adds seconds to the compilation of each file. A name is `--NAME`; `--NAME
-/// VALUE`, with the word for the value in --help; or `WORD` for a positional argument. A target must outlive
-/// the parsing; if the argument is not given, it keeps its value, which is the default.
+/// Declares the arguments of a command. Only the files of this room include the command-line library, because
+/// its header adds seconds to the compilation of each file. A name is `--NAME`; `--NAME VALUE`, with the word
+/// for the value in --help; or `WORD` or `WORD VALUE` for a positional argument. A value with FILE, FOLDER or
+/// DIR in it is completed by names of files or folders, and one that ends in `,...` after each comma. A
+/// target must outlive the parsing; if the argument is not given, it keeps its value, which is the default.
 class Arguments {
  public:
-  explicit Arguments(CLI::App& command) : command_(&command) {}
+  /// `offers` must outlive it.
+  Arguments(CLI::App& command, OffersOfOptions& offers) : command_(&command), offers_(&offers) {}
 
   /// Takes a text that `rule` accepts.
   Argument add(const std::string& name, std::string& target, const std::string& description,
@@ -97,6 +111,9 @@ class Arguments {
   /// The help page of the program, or of its command `name`; empty if there is no such command.
   std::string help_page(const std::string& name) const;
 
+  /// All help pages as one manual page, in the language of man(7).
+  std::string manual_page() const;
+
  private:
   /// `take` receives the text after `rule` has accepted it.
   Argument add_taken(const std::string& name, const std::function<void(const std::string&)>& take,
@@ -115,7 +132,11 @@ class Arguments {
     target = numbers_in<Number>(text);
   }
 
+  /// The program that the command is one of.
+  const CLI::App& program() const;
+
   CLI::App* command_;
+  OffersOfOptions* offers_;
 };
 
 }  // namespace mssim

@@ -175,7 +175,7 @@ Arguments ProgramParser::add_command(const std::string& name, const std::string&
   CLI::App* command = program_->add_subcommand(name, description);
   command->group("Commands");
   command->footer(end);
-  return Arguments(*command);
+  return {*command, offers_};
 }
 
 void ProgramParser::end_help_with(const std::string& text) { program_->footer(text); }

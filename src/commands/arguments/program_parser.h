@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "commands/arguments/arguments.h"
@@ -33,8 +34,15 @@ class ProgramParser {
 
   std::string help_page() const;
 
+  /// What may stand in the place of the last of `words`, the beginning of a command line without the program.
+  /// On the first line: `file` or `directory` if the name of one may, else `words`; then a tab and what a
+  /// name follows in that word ("--scene=cloth2500,"). Below it, a line for each whole word that begins as
+  /// the last one, with a tab and its description if it has one.
+  std::string completions(std::span<const std::string> words) const;
+
  private:
   std::unique_ptr<CLI::App> program_;
+  OffersOfOptions offers_;
 };
 
 }  // namespace mssim

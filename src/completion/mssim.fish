@@ -1,0 +1,20 @@
+# Completion of mssim in fish, which mssim itself makes (mssim --complete).
+
+function __mssim_complete
+    set -l words (commandline -opc)
+    set -l current (commandline -ct)
+    set -l mssim $words[1]
+    set -e words[1]
+    set -l lines ($mssim --complete $words "$current" 2>/dev/null)
+    set -l first (string split \t -- $lines[1])
+    set -e lines[1]
+    string join -- \n $lines
+    set -l name (string sub -s (math (string length -- "$first[2]") + 1) -- "$current")
+    switch "$first[1]"
+        case file
+            printf "$first[2]%s\n" (__fish_complete_path "$name")
+        case directory
+            printf "$first[2]%s\n" (__fish_complete_directories "$name")
+    end
+end
+complete -c mssim -f -a '(__mssim_complete)'

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# What shells complete and the manual page explains is what --help and the listings have. bash is run, and fish and zsh are if they are
+# installed. $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2/src/completion
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+export XDG_CONFIG_HOME=$work/config
+mkdir -p "$work/config/mssim/backends" "$work/pages" "$work/here/few" "$work/here/fewer-folders"
+echo '{"command": ["true"], "description": "my own"}' >"$work/config/mssim/backends/mine.json"
+cd "$work/here"
+touch few.json fewer.json
+
+# completed WORDS...: what bash has for the last of them, as it divides a command line into words, sorted
+completed() {
+  # shellcheck disable=SC2016 # the inner shell expands them
+  bash -c '. "$0" && COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) && _mssim "$1" && printf "%s\n" "${COMPREPLY[@]}"' \
+    "$source/mssim.bash" "$mssim" "$@" | sort
+}
+# are WANTED WORDS...: these lines are completed
+are() {
+  local found
+  found=$(completed "${@:2}")
+  [ "$found" = "$(sort <<<"$1")" ] || fail "$(printf '%q ' "${@:2}"): $(paste -sd ' ' <<<"$found") instead of $(sort <<<"$1" | paste -sd ' ')"
+}
+# options_of PAGE: the long options on a help page
+options_of() { sed -nE 's/^  (-[a-zA-Z],)?(--[a-z-]+).*/\2/p' "$1"; }
+
+# Every command, and every option of each.
+"$mssim" --help >../pages/mssim
+commands=$(sed -nE 's/^  ([a-z-]+)  +[A-Z].*/\1/p' ../pages/mssim | grep -v '^-')
+grep -qx doctor <<<"$commands" || fail "no command doctor: $commands"
+are "$commands" ""
+are "$(options_of ../pages/mssim)" --
+are "$commands" help ""
+for command in $commands; do
+  "$mssim" "$command" --help >"../pages/$command"
+  options=$(options_of "../pages/$command")
+  grep -qx -e --help <<<"$options" || fail "no option --help of $command"
+  are "$options" "$command" --
+done
+
+# The names of the tables.
+scenes=$(names_of scenes)
+cloths=$(grep ^cloth2 <<<"$scenes")
+are "$cloths" run --scene cloth2
+are "$cloths" bench --suite table1 --scene cloth2
+are "${cloths//cloth/bodies3858,cloth}" bench --scene bodies3858,cloth2
+are "$cloths" check cloth2
+are "$(names_of integrators | sed 's/^/rk4,/')" guide --integrator rk4,
+names_of backends | grep -qx mine || fail "a described backend is not listed"
+are "$(names_of backends | grep ^o | sed 's/^/serial,/')" bench --backend serial,o
+are mine run --backend min
+are "$({ names_of suites && echo tables; } | grep ^t)" bench --suite t
+are "$({ names_of suites && echo tables; })" bench --suite ""
+are "$(printf '%s\n' csv json table)" list scenes --format ""
+are backends list back
+
+# Files and folders where a value is one, also after a comma. bash takes = and : for words.
+are "$(printf '%s\n' few few.json fewer.json fewer-folders)" run --trace few
+are "$(printf '%s\n' few fewer-folders)" bench --out few
+are "$(printf '%s\n' few fewer-folders)" report few few
+are "$(printf 'cloth2500,%s\n' few few.json fewer.json fewer-folders)" bench --scene cloth2500,few
+are "$cloths" run --scene = cloth2
+are "$(echo "$scenes" && ls)" run --scene =
+are "" bench --backend openmp : x
+are "" bench --no-such-option=x
+are "" benhc ""
+mssim=$work/none are "" ""
+
+# fish and zsh. (zsh completes only at a terminal; its file is parsed.)
+if command -v fish >/dev/null; then
+  PATH="${mssim%/*}:$PATH" fish --no-config -c "source $source/mssim.fish; complete -C 'mssim bench --scene bodies3858,cloth2'" | sort >../found
+  sort <<<"${cloths//cloth/bodies3858,cloth}" | cmp - ../found || fail "fish: $(cat ../found)"
+else
+  echo "not tried: fish (not installed)"
+fi
+if command -v zsh >/dev/null; then zsh -n "$source/_mssim" || fail "zsh cannot parse _mssim"; else echo "not tried: zsh (not installed)"; fi
+
+# The manual page: each command in a part of its own, with each of its options; and it can be set.
+ends 0 help --manual
+cd ..
+cp out mssim.1
+for command in $commands; do
+  awk -v head=".SS mssim ${command/-/\\\\-}" '$0 == head { on = 1; next } /^\.S/ { on = 0 } on' mssim.1 >part
+  options_of "pages/$command" | while read -r option; do
+    grep -qF -e "\\fB${option//-/\\-}\\fR" -e "${option//-/\\-}\\fR" part || echo "$command $option"
+  done
+done >lost
+[ ! -s lost ] || fail "not on the manual page: $(cat lost)"
+grep -q '^\.SH EXIT CODES' mssim.1 || fail "no exit codes on the manual page"
+expect 2 'exclude' help bench --manual
+if command -v groff >/dev/null; then
+  groff -man -ww -Tascii mssim.1 2>err >text || fail "groff exits with $?"
+  [ ! -s err ] || fail "groff: $(cat err)"
+else
+  echo "not tried: groff (not installed)"
+fi
