@@ -54,11 +54,11 @@ TEST(History, NamesTheCommitOfASlowdown) {
 TEST(History, AcceptsProgressAndARepairedSlowdown) {
   std::vector<HistoryEntry> history = two_levels(12, 8, 0.8);
   EXPECT_THAT(regressions(machines_of(history)[0], threshold, recent), IsEmpty());
-  history = two_levels(12, 8, 1.2);
-  for (int i = 20; i < 28; ++i) history.push_back(entry(i, 0.5 + 0.0005 * (i % 5)));
+  history = two_levels(14, 14, 1.2);
+  for (int i = 28; i < 33; ++i) history.push_back(entry(i, 0.5 + 0.0005 * (i % 5)));
   const std::vector<MachineHistory> machines = machines_of(history);
   EXPECT_EQ(machines[0].series[1].changes.size(), 2U);
-  EXPECT_THAT(regressions(machines[0], threshold, 28), IsEmpty());
+  EXPECT_THAT(regressions(machines[0], threshold, history.size()), IsEmpty());
 }
 
 TEST(History, MissesARowThatIsNoLongerVerifiedOrMeasured) {
