@@ -60,7 +60,7 @@ are backends list back
 # Files and folders where a value is one, also after a comma. bash takes = and : for words.
 are "$(printf '%s\n' few few.json fewer.json fewer-folders)" run --trace few
 are "$(printf '%s\n' few fewer-folders)" bench --out few
-are "$(printf '%s\n' few fewer-folders)" report few few
+are "$(printf '%s\n' few few.json fewer.json fewer-folders)" report few few
 are "$(printf 'cloth2500,%s\n' few few.json fewer.json fewer-folders)" bench --scene cloth2500,few
 are "$cloths" run --scene = cloth2
 are "$(echo "$scenes" && ls)" run --scene =
