@@ -38,7 +38,8 @@ TableMaker tables_of_all_suites() {
     std::vector<ResultTable> tables;
     for (const TableMaker& maker : makers)
       for (ResultTable& table : maker(rows, provenance))
-        if (std::ranges::none_of(tables, [&](const ResultTable& known) { return known.name == table.name; }))
+        if (const std::string_view name = table.name;
+            std::ranges::none_of(tables, [&](const ResultTable& known) { return known.name == name; }))
           tables.push_back(std::move(table));
     return tables;
   });
