@@ -49,7 +49,7 @@ echo 2 >notes && commit fourth
 git clone --quiet --bare . "$place/origin.git"
 git remote add origin "$place/origin.git"
 git fetch --quiet origin
-brief='--scene cloth2500 --threads 1 --threshold 40 --time-budget 40'
+brief='--scene cloth2500 --threads 1 --threshold 40 --time-budget 200'
 
 # The action. GitHub runs each step so, and hands on what a step writes to GITHUB_PATH.
 cat >"$place/run_action.py" <<'PYTHON'

@@ -310,7 +310,7 @@ void serve(const std::string& mistake) {
       if (mistakes.is("lazy")) count = std::min(count, 105);
       for (int i = 0; i < count && !mistakes.is("idle"); ++i) {
         if (mistakes.is("slow")) ::usleep(30'000);
-        if (mistakes.is("slower")) ::usleep(300);
+        if (mistakes.is("slower")) ::usleep(2'000);  // several times a step, even beside other programs
         simulation.step();
       }
     }
