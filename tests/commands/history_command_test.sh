@@ -39,7 +39,7 @@ for number in {10..26}; do
 done
 [ "$(wc -l <h.jsonl)" -eq 17 ] || fail "the file has not a line per folder: $(cat h.jsonl)"
 ends 1 history show --file h.jsonl
-says 'openmp .* commit-22 .* slower'
+says 'openmp .* cpu AVX-512 .* commit-22 .* slower'
 warns '^mssim: cloth2500, openmp, semi-euler: slower since commit commit-22, 1\.0[78]'
 [ "$(grep -c . err)" -eq 1 ] || fail "more than the one slowdown is told: $(cat err)"
 ends 0 history show --file h.jsonl --threshold 10

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "output/tables/results.h"
+#include "platform/machine.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
 
@@ -25,7 +26,7 @@ Table history_table(const MachineHistory& machine, double threshold) {
       table.add({{"scene", series.scene},
                  {"backend", series.backend},
                  {"integrator", series.integrator},
-                 {"device", series.device},
+                 {"device", device_name(series.device)},
                  {"since", short_commit(machine.entries[entry]->commit)},
                  {"commits", std::move(count)},
                  {"ms", std::move(ms)},
