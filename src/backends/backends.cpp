@@ -143,6 +143,14 @@ MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bo
   return grid ? backend.grid_memory : backend.mesh_memory;
 }
 
+std::string unsupported_reason(const BackendInfo& backend, const Integrator& integrator) {
+  if (backend.program != nullptr) return unsupported_reason(*backend.program, integrator);
+  if (backend.make == nullptr) return "it steps garments only";
+  if (!is_implicit(integrator) || backend.make_implicit != nullptr) return {};
+  return "implicit integrators are stepped by " +
+         names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; });
+}
+
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& asked) {
@@ -166,10 +174,8 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   if (backend.program != nullptr)
     return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
                       integrator, dt_s);
-  if (backend.make == nullptr) throw Unsupported("it steps garments only");
-  if (is_implicit(integrator) && backend.make_implicit == nullptr)
-    throw Unsupported("implicit integrators are stepped by " +
-                      names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; }));
+  if (const std::string reason = unsupported_reason(backend, integrator); !reason.empty())
+    throw Unsupported(reason);
   require_threads(backend, options);
   if (is_implicit(integrator)) return backend.make_implicit(system, integrator, dt_s, options);
   return step_ahead(backend.make(system, integrator, dt_s, options), system, integrator, dt_s);

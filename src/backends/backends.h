@@ -90,6 +90,9 @@ MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bo
 /// Empty if the backend can run here, else the reason why not.
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options);
 
+/// Why the row steps neither cloths nor bodies with this integrator; empty if it may.
+std::string unsupported_reason(const BackendInfo& backend, const Integrator& integrator);
+
 /// Makes the backend for any system. Throws Unavailable, Unsupported or BackendFailure.
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,

@@ -54,7 +54,7 @@ Table scene_table(const PreparedScene& scene) {
 
 bool can_step(const SceneSize& size, const Integrator& integrator, const BackendInfo& backend) {
   if (size.garment) return dresses(integrator) && dresses(backend);
-  return !is_implicit(integrator) || backend.make_implicit != nullptr;
+  return unsupported_reason(backend, integrator).empty();
 }
 
 /// A row for each integrator and backend that can step the scene: the largest stable dt, the memory of a

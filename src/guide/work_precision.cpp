@@ -344,7 +344,9 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
   const bool is_explicit = !is_implicit(*method.integrator);
   if (is_explicit && limit.backend == method.backend->name) method_.step_seconds = limit.step_seconds;
   next_seconds_ = setup_seconds_ + seconds_of_runs(steps_ * limit.step_seconds, enough_s);
-  if (!limit.status.empty())
+  if (const std::string reason = unsupported_reason(*method.backend, *method.integrator); !reason.empty())
+    end(Lack::backend, "unsupported: " + reason);
+  else if (!limit.status.empty())
     end(Lack::backend, limit.status);
   else if (stable_s_ == 0 && is_explicit)
     end(limit.lack(), limit.measured.finished ? "no step that was tried is stable"

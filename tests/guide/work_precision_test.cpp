@@ -73,6 +73,17 @@ TEST(WorkCurve, CountsErrorsOfFiftyTimesTheTrustedStatesOrMore) {
 
 TEST(WorkCurve, HasNothingWhereNoStepIsStable) { EXPECT_TRUE(curve_of("explicit-euler", 0, 1e-3).empty()); }
 
+TEST(WorkCurve, IsUnsupportedWithoutSpendingTimeWhereTheBackendLacksTheIntegrator) {
+  const System system = cloth_system(8, 8);
+  StepLimit unfinished;  // as of a guide whose time ended before it had found a stable step
+  unfinished.integrator = find_integrator("newton-euler");
+  GuidedMethod method{unfinished.integrator, find_backend("opencl"), {}};
+  const WorkCurve curve(system, {}, unfinished, method, {.threads = 1}, 1e-6);
+  EXPECT_FALSE(curve.has_next());
+  EXPECT_EQ(method.lack, Lack::backend);
+  EXPECT_THAT(method.status, testing::HasSubstr("implicit"));
+}
+
 TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
   const System system = cloth_system(8, 8);
   const TrustedState trusted =

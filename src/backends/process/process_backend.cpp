@@ -97,10 +97,8 @@ void require_support(const BackendProgram& program, const System& system, const 
   const bool cloth = std::holds_alternative<GridPatch>(system.topology);
   if (!(cloth ? program.steps_cloths : program.steps_bodies))
     throw Unsupported(std::string("it does not step ") + (cloth ? "cloths" : "bodies"));
-  // Without stages to send, a program that only reads stages would do nothing in a step.
-  const bool any = program.integrators.empty() && !is_implicit(integrator);
-  if (!any && std::ranges::find(program.integrators, integrator.name) == program.integrators.end())
-    throw Unsupported("it has no " + std::string(integrator.name));
+  if (const std::string reason = unsupported_reason(program, integrator); !reason.empty())
+    throw Unsupported(reason);
 }
 
 class ProcessBackend final : public WindowBackend {
@@ -279,6 +277,14 @@ class ProcessBackend final : public WindowBackend {
 };
 
 }  // namespace
+
+std::string unsupported_reason(const BackendProgram& program, const Integrator& integrator) {
+  // Without stages to send, a program that only reads stages would do nothing in a step.
+  if (program.integrators.empty() && !is_implicit(integrator)) return {};
+  return std::ranges::find(program.integrators, integrator.name) != program.integrators.end()
+             ? std::string()
+             : "it has no " + std::string(integrator.name);
+}
 
 std::string method_text(const Integrator& integrator) {
   std::string text = fmt::format("integrator {}\n", integrator.name);

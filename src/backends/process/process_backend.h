@@ -32,6 +32,9 @@ struct BackendProgram {
   bool has_windows = false;
 };
 
+/// Why the program does not step with this integrator; empty if it does.
+std::string unsupported_reason(const BackendProgram& program, const Integrator& integrator);
+
 /// Longest time limit, s.
 inline constexpr double longest_time_limit_s = 86400;
 
