@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "platform/files.h"
 #include "scene/fields/fields.h"
@@ -109,10 +110,15 @@ std::vector<HistoryEntry> read_history(const std::filesystem::path& file) {
   }
 }
 
-void write_history(const std::filesystem::path& file, const std::vector<HistoryEntry>& history) {
-  std::string text;
-  for (const HistoryEntry& entry : history) text += history_line(entry) + '\n';
-  write_file_atomically(target_of(file), text);
+void change_history(const std::filesystem::path& file,
+                    const std::function<void(std::vector<HistoryEntry>& history)>& change) {
+  AtomicFile written(target_of(file));
+  std::vector<HistoryEntry> history;
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) history = read_history(file);
+  change(history);
+  for (const HistoryEntry& entry : history) written.append(history_line(entry) + '\n');
+  written.move_into_place();
 }
 
 }  // namespace mssim
