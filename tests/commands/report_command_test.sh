@@ -202,7 +202,7 @@ cp "$guide/guide.csv" "$guide/guide.md"
 report "$guide"
 
 # Mistakes.
-expect 2 '^mssim: DIR... is missing' report
+expect 2 '^mssim: DIR is missing' report
 expect 2 '^mssim: there is no folder /no/such: give folders that mssim bench --out wrote' report /no/such
 expect 2 'there is no folder .*timings.csv' report "$results/table1/zen5/timings.csv"
 expect 4 'cannot write' report "$work/base" --out "$work/no/such/page.html"
