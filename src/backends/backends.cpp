@@ -143,6 +143,12 @@ MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bo
   return grid ? backend.grid_memory : backend.mesh_memory;
 }
 
+std::string unsupported_reason(const BackendInfo& backend, const Integrator& integrator) {
+  if (!is_implicit(integrator) || backend.make_implicit != nullptr || backend.program != nullptr) return "";
+  return "implicit integrators are stepped by " +
+         names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; });
+}
+
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& asked) {
@@ -167,9 +173,8 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
     return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
                       integrator, dt_s);
   if (backend.make == nullptr) throw Unsupported("it steps garments only");
-  if (is_implicit(integrator) && backend.make_implicit == nullptr)
-    throw Unsupported("implicit integrators are stepped by " +
-                      names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; }));
+  if (const std::string reason = unsupported_reason(backend, integrator); !reason.empty())
+    throw Unsupported(reason);
   require_threads(backend, options);
   if (is_implicit(integrator)) return backend.make_implicit(system, integrator, dt_s, options);
   return step_ahead(backend.make(system, integrator, dt_s, options), system, integrator, dt_s);

@@ -87,6 +87,10 @@ const BackendInfo* find_backend(std::string_view name);
 /// Memory of the backend for a scene with this integrator: a cloth (`grid`) or bodies.
 MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bool grid);
 
+/// Empty if the backend has the integrator, or is a program, which tells that itself; else the reason why
+/// not.
+std::string unsupported_reason(const BackendInfo& backend, const Integrator& integrator);
+
 /// Empty if the backend can run here, else the reason why not.
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options);
 
