@@ -82,9 +82,6 @@ int show(const HistoryOptions& options) {
   refuse_options(options.action, std::array{std::pair{"--commit", !options.commit.empty()},
                                             std::pair{"--replace", options.replace}});
   const std::vector<HistoryEntry> history = read_history(options.file);
-  if (history.empty())
-    throw UsageError("{} has no entries: add a result folder with mssim history add",
-                     printable(options.file));
   const std::vector<MachineHistory> machines = machines_of(history);
   const double threshold = options.threshold_percent.value_or(5) / 100;
   std::cout << to_text(machines, threshold, options.format);

@@ -112,6 +112,8 @@ sed '2s/"schema_version":1/"schema_version":9,"more":[]/' h.jsonl >bad.jsonl
 expect 2 'bad.jsonl, line 2: /schema_version is 9.*version 1' history show --file bad.jsonl
 true >bad.jsonl
 expect 2 'bad.jsonl has no entries.*history add' history show --file bad.jsonl
+expect 2 'bad.jsonl has no entries' report "$source_run" --no-runs --history bad.jsonl --out bad.html
+ends 0 history add run --file bad.jsonl --commit first
 expect 2 'show takes no --commit' history show --file h.jsonl --commit commit-26
 expect 2 'add takes no --last' history add run --file h.jsonl --commit new --last 3
 expect 2 'none.jsonl: there is no such file.*history add' history show --file none.jsonl

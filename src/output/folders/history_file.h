@@ -23,7 +23,8 @@ std::string history_line(const HistoryEntry& entry);
 /// remedy, for a line that is damaged or has another version.
 std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::string_view text);
 
-/// The entries of a file. Throws like parse_history(), and UsageError for a file that cannot be read.
+/// The entries of a file. Throws like parse_history(), and UsageError for a file that cannot be read or has
+/// no entries.
 std::vector<HistoryEntry> read_history(const std::filesystem::path& file);
 
 /// Reads the file, if there is one, has `change` change its entries, and writes it. No other mssim changes it
