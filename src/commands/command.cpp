@@ -61,7 +61,7 @@ constexpr std::string_view exit_codes =
     "Exit codes: 0 success; 1 a row is not verified, a simulation blew up, a garment\n"
     "does not fit, or a comparison or a history shows a regression; 2 bad usage or\n"
     "input; 3 a requested device or program is missing; 4 a file could not be\n"
-    "written, or a trace not be read.";
+    "written, or a trace could not be read.";
 
 /// mssim's first argument when a shell asks what may stand in the place of the last of the words that follow
 /// (src/completion).
