@@ -72,7 +72,7 @@ for text in ',semi-euler,exits,.*failed: exits ended with exit code 3' ',semi-eu
 done
 grep -q '^Take \(semi-euler\|rk4\) on serial with a step of ' "$work/programs/guide.md" || fail "other programs cost serial its points"
 
-expect 2 '^mssim: --scene NAME|FILE,... is missing; see mssim guide --help$' guide
+expect 2 '^mssim: --scene NAME|FILE,... is missing: give .*list scenes.*; see mssim guide --help$' guide
 expect 2 'jeans1k is a garment' guide --scene jeans1k
 expect 2 '^mssim: --overwrite needs the folder of an earlier run' guide --scene cloth2500 --overwrite
 
