@@ -282,7 +282,7 @@ std::vector<Checkup> machine_findings(const Provenance& provenance) {
                                  }));
   const std::vector<double>& load = machine.load_average;
   findings.push_back(disturbance(
-      "load", load.empty() ? "not reported" : fmt::format("{:.2f} over the last minute", load.front()),
+      "load", load.empty() ? "not reported" : fmt::format("{:.1f} over the last minute", load.front()),
       "narrow intervals of times", [&](Provenance& chosen) { chosen.machine.load_average = load; }));
   return findings;
 }

@@ -1,11 +1,13 @@
 #include "bench/results/history.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <array>
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <system_error>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include "application/bench/bench_results.h"
 #include "application/console.h"
@@ -24,22 +26,33 @@ struct HistoryOptions {
   std::string file = "history.jsonl";
   std::string commit;
   bool replace = false;
-  double threshold_percent = 5;
-  int last = 10;
+  std::optional<double> threshold_percent;
+  std::optional<int> last;
   ListingFormat format = ListingFormat::table;
 };
+
+/// Refuses an option that only the other action takes.
+void refuse_options(const std::string& action, std::span<const std::pair<const char*, bool>> given) {
+  for (const auto& [name, is_given] : given)
+    if (is_given) throw UsageError("mssim history {} takes no {}: leave it out", action, name);
+}
 
 int add(const HistoryOptions& options) {
   if (options.folder.empty())
     throw UsageError("FOLDER is missing: give the folder that mssim bench --out wrote");
-  std::error_code error;
-  std::vector<HistoryEntry> history;
-  if (std::filesystem::exists(options.file, error)) history = read_history(options.file);
+  refuse_options(options.action, std::array{std::pair{"--threshold", options.threshold_percent.has_value()},
+                                            std::pair{"--last", options.last.has_value()},
+                                            std::pair{"--format", options.format != ListingFormat::table}});
   const MeasuredRun run = read_run(options.folder);
-  add_entry(history, entry_of(run.provenance, run.rows, options.commit), options.replace);
-  write_history(options.file, history);
+  // As it reads back: the entries that it is compared with have been cut and escaped.
+  const std::string line = history_line(entry_of(run.provenance, run.rows, options.commit));
+  std::size_t entries = 0;
+  change_history(options.file, [&](std::vector<HistoryEntry>& history) {
+    add_entry(history, parse_history(options.folder, line).front(), options.replace);
+    entries = history.size();
+  });
   std::cerr << fmt::format("mssim: {} has {}\n", printable(options.file),
-                           history.size() == 1 ? "1 entry" : fmt::format("{} entries", history.size()));
+                           entries == 1 ? "1 entry" : fmt::format("{} entries", entries));
   return exit_ok;
 }
 
@@ -66,13 +79,15 @@ int show(const HistoryOptions& options) {
   if (!options.folder.empty())
     throw UsageError("show takes no FOLDER, but was given {}: give the file with --file",
                      printable(options.folder));
+  refuse_options(options.action, std::array{std::pair{"--commit", !options.commit.empty()},
+                                            std::pair{"--replace", options.replace}});
   const std::vector<HistoryEntry> history = read_history(options.file);
   const std::vector<MachineHistory> machines = machines_of(history);
-  const double threshold = options.threshold_percent / 100;
+  const double threshold = options.threshold_percent.value_or(5) / 100;
   std::cout << to_text(machines, threshold, options.format);
   std::vector<std::string> sentences;
   for (const MachineHistory& machine : machines)
-    std::ranges::move(regressions(machine, threshold, static_cast<std::size_t>(options.last)),
+    std::ranges::move(regressions(machine, threshold, static_cast<std::size_t>(options.last.value_or(10))),
                       std::back_inserter(sentences));
   tell_first(sentences);
   return sentences.empty() ? exit_ok : exit_regression;

@@ -73,7 +73,7 @@ std::vector<FoundCurve> reference_curves() {
 
 void add_result_folders(Arguments& arguments, std::vector<std::string>& target) {
   arguments
-      .add_list("DIR... DIR|FILE", target,
+      .add_list("DIR DIR|FILE", target,
                 "Folders that mssim bench --out wrote, a folder of such folders, or files that the page of "
                 "mssim web saved",
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })

@@ -83,6 +83,10 @@ int table(const TableOptions& options) {
   ReportInput input = report_input(options.folders);
   input.tables = tables_of_all_suites();
   tell_of_problems(input);
+  for (const ReportFolder& folder : input.folders)
+    if (folder.rows.empty() && !folder.guide)
+      throw UsageError("{} has no row that can be shown: give folders that mssim bench --out wrote",
+                       printable(folder.name, 1000));
   if (options.out.empty()) {
     print(input, options.latex);
     return exit_ok;

@@ -2,7 +2,7 @@
 
 function __mssim_complete
     set -l words (commandline -opc)
-    set -l current (commandline -ct)
+    set -l current (commandline -ct | string unescape)
     set -l mssim $words[1]
     set -e words[1]
     set -l lines ($mssim --complete $words "$current" 2>/dev/null)
@@ -12,9 +12,9 @@ function __mssim_complete
     set -l name (string sub -s (math (string length -- "$first[2]") + 1) -- "$current")
     switch "$first[1]"
         case file
-            printf "$first[2]%s\n" (__fish_complete_path "$name")
+            string join -- \n "$first[2]"(__fish_complete_path "$name")
         case directory
-            printf "$first[2]%s\n" (__fish_complete_directories "$name")
+            string join -- \n "$first[2]"(__fish_complete_directories "$name")
     end
 end
 complete -c mssim -f -a '(__mssim_complete)'

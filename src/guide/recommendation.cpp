@@ -205,7 +205,7 @@ std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
                         std::span<const GuidedMethod* const> missed) {
   std::string text = guide.stopped
                          ? "Nothing is recommended: the guide was stopped"
-                         : fmt::format("Nothing is recommended: {} s are not enough", seconds_of(guide));
+                         : fmt::format("Nothing is recommended: {} s is not enough", seconds_of(guide));
   if (!missed.empty())
     text += fmt::format(", and any of these methods could be the cheapest at an error of {}: {}",
                         decimal(guide.wish.error), names_of(missed));

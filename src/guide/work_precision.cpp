@@ -99,9 +99,9 @@ class HorizonWalk {
     beside.get();
     State state = near_->state();
     if (first_bad_node(state)) return end_with("the trajectory cannot be followed any longer");
-    if (!is_in_the_air(state, system_.floor)) return end_with("a node reaches the floor next");
+    if (!is_in_the_air(state, system_.floor)) return end_with("a node reaches the floor");
     const double parting = position_deviation(system_, state, beside_->state()) / first_distance_;
-    if (!(parting <= allowed_parting)) return end_with("neighbouring trajectories part next");
+    if (!(parting <= allowed_parting)) return end_with("neighbouring trajectories part");
     steps_ += steps;
     parting_ = parting;
     state_ = std::move(state);
@@ -268,7 +268,7 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   trusted.horizon_s = walk.span_s();
   trusted.parting = walk.parting();
   const bool is_cut = walk.why().empty() && longest_s < request.longest_s;
-  trusted.why_there = !walk.why().empty() ? walk.why()
+  trusted.why_there = !walk.why().empty() ? "after that, " + walk.why()
                       : is_cut            ? "there is no time for a longer reference"
                                           : "the requested horizon";
   if (is_cut) trusted.short_of_s = short_of_s;

@@ -79,6 +79,7 @@ struct ReportFolder {
 /// The folder itself if it has a timings.csv or a guide.csv; otherwise its subfolders that have one, by name.
 std::vector<std::filesystem::path> result_folders(const std::filesystem::path& folder);
 
+/// Throws LaterFormatError for a folder that a later mssim wrote.
 ReportFolder read_report_folder(const std::filesystem::path& path);
 
 /// Parses an energy curve, which may begin with comment lines; none if the text is not one.

@@ -216,6 +216,8 @@ ReportFolder read_report_folder(const fs::path& path) {
   drop_impossible_times(folder);
   try {
     folder.provenance = read_provenance(path / "provenance.json");
+  } catch (const LaterFormatError&) {
+    throw;
   } catch (const ProvenanceError& error) {
     folder.problems.push_back(std::string(error.what()) + "; machine and settings are unknown");
   }

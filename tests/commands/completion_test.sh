@@ -7,7 +7,7 @@ source=$2/src/completion
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 export XDG_CONFIG_HOME=$work/config
-mkdir -p "$work/config/mssim/backends" "$work/pages" "$work/here/few" "$work/here/fewer-folders"
+mkdir -p "$work/config/mssim/backends" "$work/pages" "$work/here/few" "$work/here/fewer-folders" "$work/here/two words"
 echo '{"command": ["true"], "description": "my own"}' >"$work/config/mssim/backends/mine.json"
 cd "$work/here"
 touch few.json fewer.json
@@ -62,6 +62,11 @@ are "$(printf '%s\n' few few.json fewer.json fewer-folders)" run --trace few
 are "$(printf '%s\n' few fewer-folders)" bench --out few
 are "$(printf '%s\n' few few.json fewer.json fewer-folders)" report few few
 are "$(printf 'cloth2500,%s\n' few few.json fewer.json fewer-folders)" bench --scene cloth2500,few
+# Words are as they were typed, with quotes.
+are "$(printf 'few.json,%s\n' few few.json fewer.json fewer-folders)" bench --scene 'few.json\,few'
+are "$cloths" run --scene '"cloth2'
+are "two words" report 'two\ w'
+are "two words" bench --out = '"two w'
 are "$cloths" run --scene = cloth2
 are "$(echo "$scenes" && ls)" run --scene =
 are "" bench --backend openmp : x
@@ -73,6 +78,8 @@ mssim=$work/none are "" ""
 if command -v fish >/dev/null; then
   PATH="${mssim%/*}:$PATH" fish --no-config -c "source $source/mssim.fish; complete -C 'mssim bench --scene bodies3858,cloth2'" | sort >../found
   sort <<<"${cloths//cloth/bodies3858,cloth}" | cmp - ../found || fail "fish: $(cat ../found)"
+  PATH="${mssim%/*}:$PATH" fish --no-config -c "source $source/mssim.fish; complete -C 'mssim report two\\\\ w'" >../found
+  grep -q "^two words" ../found || fail "fish: $(cat ../found)"
 else
   echo "not tried: fish (not installed)"
 fi

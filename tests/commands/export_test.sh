@@ -34,7 +34,7 @@ ends 0 export cloth.h5 --format obj --frames last,0-1,0 --out one/some.obj
 
 # What does not go, in a sentence, and nothing is written.
 mkdir never
-expect 2 '--format WORD is missing; see mssim export --help' export cloth.h5
+expect 2 '--format WORD is missing: give .*obj.*; see mssim export --help' export cloth.h5
 expect 2 'TRACE is missing' export --format ply
 expect 2 'unknown value "stl": known are obj, ply and vtkhdf' export cloth.h5 --format stl
 expect 2 '--time and --frames exclude each other' export cloth.h5 --format ply --frames 0 --time 0

@@ -58,6 +58,9 @@ END
 expect 2 'commit-26.*--replace' history add run --file h.jsonl --commit commit-26
 ends 0 history add run --file h.jsonl --commit commit-26 --replace
 [ "$(wc -l <h.jsonl)" -eq 17 ] || fail "--replace does not replace"
+cp h.jsonl odd.jsonl
+ends 0 history add run --file odd.jsonl --commit $'two\nlines'
+expect 2 '--replace' history add run --file odd.jsonl --commit $'two\nlines'
 ends 0 history add run/timings.csv --file own.jsonl
 grep -q "\"commit\":\"$(grep -o '"commit": "[0-9a-f]*' run/provenance.json | cut -d'"' -f4)" own.jsonl || fail "the commit is not the program's"
 
@@ -107,6 +110,12 @@ expect 2 'bad.jsonl, line 1: malformed JSON' report "$source_run" --no-runs --hi
 [ ! -e bad.html ] || fail "a report of a damaged history is written"
 sed '2s/"schema_version":1/"schema_version":9,"more":[]/' h.jsonl >bad.jsonl
 expect 2 'bad.jsonl, line 2: /schema_version is 9.*version 1' history show --file bad.jsonl
+true >bad.jsonl
+expect 2 'bad.jsonl has no entries.*history add' history show --file bad.jsonl
+expect 2 'bad.jsonl has no entries' report "$source_run" --no-runs --history bad.jsonl --out bad.html
+ends 0 history add run --file bad.jsonl --commit first
+expect 2 'show takes no --commit' history show --file h.jsonl --commit commit-26
+expect 2 'add takes no --last' history add run --file h.jsonl --commit new --last 3
 expect 2 'none.jsonl: there is no such file.*history add' history show --file none.jsonl
 expect 2 'FOLDER.*bench --out' history add --file h.jsonl
 expect 2 'no FOLDER.*--file' history show run --file h.jsonl

@@ -38,6 +38,8 @@ status=0
 verified_everywhere 'a folder/mine' mine
 
 # A second one beside it takes the header that is there.
+ends 0 new-backend other --language c++ --out 'a folder/in it'
+said err 'mssim: wrote a folder/in it/other.cpp'
 ends 0 new-backend other --language c++ --out 'a folder'
 said err 'mssim: wrote a folder/other.cpp'
 
@@ -58,7 +60,7 @@ for name in struct tempfile hashlib; do
   expect 2 "$name is the name of a module of python3, .*my_$name" new-backend "$name" --language python
 done
 expect 2 'NAME is missing' new-backend --language python
-expect 2 '^mssim: --language WORD is missing; see mssim new-backend --help$' new-backend mine
+expect 2 '^mssim: --language WORD is missing: give .*python.*; see mssim new-backend --help$' new-backend mine
 expect 2 'unknown value "pyhton" (did you mean python?): known are c++ and python' new-backend mine --language pyhton
 expect 4 'cannot write none/mine.py: .*: No such file or directory; create its folder first' new-backend mine --language python --out none
 expect 4 'cannot write mine.py/mine.py: .*: Not a directory' new-backend mine --language python --out mine.py

@@ -202,9 +202,14 @@ cp "$guide/guide.csv" "$guide/guide.md"
 report "$guide"
 
 # Mistakes.
-expect 2 '^mssim: DIR... is missing' report
+expect 2 '^mssim: DIR is missing' report
 expect 2 '^mssim: there is no folder /no/such: give folders that mssim bench --out wrote' report /no/such
 expect 2 'there is no folder .*timings.csv' report "$results/table1/zen5/timings.csv"
+mkdir "$work/later"
+cp "$work/base"/*.csv "$work/later"
+echo '{"format_version": 99}' >"$work/later/provenance.json"
+expect 2 'later/provenance.json: /format_version is 99.*newer mssim' report "$work/base" "$work/later" --out "$work/later.html"
+[ ! -e "$work/later.html" ] || fail "a report of a folder that a later mssim wrote"
 expect 4 'cannot write' report "$work/base" --out "$work/no/such/page.html"
 expect 4 'cannot write' report "$work/base" --out "$work/empty"
 expect 2 'timings.csv, .*HTML: give timings.html' report "$work/base" --out "$work/base/timings.csv"

@@ -162,6 +162,10 @@ cp -r "$results/table1/zen4" "$work/unknown"
 rm "$work/unknown/provenance.json"
 ends 2 table "$work/unknown" --format latex --out "$work/never"
 warns 'unknown has no provenance.json'
+cp "$results/table1/zen4/provenance.json" "$work/unknown"
+head -n 1 "$results/table1/zen4/timings.csv" >"$work/unknown/timings.csv"
+ends 2 table "$work/unknown" --format latex --out "$work/never"
+warns 'unknown has no row .*give'
 [ ! -e "$work/never" ] || fail "something was written"
 : >"$work/file"
 ends 4 table "$results/table1/zen4" --format latex --out "$work/file/paper"

@@ -46,8 +46,12 @@ expect 2 'mssim run has no option "-scene" (did you mean --scene?)' run -scene c
 expect 2 'mssim run has no option "--fsp" (did you mean --fps?)' run --scene cloth2500 --fsp=30
 expect 2 'mssim has no option "--verison" (did you mean --version?); see mssim --help' --verison
 expect 2 'mssim compare has no option "--frobnicate"; see mssim compare --help' compare a b --frobnicate
-expect 2 '^mssim: --scene NAME|FILE is missing; see mssim run --help$' run
+expect 2 '^mssim: --scene NAME|FILE is missing: give .*list scenes.*; see mssim run --help$' run
 expect 2 '^mssim: --scene needs a value: give --scene NAME|FILE; see mssim run --help$' run --scene
+expect 2 '^mssim: --integrator: "," names nothing: give a value' bench --scene cloth2500 --integrator , --dry-run
+expect 2 '^mssim: SCENE: "," names nothing' check ,
+ends 0 help report
+says '^Usage: mssim report DIR\.\.\. \['
 expect 2 '^mssim: --scene is given 2 times: give it once;' run --scene cloth2500 --scene cloth4900
 expect 2 '^mssim: --dry-run takes no value: leave it out;' bench --scene cloth2500 --dry-run=perhaps
 expect 2 'mssim bench has no option "--output" (did you mean --out?)' bench --scene cloth2500 --output x

@@ -12,6 +12,8 @@ expect 2 --serve web
 expect 2 html web --out page.txt
 expect 2 --serve web --out page.html --serve
 expect 2 --serve web --out page.html --port 8000
+touch file
+expect 4 'file.*folder' web --serve --results file
 
 ends 0 web --out page.html
 (($(stat -c %s page.html) < 8000000)) || fail "the page has more than 8 MB"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <sstream>
 
 namespace mssim {
 namespace {
@@ -20,6 +21,21 @@ ValueRule number_that(std::string what, Accepts accepts) {
 /// An empty value, for example from an unset variable of a script, would otherwise count as not given.
 std::string filled(const std::string& text) {
   return text.empty() ? "\"\" is empty: give a value, or leave the option out" : "";
+}
+
+/// A list of nothing but commas would count as not given, too, or take the next word for its first name.
+std::string names_something(const std::string& text) {
+  if (text.empty() || text.find_first_not_of(',') != std::string::npos) return filled(text);
+  return fmt::format("\"{}\" names nothing: give a value, or leave the option out", text);
+}
+
+/// The names between commas.
+std::vector<std::string> names_in(std::string_view text) {
+  std::vector<std::string> names;
+  std::istringstream rest{std::string(text)};
+  for (std::string name; std::getline(rest, name, ',');)
+    if (!name.empty()) names.push_back(name);
+  return names;
 }
 
 /// The argument's name without the word for its value.
@@ -117,17 +133,14 @@ Argument Arguments::add_taken(const std::string& name, const std::function<void(
 Argument Arguments::add_list(const std::string& name, std::vector<std::string>& target,
                              const std::string& description,
                              const std::function<std::vector<std::string>(std::string_view)>& split) {
-  const CLI::Validator all_filled(filled, "");
-  if (!split)
-    return {*command_->add_option(name_alone(name), target, description)->delimiter(',')->check(all_filled),
-            name, *offers_};
   const auto take = [&target, split](const std::vector<std::string>& texts) {
     target.clear();
-    for (const std::string& text : texts) std::ranges::move(split(text), std::back_inserter(target));
+    for (const std::string& text : texts)
+      std::ranges::move(split ? split(text) : names_in(text), std::back_inserter(target));
   };
   using Texts = std::vector<std::string>;
-  return {*command_->add_option_function<Texts>(name_alone(name), take, description)->check(all_filled), name,
-          *offers_};
+  CLI::Option* option = command_->add_option_function<Texts>(name_alone(name), take, description);
+  return {*option->check(CLI::Validator(names_something, "")), name, *offers_};
 }
 
 Argument Arguments::add_flag(const std::string& name, bool& target, const std::string& description) {

@@ -82,14 +82,14 @@ std::string subject_of(std::string_view message) {
   return std::string(message.substr(0, message.find_first_of(": ")));
 }
 
-/// Message for a missing option, with the value that it needs.
+/// Message for a missing argument, with what it needs.
 std::string missing(const std::string& name, const CLI::App& command) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return name + " is missing";
-  if (const std::string what = option->get_description(); option->get_positional())
-    return name + " is missing: give " + to_lower(what.substr(0, 1)) +
-           what.substr(std::min<std::size_t>(1, what.size()));
-  return fmt::format("{} {} is missing", name, option->get_type_name());
+  const std::string what = option->get_description();
+  return fmt::format("{}{} is missing: give {}{}", name,
+                     option->get_positional() ? "" : ' ' + option->get_type_name(),
+                     to_lower(what.substr(0, 1)), what.substr(std::min<std::size_t>(1, what.size())));
 }
 
 std::string wrong_count(const std::string& name, const CLI::App& command) {

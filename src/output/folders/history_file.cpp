@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "platform/files.h"
 #include "scene/fields/fields.h"
@@ -103,16 +104,25 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
 
 std::vector<HistoryEntry> read_history(const std::filesystem::path& file) {
   try {
-    return parse_history(file, read_file(file, largest_history_bytes));
+    std::vector<HistoryEntry> history = parse_history(file, read_file(file, largest_history_bytes));
+    if (history.empty())
+      throw UsageError("{} has no entries: add a result folder with mssim history add", file.string());
+    return history;
   } catch (const ReadError& error) {
     throw UsageError(error.sentence(file, "give a file that mssim history add wrote"));
   }
 }
 
-void write_history(const std::filesystem::path& file, const std::vector<HistoryEntry>& history) {
-  std::string text;
-  for (const HistoryEntry& entry : history) text += history_line(entry) + '\n';
-  write_file_atomically(target_of(file), text);
+void change_history(const std::filesystem::path& file,
+                    const std::function<void(std::vector<HistoryEntry>& history)>& change) {
+  AtomicFile written(target_of(file));
+  std::vector<HistoryEntry> history;
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_empty(file, error))
+    history = read_history(file);
+  change(history);
+  for (const HistoryEntry& entry : history) written.append(history_line(entry) + '\n');
+  written.move_into_place();
 }
 
 }  // namespace mssim

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,10 +23,14 @@ std::string history_line(const HistoryEntry& entry);
 /// remedy, for a line that is damaged or has another version.
 std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::string_view text);
 
-/// The entries of a file. Throws like parse_history(), and UsageError for a file that cannot be read.
+/// The entries of a file. Throws like parse_history(), and UsageError for a file that cannot be read or has
+/// no entries.
 std::vector<HistoryEntry> read_history(const std::filesystem::path& file);
 
-/// Writes the whole file. Throws WriteError.
-void write_history(const std::filesystem::path& file, const std::vector<HistoryEntry>& history);
+/// Reads the file, if there is one, has `change` change its entries, and writes it. No other mssim changes it
+/// meanwhile, so none loses an entry. Throws like read_history() and `change`, and WriteError; the file is
+/// then as it was.
+void change_history(const std::filesystem::path& file,
+                    const std::function<void(std::vector<HistoryEntry>& history)>& change);
 
 }  // namespace mssim

@@ -70,13 +70,13 @@ class Place {
             fmt::format("a whole number from 0 to {}", std::numeric_limits<Number>::max()));
     return value_.get<Number>();
   }
-  /// Throws if the document states a later format than `newest`.
+  /// Throws LaterFormatError if the document states a later format than `newest`.
   void require_format(int newest) const {
     const auto version = find("format_version");
     if (version && version->count<int>() > newest)
-      fail(file_,
-           fmt::format("/format_version is {}, and this mssim reads versions up to {}: use a newer mssim",
-                       version->count<int>(), newest));
+      throw LaterFormatError(
+          "{}: /format_version is {}, and this mssim reads versions up to {}: use a newer mssim",
+          file_.string(), version->count<int>(), newest);
   }
   /// 16 hexadecimal digits, as to_hex() writes them.
   std::uint64_t hash() const {
@@ -182,8 +182,8 @@ json programs_json(const std::vector<BackendProgramRecord>& programs) {
 
 Provenance read_document(const Place& document) {
   const auto text_of = [](const Place& place) { return place.text(); };
-  const Place threads = document["threads"];
   document.require_format(folder_format_version);
+  const Place threads = document["threads"];
   Provenance provenance;
   provenance.build = read_build(document["build"]);
   provenance.machine = read_machine(document);

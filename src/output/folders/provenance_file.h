@@ -15,6 +15,11 @@ struct ProvenanceError : ErrorWith<exit_bad_input> {
   using ErrorWith::ErrorWith;
 };
 
+/// Thrown for a folder of a later format version, of which this mssim may misread any file.
+struct LaterFormatError : ProvenanceError {
+  using ProvenanceError::ProvenanceError;
+};
+
 /// Larger files are refused: a provenance has a few thousand bytes, and a wrong file must fill neither the
 /// memory nor a message.
 inline constexpr std::size_t largest_provenance_bytes = std::size_t{256} << 10;
@@ -29,7 +34,7 @@ inline constexpr int folder_format_version = 1;
 std::string provenance_text(const Provenance& provenance);
 
 /// Reads the output of provenance_text. Checks every value. Members that all versions of mssim have written
-/// are required; unknown members are ignored. Throws ProvenanceError, also for a later format version.
+/// are required; unknown members are ignored. Throws ProvenanceError or LaterFormatError.
 Provenance read_provenance(const std::filesystem::path& file);
 
 /// Reads a text; messages name `file`. Throws like read_provenance.

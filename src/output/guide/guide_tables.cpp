@@ -374,8 +374,8 @@ Document guide_page(std::span<const SceneGuide> guides, const std::vector<Result
 std::vector<std::string> about_trusted_state(const TrustedState& trusted) {
   std::vector<std::string> sentences;
   sentences.push_back("Errors are measured " + two_digits(trusted.horizon_s) + " s after the start (" +
-                      trusted.why_there + "; a neighbouring trajectory is then " +
-                      two_digits(trusted.parting) + " times as far away as at the start).");
+                      trusted.why_there + "). At this time, a neighbouring trajectory is " +
+                      two_digits(trusted.parting) + " times as far away as at the start.");
   std::string reference = "The reference is rk4 in double precision with a step of " +
                           two_digits(trusted.dt_s) + " s, whose own error is " +
                           two_digits(trusted.own_error) + " mean rest lengths";

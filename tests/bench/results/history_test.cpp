@@ -5,6 +5,7 @@
 
 #include "output/folders/history_file.h"
 #include "output/tables/results.h"
+#include "platform/files.h"
 #include "scene/fields/fields.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
@@ -149,13 +150,18 @@ TEST_F(HistoryFile, ReadsBackWhatWasWritten) {
   std::vector<HistoryEntry> history = two_levels(3, 0, 1);
   history.push_back(entry(3, std::nullopt));
   history[1].rows[0].device = std::string(300, 'd') + '\n';
-  write_history(folder() / "h.jsonl", history);
+  change_history(folder() / "h.jsonl", [&](std::vector<HistoryEntry>& entries) { entries = history; });
   const std::vector<HistoryEntry> read = read_history(folder() / "h.jsonl");
   ASSERT_EQ(read.size(), history.size());
   for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(history_line(read[i]), history_line(history[i]));
   EXPECT_EQ(read[0].rows[1].ms_per_step, history[0].rows[1].ms_per_step);
   EXPECT_FALSE(read[3].rows[1].verified);
   EXPECT_FALSE(read[3].rows[1].ms_per_step);
+  // One that is changed by two at once would lose what one of them adds.
+  EXPECT_THROW(change_history(folder() / "h.jsonl",
+                              [&](auto&) { change_history(folder() / "h.jsonl", [](auto&) {}); }),
+               WriteError);
+  EXPECT_EQ(read_history(folder() / "h.jsonl").size(), history.size());
 }
 
 TEST_F(HistoryFile, NamesTheLineThatIsWrong) {
