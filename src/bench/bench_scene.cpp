@@ -236,13 +236,12 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   const auto serial = std::ranges::find_if(
       job.backends, [](const BackendInfo* info) { return info->role == BackendRole::baseline; });
   const bool has_serial = serial != job.backends.end(), whole = !job.garment && !job.windowed;
-  const auto make_serial = [&](std::size_t i) {
+  // While nothing else runs, because its time and memory are measured.
+  for (std::size_t i = 0; has_serial && i < results.size(); ++i)
     results[i].serial = make_unjudged(job, **serial, *job.integrators[i], start, results[i].most_steps);
-  };
   for_each_integrator(job, has_serial && whole ? 2 : 1, [&](std::size_t i, std::size_t part) {
     const Integrator& integrator = *job.integrators[i];
     if (part == 1) {
-      make_serial(i);
       if (Combination& made = *results[i].serial; made.backend)
         attempt(made, [&] { step_beside_reference(made, job); });
       return;
@@ -253,7 +252,6 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   });
   if (has_serial)
     for_each_integrator(job, 1, [&](std::size_t i, std::size_t /*part*/) {
-      if (!results[i].serial) make_serial(i);
       judge(*results[i].serial, job, **serial, results[i]);
     });
   return results;

@@ -48,6 +48,9 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.messages_per_step = 0.5;
   row.latency_us = 1.25;
   row.link_gigabytes_per_second = 8;
+  row.setup_s = 0.125;
+  row.compile_s = 0.0625;
+  row.first_step_ms = 4 * ms;
   row.verified = true;
   row.warm_up_trials = 4;
   row.samples_ms = {2 * ms, ms / 2, ms};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "backends/devices/drivers.h"
 #include "integrators/all_integrators.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
@@ -35,10 +36,9 @@ void restart(Combination& combination) {
 
 template <class Work>
 double seconds_of(const Work& work) {
-  using Clock = std::chrono::steady_clock;
-  const auto before = Clock::now();
+  const Stopwatch watch;
   work();
-  return std::chrono::duration<double>(Clock::now() - before).count();
+  return watch.seconds();
 }
 
 /// Times the steps of one sample.
@@ -185,6 +185,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   row.integrator = integrator.name;
   row.dt_s = job.dt_s;
   const auto make = [&] {
+    const double compiled_before = compile_seconds();
+    const Stopwatch watch;
     if (job.garment) {
       auto dressing = make_dressing_backend(info, *job.system, integrator, job.dt_s, job.execution);
       combination.dressing = dressing.get();
@@ -197,6 +199,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     } else {
       combination.backend = make_backend(info, *job.system, integrator, job.dt_s, job.execution);
     }
+    row.setup_s = watch.seconds();
+    if (const double compiled = compile_seconds() - compiled_before; compiled > 0) row.compile_s = compiled;
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
     append_sentence(row.note, combination.backend->note());
@@ -204,6 +208,9 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
     combination.stored_springs = combination.backend->stored_springs();
+    restart(combination);
+    row.first_step_ms = 1000 * seconds_of([&] { combination.backend->step(1); });
+    combination.backend->rest();
   };
   try {
     attempt(combination, make);

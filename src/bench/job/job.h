@@ -15,6 +15,7 @@
 #include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
 #include "garment/fitting/fitting.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

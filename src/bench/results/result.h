@@ -77,6 +77,11 @@ struct MeasuredCosts {
       link_gigabytes_per_second;
 };
 
+/// Costs of a row before its first sample.
+struct PreparationCosts {
+  std::optional<double> setup_s, compile_s, first_step_ms;
+};
+
 /// A row's samples.
 struct Samples {
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
@@ -86,7 +91,7 @@ struct Samples {
 /// One combination of scene, backend and integrator, measured and verified: a row of timings.csv, whose
 /// columns are described by result_columns. Missing values (a failed row's times, a time that was never
 /// published) are empty.
-struct ResultRow : Agreement, MeasuredCosts, Samples {
+struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, Samples {
   std::string scene;
   /// Whether the scene is, to the byte, the one that mssim ships under its name; only such a scene can be a
   /// paper's. Not a column.
@@ -192,6 +197,11 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      &ResultRow::latency_us},
     {"link_gigabytes_per_second", "GB/s", "rate of a large message to a neighbour, while another one comes",
      &ResultRow::link_gigabytes_per_second},
+    {"setup_s", "s", "time to make the backend for the scene, once; of a program, to start and prepare it",
+     &ResultRow::setup_s},
+    {"compile_s", "s", "part of it in which an OpenCL driver compiled; drivers keep kernels of earlier runs",
+     &ResultRow::compile_s},
+    {"first_step_ms", "ms", "time of the first step after that, once", &ResultRow::first_step_ms},
 });
 
 /// Whether both are of the same scene, backend and integrator.
