@@ -65,6 +65,18 @@ std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t a
 /// Compares with the memory available now (available_memory), bytes.
 std::optional<std::string> memory_shortage(std::uint64_t needed);
 
+/// The highest rise of this process's resident memory since construction, at which free memory of the heap is
+/// returned to the system. One at a time: the system knows one peak of a process.
+class MemoryPeak {
+ public:
+  MemoryPeak();
+  /// Bytes; nothing if the system does not let a process forget its earlier peak.
+  std::optional<std::uint64_t> rise() const;
+
+ private:
+  std::optional<std::uint64_t> before_;
+};
+
 /// Restarts the program with the same arguments if OpenMP's threads would spin as long as libgomp does by
 /// default, tens of milliseconds. On CPUs that other programs use, two threads can end up on one CPU, where
 /// each spins while the other should work. libgomp reads its spin count once, before main(). Call it first in

@@ -284,10 +284,13 @@ TEST_F(BenchScene, TellsWhatARowTookBeforeItsSamples) {
   EXPECT_GT(rows[0].setup_s, 0);
   EXPECT_LT(rows[0].setup_s, rows[1].setup_s);
   EXPECT_GT(rows[0].first_step_ms, 0);
+  EXPECT_LT(rows[0].peak_memory_bytes, 4'000'000U);
   EXPECT_GE(rows[1].setup_s, 0.05);
   EXPECT_GE(rows[1].first_step_ms, 30);
   EXPECT_LT(rows[1].ms_per_step, 30);
   EXPECT_EQ(rows[1].compile_s, std::nullopt);
+  EXPECT_GT(rows[1].peak_memory_bytes, 39'000'000U);
+  EXPECT_LT(rows[1].peak_memory_bytes, 50'000'000U);
 }
 
 TEST_F(BenchScene, TellsWhichPartOfTheSetupTheDriverCompiled) {

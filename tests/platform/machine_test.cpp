@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "tests/support/files_fixture.h"
 
@@ -25,6 +26,19 @@ TEST(MemoryShortage, TakesAsManyDigitsAsTellTheTwoApart) {
             "needs at least 0.384 GB of memory, but 0.379 GB are available");
   EXPECT_EQ(memory_shortage(1'000'000'001, 1'000'000'000),
             "needs at least 1.000000001 GB of memory, but 1.000000000 GB are available");
+}
+
+TEST(MemoryPeak, IsTheHighestRiseSinceItsBeginning) {
+  constexpr std::size_t large = 64 << 20, small = 16 << 20;
+  const auto rise_with = [](std::size_t passing, std::size_t lasting) {
+    const MemoryPeak peak;
+    std::vector<char>(passing, 'x').front() = 'y';
+    const std::vector<char> kept(lasting, 'x');
+    EXPECT_EQ(kept.back(), 'x');
+    return peak.rise().value();
+  };
+  EXPECT_NEAR(static_cast<double>(rise_with(large, small)), large, 4e6);
+  EXPECT_NEAR(static_cast<double>(rise_with(small, 0)), small, 4e6) << "what was before is forgotten";
 }
 
 class MadeUpGroups : public TemporaryFolderTest {

@@ -51,6 +51,7 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.setup_s = 0.125;
   row.compile_s = 0.0625;
   row.first_step_ms = 4 * ms;
+  row.peak_memory_bytes = 3'000'000;
   row.verified = true;
   row.warm_up_trials = 4;
   row.samples_ms = {2 * ms, ms / 2, ms};
@@ -65,6 +66,7 @@ inline ResultRow failed_row(const std::string& backend, const std::string& statu
     if (const auto* number = std::get_if<std::optional<double> ResultRow::*>(&column.value))
       (row.**number).reset();
   row.state_hash.reset();
+  row.peak_memory_bytes.reset();
   row.samples_ms.clear();
   row.sample_steps.clear();
   row.rounds = 0;

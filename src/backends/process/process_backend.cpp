@@ -174,6 +174,7 @@ class ProcessBackend final : public WindowBackend {
   }
   std::string end() override { return end_politely(); }
   double processor_seconds() const override { return process_->processor_seconds(); }
+  std::optional<std::uint64_t> program_peak_bytes() const override { return process_->peak_bytes(); }
 
   std::optional<Communication> communication() override {
     if (!introduction_.tells_costs) return std::nullopt;

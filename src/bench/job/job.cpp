@@ -185,6 +185,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   row.integrator = integrator.name;
   row.dt_s = job.dt_s;
   const auto make = [&] {
+    const MemoryPeak peak;
     const double compiled_before = compile_seconds();
     const Stopwatch watch;
     if (job.garment) {
@@ -210,6 +211,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     combination.stored_springs = combination.backend->stored_springs();
     restart(combination);
     row.first_step_ms = 1000 * seconds_of([&] { combination.backend->step(1); });
+    row.peak_memory_bytes = info.program ? combination.backend->program_peak_bytes() : peak.rise();
     combination.backend->rest();
   };
   try {

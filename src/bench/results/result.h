@@ -80,6 +80,7 @@ struct MeasuredCosts {
 /// Costs of a row before its first sample.
 struct PreparationCosts {
   std::optional<double> setup_s, compile_s, first_step_ms;
+  std::optional<std::uint64_t> peak_memory_bytes;
 };
 
 /// A row's samples.
@@ -202,6 +203,10 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"compile_s", "s", "part of it in which an OpenCL driver compiled; drivers keep kernels of earlier runs",
      &ResultRow::compile_s},
     {"first_step_ms", "ms", "time of the first step after that, once", &ResultRow::first_step_ms},
+    {"peak_memory_bytes", "",
+     "largest rise of this process's resident memory from before `setup_s` to after the first step; of a "
+     "program, the peaks of its processes on this machine, added",
+     &ResultRow::peak_memory_bytes},
 });
 
 /// Whether both are of the same scene, backend and integrator.
