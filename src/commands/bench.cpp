@@ -201,6 +201,7 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(options.windows.has_value(), "--windows");
   refuse(!options.verified.empty(), "--verified");
   refuse(options.threads.size() > 1, "a list of --threads");
+  refuse(options.instruction_sets.size() > 1, "a list of --instruction-set");
   refuse(options.format != SummaryFormat::table, "--format");
   GuideOptions guide;
   guide.scenes = scenes_of_suite(options.suite, true);
@@ -281,13 +282,13 @@ std::function<int()> declare_bench(Arguments& arguments) {
   add_backends(
       arguments, options->backends,
       "Backends, or methods with --suite races (default: all of mssim's); NAME:each steps each body for "
-      "itself, NAME:4 takes four threads; a path with a slash, or a described name, is a program of your "
-      "own");
+      "itself, NAME:4 takes four threads, NAME:AVX2 that instruction set; a path with a slash, or a "
+      "described name, is a program of your own");
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);
   add_integrators(arguments, options->integrators,
                   fmt::format("Integrators, or all (default: {})", default_integrators()));
-  declare_execution(arguments, options->execution, &options->threads);
+  declare_execution(arguments, options->execution, &options->threads, &options->instruction_sets);
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",
                        whole_number(1, most_rounds));
@@ -327,6 +328,8 @@ std::function<int()> declare_bench(Arguments& arguments) {
       "are taken");
   return [options] {
     if (!options->threads.empty()) options->execution.threads = std::ranges::max(options->threads);
+    if (!options->instruction_sets.empty())
+      options->execution.instruction_set = options->instruction_sets.front();
     return run(*options);
   };
 }

@@ -62,6 +62,7 @@ struct ExecutionOptions {
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
   DeviceMemory memory = DeviceMemory::shared;  ///< for backends that use a device
   Roots roots = Roots::fast;
+  std::string instruction_set = {};       ///< Highway's name of that of vector code; empty: the best
   std::string scene = {};                 ///< the scene's name, for users' programs
   std::filesystem::path scene_file = {};  ///< the scene's file, for users' programs
   int ranks = 0;                          ///< processes of a program with ranks; 0: as many as threads
