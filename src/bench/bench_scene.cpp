@@ -411,6 +411,16 @@ Clock::duration expected_check(const SceneJob& job, const std::vector<Combinatio
       std::chrono::duration<double>(std::max(longest, all / at_once)));
 }
 
+/// Expected time of the frames of all combinations.
+Clock::duration expected_frames(const SceneJob& job, const std::vector<Combination>& combinations) {
+  if (!job.fps) return {};
+  double seconds = 0;
+  for (const Combination& combination : combinations)
+    if (combination.backend)
+      seconds += timed_frames * steps_of_frame(*job.fps, job.dt_s) * combination.step_seconds;
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
 /// Takes one sample of every combination, in this order, from `start`. Returns false and discards the round
 /// if stopped.
 bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
@@ -478,8 +488,8 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(20160101);  // any fixed seed: a run can be repeated
-  const Clock::time_point rounds_end =
-      job.deadline.value_or(Clock::time_point::max()) - expected_check(job, all, references);
+  const Clock::time_point rounds_end = job.deadline.value_or(Clock::time_point::max()) -
+                                       expected_check(job, all, references) - expected_frames(job, all);
   const FirstRound first{restore(all, job.earlier)};
   SampleSecrets secrets(job, start);
   secrets.choose(first, rounds_end);
@@ -506,6 +516,10 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
   for (Combination& combination : all) {
     if (combination.backend) require_prompt_steps(combination);
+    if (job.fps && combination.backend && !stopped) {
+      watch.progress(fmt::format("frames: {} {}", combination.row.integrator, combination.row.backend), 1);
+      time_frames(combination, job, watch.stop);
+    }
     end(combination);
     combination.backend.reset();
   }

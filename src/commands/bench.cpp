@@ -199,6 +199,7 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(options.output.trace, "--trace");
   refuse(options.rounds.has_value(), "--rounds");
   refuse(options.windows.has_value(), "--windows");
+  refuse(options.fps.has_value(), "--fps");
   refuse(!options.verified.empty(), "--verified");
   refuse(options.threads.size() > 1, "a list of --threads");
   refuse(options.instruction_sets.size() > 1, "a list of --instruction-set");
@@ -296,6 +297,11 @@ std::function<int()> declare_bench(Arguments& arguments) {
       "--time-budget SECONDS", options->time_budget_s,
       "Time limit for the measurement, which takes as many rounds as fit; traces take extra time",
       positive_number());
+  arguments.add_number("--fps N", options->fps,
+                       fmt::format("Also time {} single frames of 1/N s for each combination, after its "
+                                   "samples (columns frame_...), which takes extra time",
+                                   timed_frames),
+                       positive_number());
   arguments.add_number(
       "--windows N", options->windows,
       "Verify cloths in N windows instead of as a whole; only for backends in ranks (default: --ranks + 8 "

@@ -224,6 +224,20 @@ class SlowToBegin final : public OtherSerial {
 constexpr BackendInfo slow_to_begin{
     "slow-to-begin", "", "slow only at first", false, {}, make_other<SlowToBegin>, {}, {}};
 
+/// Takes 20 ms for every tenth request of four steps, and little for the others.
+class Stuttering final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void step(int count) override {
+    if (count == 4 && ++frames % 10 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    OtherSerial::step(count);
+  }
+
+  inline static int frames = 0;
+};
+constexpr BackendInfo stuttering{"stuttering", "", "slow now and then", false, {}, make_other<Stuttering>,
+                                 {},           {}};
+
 class BenchScene : public testing::Test {
  protected:
   BenchScene() {
@@ -301,6 +315,22 @@ TEST_F(BenchScene, TellsWhichPartOfTheSetupTheDriverCompiled) {
   const ResultRow row = run().front();
   EXPECT_GT(row.compile_s, 0);
   EXPECT_LT(row.compile_s, row.setup_s);
+}
+
+TEST_F(BenchScene, TimesSingleFramesIfItIsToldHowMany) {
+  job_.backends = {find_backend("serial"), &stuttering};
+  job_.integrators.resize(1);
+  EXPECT_EQ(run()[0].frame_steps, std::nullopt);
+  job_.fps = 2500;  // 4 steps of 1e-4 s
+  Stuttering::frames = 0;
+  const std::vector<ResultRow> rows = run();
+  EXPECT_EQ(rows[0].frame_steps, 4U);
+  EXPECT_GT(rows[0].frame_p50_ms, 0);
+  EXPECT_LE(rows[0].frame_p50_ms, rows[0].frame_p95_ms);
+  EXPECT_LT(rows[1].frame_p50_ms, 20);
+  EXPECT_GE(rows[1].frame_p95_ms, 20);
+  EXPECT_GE(rows[1].frame_p99_ms, rows[1].frame_p95_ms);
+  EXPECT_GE(Stuttering::frames, timed_frames);
 }
 
 TEST_F(BenchScene, TellsBytesOfAStepASecond) {

@@ -48,6 +48,10 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.messages_per_step = 0.5;
   row.latency_us = 1.25;
   row.link_gigabytes_per_second = 8;
+  row.frame_steps = 33;
+  row.frame_p50_ms = 33 * ms;
+  row.frame_p95_ms = 34 * ms;
+  row.frame_p99_ms = 66 * ms;
   row.setup_s = 0.125;
   row.compile_s = 0.0625;
   row.first_step_ms = 4 * ms;
@@ -67,6 +71,7 @@ inline ResultRow failed_row(const std::string& backend, const std::string& statu
       (row.**number).reset();
   row.state_hash.reset();
   row.peak_memory_bytes.reset();
+  row.frame_steps.reset();
   row.samples_ms.clear();
   row.sample_steps.clear();
   row.rounds = 0;

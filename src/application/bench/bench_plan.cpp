@@ -128,6 +128,7 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   require_device(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.windows = options.windows;
+  settings.fps = options.fps;
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
   return settings;
 }

@@ -291,6 +291,30 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
   return ms;
 }
 
+void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop) {
+  const int steps = steps_of_frame(job.fps.value(), job.dt_s);
+  const int at_a_stretch = std::max(1, combination.most_steps / steps);
+  std::vector<double> frames_ms;
+  attempt(combination, [&] {
+    while (frames_ms.size() < timed_frames) {
+      restart(combination);
+      combination.backend->step(1);  // wakes threads and caches up
+      restart(combination);
+      for (int frame = 0; frame < at_a_stretch && frames_ms.size() < timed_frames; ++frame) {
+        if (stop()) return;
+        frames_ms.push_back(1000 * seconds_of([&] { combination.backend->step(steps); }));
+      }
+    }
+    if (combination.windows ? first_bad_node(*combination.windows, *job.windowed)
+                            : first_bad_node(combination.backend->state()))
+      return fail(combination,
+                  fmt::format("failed: not finite after frames of {}", pluralize(steps, "step")));
+    combination.backend->rest();
+    static_cast<FrameTimes&>(combination.row) = {static_cast<std::uint64_t>(steps), quantile(frames_ms, 0.5),
+                                                 quantile(frames_ms, 0.95), quantile(frames_ms, 0.99)};
+  });
+}
+
 void require_prompt_steps(Combination& combination) {
   constexpr std::size_t fewest_samples = 3;
   if (combination.steps == 1 || combination.windows || combination.sample_seconds.size() < fewest_samples)

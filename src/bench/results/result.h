@@ -83,6 +83,12 @@ struct PreparationCosts {
   std::optional<std::uint64_t> peak_memory_bytes;
 };
 
+/// Times of single frames, after the samples.
+struct FrameTimes {
+  std::optional<std::uint64_t> frame_steps;
+  std::optional<double> frame_p50_ms, frame_p95_ms, frame_p99_ms;
+};
+
 /// A row's samples.
 struct Samples {
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
@@ -92,7 +98,7 @@ struct Samples {
 /// One combination of scene, backend and integrator, measured and verified: a row of timings.csv, whose
 /// columns are described by result_columns. Missing values (a failed row's times, a time that was never
 /// published) are empty.
-struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, Samples {
+struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, FrameTimes, Samples {
   std::string scene;
   /// Whether the scene is, to the byte, the one that mssim ships under its name; only such a scene can be a
   /// paper's. Not a column.
@@ -207,6 +213,10 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      "largest rise of this process's resident memory from before `setup_s` to after the first step; of a "
      "program, the peaks of its processes on this machine, added",
      &ResultRow::peak_memory_bytes},
+    {"frame_steps", "", "steps of a frame, if `--fps` is given", &ResultRow::frame_steps},
+    {"frame_p50_ms", "ms", "time that half of the frames do not exceed", &ResultRow::frame_p50_ms},
+    {"frame_p95_ms", "ms", "time that 95 % of the frames do not exceed", &ResultRow::frame_p95_ms},
+    {"frame_p99_ms", "ms", "time that 99 % of the frames do not exceed", &ResultRow::frame_p99_ms},
 });
 
 /// Whether both are of the same scene, backend and integrator.
