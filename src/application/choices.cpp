@@ -39,6 +39,9 @@ constexpr std::string_view description_extension = ".json";
 /// What follows the colon in hybrid:each.
 constexpr std::string_view each_word = each_suffix.substr(1);
 
+/// What follows the colon in serial:double.
+constexpr std::string_view double_word = "double";
+
 /// The folder of the user's own descriptions; none if the user has no home folder.
 std::optional<fs::path> user_folder() {
   if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
@@ -177,8 +180,8 @@ BackendChoice::Row::Row(BackendProgram its_program)
 BackendChoice::Row::Row(const BackendInfo& of, std::string_view how)
     : name(fmt::format("{}:{}", of.name, how)), info(of) {
   info.name = name;
-  if (how == each_word) {
-    info.each_body = true;
+  if (how == each_word || how == double_word) {
+    (how == each_word ? info.each_body : info.in_double) = true;
     info.role = BackendRole::as_published;
     info.make_dressing = nullptr;
   } else if (const auto threads = number_in<int>(how)) {
@@ -246,6 +249,7 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
           printable(name), each_word);
     return &add_variant(*row, how);
   }
+  if (row && row->role == BackendRole::baseline && how == double_word) return &add_variant(*row, how);
   if (row && row->has_vectors && set) return &add_variant(*row, instruction_set_name(*set));
   BackendProgram program = file ? read_description(*file) : BackendProgram{};
   if (row ? !row->makes_threads && !row->uses_device : !program.in_ranks)

@@ -140,6 +140,7 @@ BackendInfo own_backend(const BackendProgram& program) {
 }
 
 MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bool grid) {
+  if (backend.in_double) return reference_memory(integrator, grid);
   if (is_implicit(integrator))
     return backend.implicit_memory == nullptr ? MemoryUse{} : backend.implicit_memory(integrator, grid);
   return grid ? backend.grid_memory : backend.mesh_memory;
@@ -163,6 +164,9 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
         throw Unavailable(*shortage);
     return each;
   }
+  if (backend.in_double && is_implicit(integrator))
+    throw Unsupported("in double precision it steps explicit integrators only");
+  if (backend.in_double) return make_reference(system, integrator, dt_s);
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);
   if (backend.program != nullptr)

@@ -59,6 +59,7 @@ struct BackendInfo {
   int threads = 0;  ///< fixed by the row; 0: the number requested
   /// Fixed by the row, Highway's name; empty: the requested one.
   std::string_view instruction_set = {};
+  bool in_double = false;  ///< it is make_reference(), for explicit integrators
   bool each_body = false;  ///< one backend per body of the scene; the bodies take a step in turn
   /// The double-precision counterpart of `make_dressing`, against which its garments are verified.
   std::unique_ptr<DressingBackend> (*make_dressing_reference)(const System& system,

@@ -57,7 +57,8 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
 
 void compare_with_peaks(const Combination& combination, const StepSize& size, const Peaks& peaks,
                         ResultRow& row) {
-  if (!row.ms_per_step || row.dressing || is_implicit(*combination.integrator)) return;
+  if (!row.ms_per_step || row.dressing || combination.in_double || is_implicit(*combination.integrator))
+    return;
   const StepCost cost =
       step_cost(*combination.integrator, size_for(combination, size), combination.steps_per_pass);
   const double seconds = *row.ms_per_step / 1000;

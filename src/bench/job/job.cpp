@@ -175,6 +175,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   Combination combination;
   combination.integrator = &integrator;
   combination.start = &start;
+  combination.in_double = info.in_double;
   ResultRow& row = combination.row;
   row.scene = job.name;
   row.nodes = job.windowed ? job.windowed->nodes() : job.system->nodes();

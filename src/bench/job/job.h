@@ -104,6 +104,7 @@ struct Combination {
   ResultRow row;
   const Integrator* integrator = nullptr;
   bool on_host = true;
+  bool in_double = false;  ///< so that the bytes of a step are not those of the roofline
   int steps_per_pass = 0;
   std::optional<std::uint64_t> stored_springs;
   const State* start = nullptr;         ///< start state of every sample of a round

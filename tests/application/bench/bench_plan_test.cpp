@@ -148,6 +148,32 @@ TEST_F(BenchPlanTest, HasARowForEachInstructionSetThatIsAskedFor) {
   EXPECT_THAT([&] { plan_of(options_); }, testing::ThrowsMessage<UsageError>(testing::HasSubstr(best)));
 }
 
+TEST_F(BenchPlanTest, TakesTheBaselineInDoublePrecision) {
+  options_.backends = {"serial", "serial:double"};
+  options_.integrators = {"semi-euler", "rk4", "verlet"};
+  BenchPlan plan = plan_of(options_);
+  ASSERT_THAT(names_in(plan.settings.backends), testing::ElementsAre("serial", "serial:double"));
+  const BackendInfo &single = *plan.settings.backends[0], &twice = *plan.settings.backends[1];
+  EXPECT_NE(twice.role, BackendRole::baseline);
+  const System system = plan.timed.front().prepare().system;
+  const auto end_of = [](Backend& backend) {
+    backend.step(20);
+    return state_hash(backend.state());
+  };
+  for (const Integrator* integrator : plan.settings.integrators) {
+    EXPECT_GT(memory_of(twice, *integrator, true).bytes(*integrator, 1000, 6000, 1),
+              memory_of(single, *integrator, true).bytes(*integrator, 1000, 6000, 1));
+    const auto backend = make_backend(twice, system, *integrator, 1e-4, {});
+    EXPECT_EQ(end_of(*backend), end_of(*make_reference(system, *integrator, 1e-4))) << integrator->name;
+  }
+  EXPECT_THROW(make_backend(twice, system, *find_integrator("implicit-euler"), 1e-4, {}), Unsupported);
+  for (const char* wrong :
+       {"openmp:double", "serial:double:double", "serial:each:double", "serial:double:2"}) {
+    options_.backends = {wrong};
+    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
+  }
+}
+
 TEST_F(BenchPlanTest, TakesABackendThatStepsEachBodyForItself) {
   options_.scenes = {"bodies3858"};
   options_.backends = {"openmp:each:2"};
