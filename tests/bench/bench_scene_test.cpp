@@ -238,6 +238,20 @@ class Stuttering final : public OtherSerial {
 constexpr BackendInfo stuttering{"stuttering", "", "slow now and then", false, {}, make_other<Stuttering>,
                                  {},           {}};
 
+/// A right one for each of whose requests the processors use 3 J.
+class Hungry final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void step(int count) override {
+    OtherSerial::step(count);
+    write_file_atomically(counter, fmt::format("{}\n", used_uj += 3'000'000));
+  }
+
+  inline static std::filesystem::path counter;
+  inline static std::int64_t used_uj = 0;
+};
+constexpr BackendInfo hungry{"hungry", "", "uses energy", false, {}, make_other<Hungry>, {}, {}};
+
 class BenchScene : public testing::Test {
  protected:
   BenchScene() {
@@ -331,6 +345,23 @@ TEST_F(BenchScene, TimesSingleFramesIfItIsToldHowMany) {
   EXPECT_GE(rows[1].frame_p95_ms, 20);
   EXPECT_GE(rows[1].frame_p99_ms, rows[1].frame_p95_ms);
   EXPECT_GE(Stuttering::frames, timed_frames);
+}
+
+class BenchSceneWithEnergy : public BenchScene, public TemporaryFolder {};
+
+TEST_F(BenchSceneWithEnergy, TellsWhatAStepTakes) {
+  const std::filesystem::path zone = path() / "sys/class/powercap/intel-rapl:0";
+  std::filesystem::create_directories(zone);
+  write_file_atomically(zone / "name", "package-0\n");
+  write_file_atomically(zone / "max_energy_range_uj", "262143328850\n");
+  write_file_atomically(Hungry::counter = zone / "energy_uj", "0\n");
+  job_.root = path();
+  job_.backends = {&hungry};
+  job_.integrators.resize(1);
+  const ResultRow row = run().front();
+  EXPECT_NEAR(row.joules_per_step.value() * row.sample_steps.front(), 3, 1e-9);
+  job_.root = path() / "none";
+  EXPECT_EQ(run().front().joules_per_step, std::nullopt);
 }
 
 TEST_F(BenchScene, TellsBytesOfAStepASecond) {

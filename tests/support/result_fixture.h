@@ -48,6 +48,7 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.messages_per_step = 0.5;
   row.latency_us = 1.25;
   row.link_gigabytes_per_second = 8;
+  row.joules_per_step = 0.015625;
   row.frame_steps = 33;
   row.frame_p50_ms = 33 * ms;
   row.frame_p95_ms = 34 * ms;

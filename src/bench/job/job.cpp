@@ -24,6 +24,7 @@ constexpr double least_step_s = 1e-8;
 struct SampleTime {
   double wall_s = 0;
   double processor_s = 0;
+  std::optional<double> joules = {};  ///< of the machine's processors
 };
 
 /// Returns to the state from which samples start.
@@ -50,9 +51,11 @@ SampleTime time_sample(Combination& combination, int steps) {
     restart(combination);
   }
   const double processor_before = backend.processor_seconds();
+  combination.energy.joules();
   // No clock resolves less than 1 ns.
   const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));
-  return {wall_s, backend.processor_seconds() - processor_before};
+  const std::optional<double> joules = combination.energy.joules();
+  return {wall_s, backend.processor_seconds() - processor_before, joules};
 }
 
 /// Description of a row beyond its names.
@@ -176,6 +179,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   combination.integrator = &integrator;
   combination.start = &start;
   combination.in_double = info.in_double;
+  combination.energy = PackageEnergy(job.root);
   ResultRow& row = combination.row;
   row.scene = job.name;
   row.nodes = job.windowed ? job.windowed->nodes() : job.system->nodes();
@@ -287,6 +291,7 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
           fail(combination, "failed: " + *wrong);
     }
     combination.processors.push_back(time.processor_s / time.wall_s);
+    if (time.joules) combination.joules.push_back(*time.joules / combination.steps);
     ms = 1000 * time.wall_s / combination.steps;
   });
   return ms;
@@ -361,6 +366,7 @@ void require_finite(ResultRow& row) {
 
 void summarise_costs(const Combination& combination, ResultRow& row) {
   if (!combination.processors.empty()) row.processors_used = median(combination.processors);
+  if (!combination.joules.empty()) row.joules_per_step = median(combination.joules);
   const std::vector<Communication>& samples = combination.communication;
   if (samples.empty()) return;
   const auto median_of = [&](const auto& cost) {

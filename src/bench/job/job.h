@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -96,6 +97,7 @@ struct SceneJob : BenchSettings {
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   /// Approximate share of the time before the rounds in the whole; for the progress only.
   double preparation = 0.3;
+  std::filesystem::path root = "/";     ///< of the files in which the system tells energies
   std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
 };
 
@@ -115,6 +117,8 @@ struct Combination {
   int steps = 1;                        ///< in a sample
   int most_steps = max_sample_steps;    ///< per sample, so that its end can be compared with the reference
   std::vector<double> processors;       ///< processor seconds per second, for each sample of this run
+  std::vector<double> joules;           ///< per step, for each sample of this run, if the system tells
+  PackageEnergy energy;
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
   std::vector<double> sample_seconds,

@@ -71,7 +71,7 @@ struct Agreement {
 
 /// Costs of a row's steps other than time; medians of the samples.
 struct MeasuredCosts {
-  std::optional<double> processors_used;
+  std::optional<double> processors_used, joules_per_step;
   // For processes that step together (Communication).
   std::optional<double> waiting_share, packing_share, bytes_per_step, messages_per_step, latency_us,
       link_gigabytes_per_second;
@@ -217,6 +217,9 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"frame_p50_ms", "ms", "time that half of the frames do not exceed", &ResultRow::frame_p50_ms},
     {"frame_p95_ms", "ms", "time that 95 % of the frames do not exceed", &ResultRow::frame_p95_ms},
     {"frame_p99_ms", "ms", "time that 99 % of the frames do not exceed", &ResultRow::frame_p99_ms},
+    {"joules_per_step", "J",
+     "energy that the processors' packages used in the timed samples, whoever used them; the median",
+     &ResultRow::joules_per_step},
 });
 
 /// Whether both are of the same scene, backend and integrator.
