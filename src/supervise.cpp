@@ -204,6 +204,22 @@ double processor_seconds() {
   return sum;
 }
 
+/// Sum of the largest resident memory of each living process of the program and its descendants.
+std::uint64_t peak_bytes() {
+  const Processes& living = descendants();
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < living.count; ++i) {
+    char line[128];
+    std::snprintf(line, sizeof line, "/proc/%d/status", living.all[i]);
+    std::FILE* file = std::fopen(line, "re");
+    unsigned long kibibytes = 0;
+    while (file != nullptr && std::fgets(line, sizeof line, file) != nullptr)
+      if (std::sscanf(line, "VmHWM: %lu", &kibibytes) == 1) sum += std::uint64_t{1024} * kibibytes;
+    if (file != nullptr) std::fclose(file);
+  }
+  return sum;
+}
+
 /// Whether the program has ended. It is not reaped yet, so that its group's number is not reused; its ended
 /// orphans are.
 bool has_ended(pid_t program) {
@@ -306,7 +322,8 @@ void attend(pid_t program, Output& output, int signals) {
     if (request == SupervisorRequest::pause) pause_all(program);
     if (request == SupervisorRequest::resume) signal_all(program, SIGCONT);
     const bool timed = request == SupervisorRequest::processor_time;
-    say({SupervisorWord::done, 0, timed ? processor_seconds() : 0});
+    const bool weighed = request == SupervisorRequest::peak_memory;
+    say({SupervisorWord::done, 0, timed ? processor_seconds() : 0, 0, weighed ? peak_bytes() : 0});
   }
 }
 

@@ -39,6 +39,9 @@ constexpr std::string_view description_extension = ".json";
 /// What follows the colon in hybrid:each.
 constexpr std::string_view each_word = each_suffix.substr(1);
 
+/// What follows the colon in serial:double.
+constexpr std::string_view double_word = "double";
+
 /// The folder of the user's own descriptions; none if the user has no home folder.
 std::optional<fs::path> user_folder() {
   if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
@@ -76,6 +79,21 @@ BackendProgram program_at(const std::string& path) {
   return program;
 }
 
+/// As require_instruction_set; none of that name.
+std::optional<std::string_view> instruction_set_named(std::string_view name) {
+  for (const std::string_view set : instruction_sets())
+    if (name == set || name == instruction_set_name(set)) return set;
+  return std::nullopt;
+}
+
+/// Throws UsageError for rows whose number of processes is not one of threads.
+void refuse_list_with_ranks(const std::vector<const BackendInfo*>& rows, std::string_view option) {
+  for (const BackendInfo* info : rows)
+    if (info->program && info->program->in_ranks)
+      throw UsageError("a list of {} cannot be used with {}, which takes processes: leave one of them out",
+                       option, info->name);
+}
+
 /// Whether the number of threads changes how the backend steps; it does not affect a device with its own
 /// processors.
 bool has_threads(const BackendInfo& info, const ExecutionOptions& execution) {
@@ -109,6 +127,13 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
   return chosen;
 }
 
+std::string_view require_instruction_set(const std::string& name) {
+  if (const auto set = instruction_set_named(name)) return *set;
+  std::vector<std::string_view> names;
+  for (const std::string_view set : instruction_sets()) names.push_back(instruction_set_name(set));
+  throw UsageError(unknown_name("instruction set", name, names));
+}
+
 std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
 
 void require_few_threads(int threads, std::string_view asked) {
@@ -125,6 +150,8 @@ ExecutionOptions complete(ExecutionOptions options) {
   if (options.threads > limit)
     throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; give fewer, or unset it",
                      options.threads, limit);
+  if (!options.instruction_set.empty())
+    options.instruction_set = require_instruction_set(options.instruction_set);
   omp_set_dynamic(0);
   return options;
 }
@@ -153,12 +180,14 @@ BackendChoice::Row::Row(BackendProgram its_program)
 BackendChoice::Row::Row(const BackendInfo& of, std::string_view how)
     : name(fmt::format("{}:{}", of.name, how)), info(of) {
   info.name = name;
-  if (how == each_word) {
-    info.each_body = true;
+  if (how == each_word || how == double_word) {
+    (how == each_word ? info.each_body : info.in_double) = true;
     info.role = BackendRole::as_published;
     info.make_dressing = nullptr;
+  } else if (const auto threads = number_in<int>(how)) {
+    info.threads = *threads;
   } else {
-    info.threads = number_in<int>(how).value();
+    info.instruction_set = instruction_set_named(how).value();
   }
 }
 
@@ -205,9 +234,11 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   if (colon == std::string::npos) return nullptr;
   const std::string its_name = name.substr(0, colon), how = name.substr(colon + 1);
   const auto in_table = std::ranges::find(known_, its_name, &BackendInfo::name);
-  const BackendInfo* row = in_table != known_.end()                              ? *in_table
-                           : its_name.ends_with(each_suffix) && how != each_word ? variant(its_name)
-                                                                                 : nullptr;
+  const std::string its_last = its_name.substr(its_name.rfind(':') + 1);
+  const std::optional<std::string_view> set = instruction_set_named(how);
+  const bool is_of_variant =
+      its_last == each_word ? how != each_word : number_in<int>(how) && instruction_set_named(its_last);
+  const BackendInfo* row = in_table != known_.end() ? *in_table : is_of_variant ? variant(its_name) : nullptr;
   const std::optional<fs::path> file = row ? std::nullopt : description_of(its_name);
   if (!row && !file) return nullptr;
   if (how == each_word) {
@@ -218,6 +249,8 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
           printable(name), each_word);
     return &add_variant(*row, how);
   }
+  if (row && row->role == BackendRole::baseline && how == double_word) return &add_variant(*row, how);
+  if (row && row->has_vectors && set) return &add_variant(*row, instruction_set_name(*set));
   BackendProgram program = file ? read_description(*file) : BackendProgram{};
   if (row ? !row->makes_threads && !row->uses_device : !program.in_ranks)
     throw UsageError("{} has a number of ranks or threads, which {} does not take: leave \":{}\" out",
@@ -225,8 +258,11 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   const int most = row ? most_threads : most_ranks;
   const std::optional<int> number = number_in<int>(how);
   if (!number || *number < 1 || *number > most)
-    throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4", printable(name),
-                     row ? "threads" : "ranks", most, its_name);
+    throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4{}", printable(name),
+                     row ? "threads" : "ranks", most, its_name,
+                     row && row->has_vectors ? fmt::format(", or an instruction set, as in {}:{}", its_name,
+                                                           instruction_set_name(instruction_sets().front()))
+                                             : "");
   if (row) return &add_variant(*row, std::to_string(*number));
   program.ranks = *number;
   program.name = fmt::format("{}:{}", its_name, *number);
@@ -251,17 +287,28 @@ std::vector<const BackendInfo*> BackendChoice::with_variants(const std::vector<c
   return all;
 }
 
+std::vector<const BackendInfo*> BackendChoice::with_lesser_sets(const std::vector<const BackendInfo*>& rows,
+                                                                const std::vector<std::string_view>& sets) {
+  if (sets.size() > 1) refuse_list_with_ranks(rows, "--instruction-set");
+  std::vector<const BackendInfo*> all;
+  for (const BackendInfo* info : rows) {
+    for (std::size_t i = sets.size(); info->has_vectors && i-- > 1;)
+      if (const BackendInfo* row = &add_variant(*info, instruction_set_name(sets[i]));
+          std::ranges::find(rows, row) == rows.end())  // named by itself, too
+        all.push_back(row);
+    all.push_back(info);
+  }
+  return all;
+}
+
 std::vector<const BackendInfo*> BackendChoice::with_fewer_threads(const std::vector<const BackendInfo*>& rows,
                                                                   std::vector<int> counts,
                                                                   const ExecutionOptions& execution) {
   std::ranges::sort(counts);
   std::erase_if(counts, [&](int count) { return count >= execution.threads; });
+  if (!counts.empty()) refuse_list_with_ranks(rows, "--threads");
   std::vector<const BackendInfo*> all;
   for (const BackendInfo* info : rows) {
-    if (!counts.empty() && info->program && info->program->in_ranks)
-      throw UsageError(
-          "a list of --threads cannot be used with {}, which takes processes: leave one of them out",
-          info->name);
     if (!counts.empty() && has_threads(*info, execution))
       for (const int count : counts)
         if (const BackendInfo* row = &add_variant(*info, std::to_string(count));

@@ -29,6 +29,10 @@ inline constexpr int most_threads = 4096;
 /// Largest number of processes.
 inline constexpr int most_ranks = 65536;
 
+/// The instruction set of vector code of this name, its usual one or Highway's: as Highway names it. Throws
+/// UsageError with a list if this CPU has none of that name.
+std::string_view require_instruction_set(const std::string& name);
+
 /// The value of --memory.
 std::string name_of(DeviceMemory memory);
 
@@ -36,9 +40,10 @@ std::string name_of(DeviceMemory memory);
 /// --threads.
 void require_few_threads(int threads, std::string_view asked = {});
 
-/// Completes the options. If `threads` is 0, takes one thread per processor that this process may use, within
-/// a container's quota, and has OpenMP provide as many, regardless of OMP_DYNAMIC. Throws UsageError if
-/// OMP_THREAD_LIMIT is lower and, unless a launcher starts the processes elsewhere, like require_few_threads.
+/// Completes the options: `instruction_set` is as require_instruction_set returns it. If `threads` is 0,
+/// takes one thread per processor that this process may use, within a container's quota, and has OpenMP
+/// provide as many, regardless of OMP_DYNAMIC. Throws UsageError if OMP_THREAD_LIMIT is lower, like
+/// require_instruction_set and, unless a launcher starts the processes elsewhere, like require_few_threads.
 ExecutionOptions complete(ExecutionOptions options);
 
 /// Command-line options for programs that are backends.
@@ -73,13 +78,20 @@ class BackendChoice {
 
   /// The row for a name: a row of the table, the file at a path (with a slash), or the program described in
   /// NAME.json. NAME:COUNT is a program in that many ranks, or a row of the table with that many threads.
-  /// NAME:each is a row of the table that steps one body after the other, and NAME:each:COUNT is both. Throws
-  /// UsageError with the nearest name or a list, for an ambiguous name, and like require_few_threads;
-  /// MissingProgram for a path without an executable program; SceneError for a wrong description.
+  /// NAME:each is a row of the table that steps one body after the other, and NAME:SET one whose vector code
+  /// is for that instruction set; NAME:each:COUNT and NAME:SET:COUNT are both. serial:double steps in double
+  /// precision. Throws UsageError with the nearest name or a list, for an ambiguous name, and like
+  /// require_few_threads; MissingProgram for a path without an executable program; SceneError for a wrong
+  /// description.
   const BackendInfo& require(const std::string& name);
 
   /// The rows of these names: first those of the table, in its order, then the others. Throws like require().
   std::vector<const BackendInfo*> require_all(const std::vector<std::string>& names);
+
+  /// `rows`; each that has vector code is preceded by rows for all of `sets` but the best, ascending. Throws
+  /// UsageError like with_fewer_threads.
+  std::vector<const BackendInfo*> with_lesser_sets(const std::vector<const BackendInfo*>& rows,
+                                                   const std::vector<std::string_view>& sets);
 
   /// `rows`, with additional rows for smaller numbers of threads. Each row that has threads is preceded by
   /// rows for those of `counts` below execution.threads, ascending. Throws UsageError if there are several

@@ -36,7 +36,7 @@ std::unique_ptr<DressingBackend> dress_serially(const System& system, const Inte
 
 std::unique_ptr<DressingBackend> dress_by_openmp(const System& system, const Integrator& integrator,
                                                  double dt_s, const ExecutionOptions& options) {
-  return make_openmp_dressing(system, integrator, dt_s, options.threads);
+  return make_openmp_dressing(system, integrator, dt_s, options.threads, options.instruction_set);
 }
 
 std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Integrator& integrator,
@@ -56,7 +56,7 @@ constexpr auto table = std::to_array<BackendInfo>({
      make_threads_mutex, spring_list_memory, spring_list_memory, 1.2},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
      ThreadStack::openmp, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, dress_by_openmp,
-     make_openmp_implicit, openmp_implicit_memory},
+     make_openmp_implicit, openmp_implicit_memory, true},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
      device_slices, 0.12, BackendRole::contender, dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
@@ -92,6 +92,8 @@ void require_threads(const BackendInfo& backend, const ExecutionOptions& options
 }  // namespace
 
 std::span<const BackendInfo> backends() { return table; }
+
+std::vector<std::string_view> instruction_sets() { return openmp_instruction_sets(); }
 
 const BackendInfo& baseline_backend() { return only_row(BackendRole::baseline); }
 
@@ -138,6 +140,7 @@ BackendInfo own_backend(const BackendProgram& program) {
 }
 
 MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bool grid) {
+  if (backend.in_double) return reference_memory(integrator, grid);
   if (is_implicit(integrator))
     return backend.implicit_memory == nullptr ? MemoryUse{} : backend.implicit_memory(integrator, grid);
   return grid ? backend.grid_memory : backend.mesh_memory;
@@ -169,6 +172,9 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
         throw Unavailable(*shortage);
     return each;
   }
+  if (backend.in_double && is_implicit(integrator))
+    throw Unsupported("in double precision it steps explicit integrators only");
+  if (backend.in_double) return make_reference(system, integrator, dt_s);
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);
   if (backend.program != nullptr)

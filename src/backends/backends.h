@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "backends/interface/backend.h"
 #include "backends/process/process_backend.h"
@@ -51,9 +52,14 @@ struct BackendInfo {
                                             const ExecutionOptions& options) = nullptr;
   /// Memory of that backend, for a cloth (`grid`) or bodies; null if `make_implicit` is.
   MemoryUse (*implicit_memory)(const Integrator& integrator, bool grid) = nullptr;
+  /// Whether its steps are vector code, for which ExecutionOptions::instruction_set can be chosen.
+  bool has_vectors = false;
   /// The program that takes its steps. It must outlive the row.
   const BackendProgram* program = nullptr;
-  int threads = 0;         ///< fixed by the row; 0: the number requested
+  int threads = 0;  ///< fixed by the row; 0: the number requested
+  /// Fixed by the row, Highway's name; empty: the requested one.
+  std::string_view instruction_set = {};
+  bool in_double = false;  ///< it is make_reference(), for explicit integrators
   bool each_body = false;  ///< one backend per body of the scene; the bodies take a step in turn
   /// The double-precision counterpart of `make_dressing`, against which its garments are verified.
   std::unique_ptr<DressingBackend> (*make_dressing_reference)(const System& system,
@@ -64,6 +70,7 @@ struct BackendInfo {
 /// The options for its steps: `asked`, except for those that the row fixes.
 inline ExecutionOptions execution_of(const BackendInfo& backend, ExecutionOptions asked) {
   if (backend.threads > 0) asked.threads = backend.threads;
+  if (!backend.instruction_set.empty()) asked.instruction_set = backend.instruction_set;
   return asked;
 }
 
@@ -76,6 +83,10 @@ std::span<const BackendInfo> backends();
 /// The rows of the TABLE of published dressings (garment/stepping/published_dressing.h), in its order. They
 /// step only garments, and have the role `as_published`.
 std::span<const BackendInfo> garment_backends();
+
+/// The instruction sets of vector code (has_vectors) that this CPU supports, by Highway's names, the best
+/// first.
+std::vector<std::string_view> instruction_sets();
 
 /// The row of that role.
 const BackendInfo& baseline_backend();

@@ -57,7 +57,8 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
 
 void compare_with_peaks(const Combination& combination, const StepSize& size, const Peaks& peaks,
                         ResultRow& row) {
-  if (!row.ms_per_step || row.dressing || is_implicit(*combination.integrator)) return;
+  if (!row.ms_per_step || row.dressing || combination.in_double || is_implicit(*combination.integrator))
+    return;
   const StepCost cost =
       step_cost(*combination.integrator, size_for(combination, size), combination.steps_per_pass);
   const double seconds = *row.ms_per_step / 1000;
@@ -236,13 +237,12 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   const auto serial = std::ranges::find_if(
       job.backends, [](const BackendInfo* info) { return info->role == BackendRole::baseline; });
   const bool has_serial = serial != job.backends.end(), whole = !job.garment && !job.windowed;
-  const auto make_serial = [&](std::size_t i) {
+  // While nothing else runs, because its time and memory are measured.
+  for (std::size_t i = 0; has_serial && i < results.size(); ++i)
     results[i].serial = make_unjudged(job, **serial, *job.integrators[i], start, results[i].most_steps);
-  };
   for_each_integrator(job, has_serial && whole ? 2 : 1, [&](std::size_t i, std::size_t part) {
     const Integrator& integrator = *job.integrators[i];
     if (part == 1) {
-      make_serial(i);
       if (Combination& made = *results[i].serial; made.backend)
         attempt(made, [&] { step_beside_reference(made, job); });
       return;
@@ -253,7 +253,6 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   });
   if (has_serial)
     for_each_integrator(job, 1, [&](std::size_t i, std::size_t /*part*/) {
-      if (!results[i].serial) make_serial(i);
       judge(*results[i].serial, job, **serial, results[i]);
     });
   return results;
@@ -413,6 +412,16 @@ Clock::duration expected_check(const SceneJob& job, const std::vector<Combinatio
       std::chrono::duration<double>(std::max(longest, all / at_once)));
 }
 
+/// Expected time of the frames of all combinations.
+Clock::duration expected_frames(const SceneJob& job, const std::vector<Combination>& combinations) {
+  if (!job.fps) return {};
+  double seconds = 0;
+  for (const Combination& combination : combinations)
+    if (combination.backend)
+      seconds += timed_frames * steps_of_frame(*job.fps, job.dt_s) * combination.step_seconds;
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
 /// Takes one sample of every combination, in this order, from `start`. Returns false and discards the round
 /// if stopped.
 bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
@@ -480,8 +489,8 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(20160101);  // any fixed seed: a run can be repeated
-  const Clock::time_point rounds_end =
-      job.deadline.value_or(Clock::time_point::max()) - expected_check(job, all, references);
+  const Clock::time_point rounds_end = job.deadline.value_or(Clock::time_point::max()) -
+                                       expected_check(job, all, references) - expected_frames(job, all);
   const FirstRound first{restore(all, job.earlier)};
   SampleSecrets secrets(job, start);
   secrets.choose(first, rounds_end);
@@ -508,6 +517,10 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
   for (Combination& combination : all) {
     if (combination.backend) require_prompt_steps(combination);
+    if (job.fps && combination.backend && !stopped) {
+      watch.progress(fmt::format("frames: {} {}", combination.row.integrator, combination.row.backend), 1);
+      time_frames(combination, job, watch.stop);
+    }
     end(combination);
     combination.backend.reset();
   }

@@ -199,8 +199,10 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(options.output.trace, "--trace");
   refuse(options.rounds.has_value(), "--rounds");
   refuse(options.windows.has_value(), "--windows");
+  refuse(options.fps.has_value(), "--fps");
   refuse(!options.verified.empty(), "--verified");
   refuse(options.threads.size() > 1, "a list of --threads");
+  refuse(options.instruction_sets.size() > 1, "a list of --instruction-set");
   refuse(options.format != SummaryFormat::table, "--format");
   GuideOptions guide;
   guide.scenes = scenes_of_suite(options.suite, true);
@@ -281,13 +283,13 @@ std::function<int()> declare_bench(Arguments& arguments) {
   add_backends(
       arguments, options->backends,
       "Backends, or methods with --suite races (default: all of mssim's); NAME:each steps each body for "
-      "itself, NAME:4 takes four threads; a path with a slash, or a described name, is a program of your "
-      "own");
+      "itself, NAME:4 takes four threads, NAME:AVX2 that instruction set, serial:double that precision; a "
+      "path with a slash, or a described name, is a program of your own");
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);
   add_integrators(arguments, options->integrators,
                   fmt::format("Integrators, or all (default: {})", default_integrators()));
-  declare_execution(arguments, options->execution, &options->threads);
+  declare_execution(arguments, options->execution, &options->threads, &options->instruction_sets);
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",
                        whole_number(1, most_rounds));
@@ -295,6 +297,11 @@ std::function<int()> declare_bench(Arguments& arguments) {
       "--time-budget SECONDS", options->time_budget_s,
       "Time limit for the measurement, which takes as many rounds as fit; traces take extra time",
       positive_number());
+  arguments.add_number("--fps N", options->fps,
+                       fmt::format("Also time {} single frames of 1/N s for each combination, after its "
+                                   "samples (columns frame_...), which takes extra time",
+                                   timed_frames),
+                       positive_number());
   arguments.add_number(
       "--windows N", options->windows,
       "Verify cloths in N windows instead of as a whole; only for backends in ranks (default: --ranks + 8 "
@@ -327,6 +334,8 @@ std::function<int()> declare_bench(Arguments& arguments) {
       "are taken");
   return [options] {
     if (!options->threads.empty()) options->execution.threads = std::ranges::max(options->threads);
+    if (!options->instruction_sets.empty())
+      options->execution.instruction_set = options->instruction_sets.front();
     return run(*options);
   };
 }

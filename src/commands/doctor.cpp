@@ -169,6 +169,9 @@ std::vector<Checkup> findings_here() {
   std::vector<Checkup> findings = machine_findings(gather_provenance({}, threads));
   findings.insert(findings.begin() + 1, threads_finding(threads));
   findings.push_back(looked_at("memory", "all scenes of --suite table1", look_at_memory));
+  const std::string obstacle = PackageEnergy().obstacle();
+  findings.push_back({"energy counters", obstacle.empty() ? ok : limited, "",
+                      "the column joules_per_step of mssim bench", obstacle});
   add_opencl(findings);
   findings.push_back(looked_at("TetGen", "meshes of bodies: --suite table2 and table3", look_at_tetgen));
   findings.push_back(looked_at("MPI", "backend mpi: several processes or machines", look_at_mpi));

@@ -8,6 +8,7 @@
 
 #include "integrators/all_integrators.h"
 #include "picture/picture.h"
+#include "platform/machine.h"
 #include "scene/scene_file.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -197,14 +198,15 @@ void declare_listing_format(Arguments& arguments, ListingFormat& target) {
       "What to print: table, csv or json (default: table)");
 }
 
-void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads) {
+void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads,
+                       std::vector<std::string>* sets) {
+  constexpr std::string_view several = "; each of several gets rows of its own";
   const std::string meaning =
       "Threads, and compute units of an OpenCL device that is a CPU (default: one per available CPU)";
   if (threads == nullptr)
     arguments.add_number("--threads N", options.threads, meaning, whole_number(1, most_threads));
   else
-    arguments.add_number("--threads N,...", *threads,
-                         meaning + "; each of several numbers gets rows of its own",
+    arguments.add_number("--threads N,...", *threads, meaning + std::string(several),
                          whole_numbers(1, most_threads));
   arguments.add_number("--ranks N", options.ranks,
                        "Processes of the backend mpi, of --threads threads each; mpi:N sets it for one row "
@@ -225,6 +227,15 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vec
       "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and a "
       "Newton step) or exact (bitwise identical on every processor with fused multiply-adds) (default: "
       "fast)");
+  const std::string of_sets =
+      "Instruction set of the vector code of openmp, gather-vectors and mpi (default: the best)";
+  (sets == nullptr ? arguments.add("--instruction-set NAME", options.instruction_set, of_sets)
+                   : arguments.add_list("--instruction-set NAME,...", *sets, of_sets + std::string(several)))
+      .offers([] {
+        std::vector<std::string> names;
+        for (const std::string_view set : instruction_sets()) names.emplace_back(instruction_set_name(set));
+        return names;
+      });
 }
 
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {

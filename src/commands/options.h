@@ -93,9 +93,11 @@ Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
 /// Declares --format for a listing. `target` must outlive the parsing.
 void declare_listing_format(Arguments& arguments, ListingFormat& target);
 
-/// Declares --threads, --ranks, --launcher, --device, --memory and --roots. If `threads` is given, --threads
-/// takes several numbers into it. `options` and `threads` must outlive the parsing.
-void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads = nullptr);
+/// Declares --threads, --ranks, --launcher, --device, --memory, --roots and --instruction-set. If `threads`
+/// and `sets` are given, --threads and --instruction-set take several values into them. All must outlive the
+/// parsing.
+void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads = nullptr,
+                       std::vector<std::string>* sets = nullptr);
 
 /// Declares --backend-folder. `options` must outlive the parsing.
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options);

@@ -1,5 +1,6 @@
 #include "platform/machine.h"
 
+#include <malloc.h>
 #include <omp.h>
 #include <pthread.h>
 #include <sys/ioctl.h>
@@ -17,6 +18,7 @@
 #include <sstream>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "text/text.h"
 
@@ -174,15 +176,15 @@ void add_group(ContainerLimits& limits, const Dialect& dialect, const fs::path& 
   take_least(limits.memory_left, bytes - std::min(bytes, in_use - files));
 }
 
-/// MemAvailable of /proc/meminfo; the largest number if the kernel does not report it.
-std::uint64_t kernel_available() {
-  std::ifstream meminfo("/proc/meminfo");
-  for (std::string key; meminfo >> key;) {
+/// A line "NAME: NUMBER kB" of a file of /proc, in bytes.
+std::optional<std::uint64_t> bytes_in(const char* file, std::string_view name) {
+  std::ifstream in(file);
+  for (std::string key; in >> key;) {
     std::uint64_t kibibytes = 0;
-    if (key == "MemAvailable:" && meminfo >> kibibytes) return kibibytes * 1024;
-    meminfo.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    if (key == name && in >> kibibytes) return kibibytes * 1024;
+    in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   }
-  return std::numeric_limits<std::uint64_t>::max();
+  return std::nullopt;
 }
 
 /// Memory left by the address-space limit.
@@ -312,7 +314,9 @@ ContainerLimits container_limits(const fs::path& root) {
 }
 
 std::uint64_t available_memory() {
-  const std::uint64_t available = std::min(kernel_available(), limit_available());
+  const std::uint64_t available =
+      std::min(bytes_in("/proc/meminfo", "MemAvailable:").value_or(std::numeric_limits<std::uint64_t>::max()),
+               limit_available());
   return std::min(available, container_limits().memory_left.value_or(available));
 }
 
@@ -327,6 +331,53 @@ std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t a
 
 std::optional<std::string> memory_shortage(std::uint64_t needed) {
   return memory_shortage(needed, available_memory());
+}
+
+MemoryPeak::MemoryPeak() {
+  malloc_trim(0);
+  std::ofstream forget("/proc/self/clear_refs");
+  if (forget << "5" << std::flush) before_ = bytes_in("/proc/self/status", "VmRSS:");
+}
+
+std::optional<std::uint64_t> MemoryPeak::rise() const {
+  const std::optional<std::uint64_t> peak = bytes_in("/proc/self/status", "VmHWM:");
+  if (!before_ || !peak) return std::nullopt;
+  return *peak - std::min(*peak, *before_);
+}
+
+PackageEnergy::PackageEnergy(const fs::path& root) {
+  const fs::path folder = root / "sys/class/powercap";
+  obstacle_ =
+      "the system has no energy counters in " + folder.string() + ": use a machine that is not virtual";
+  std::error_code error;
+  for (const fs::directory_entry& zone : fs::directory_iterator(folder, error)) {
+    std::string name;  // others are parts of a package, the whole machine, or the same by another way
+    if (!zone.path().filename().string().starts_with("intel-rapl:") ||
+        !(std::ifstream(zone.path() / "name") >> name) || !name.starts_with("package-"))
+      continue;
+    const std::vector<std::int64_t> range = numbers_in(zone.path() / "max_energy_range_uj"),
+                                    now = numbers_in(zone.path() / "energy_uj");
+    if (range.empty() || now.empty()) {
+      obstacle_ = "the energy counter " + (zone.path() / "energy_uj").string() +
+                  " cannot be read: let its owner allow it (chmod a+r)";
+      counters_.clear();
+      return;
+    }
+    counters_.push_back(
+        {zone.path() / "energy_uj", static_cast<double>(range[0]), static_cast<double>(now[0])});
+  }
+  if (!counters_.empty()) obstacle_.clear();
+}
+
+std::optional<double> PackageEnergy::joules() {
+  double sum_uj = 0;
+  for (Counter& counter : counters_) {
+    const std::vector<std::int64_t> now = numbers_in(counter.file);
+    if (now.empty()) return std::nullopt;
+    const double last_uj = std::exchange(counter.last_uj, static_cast<double>(now[0]));
+    sum_uj += counter.last_uj - last_uj + (counter.last_uj < last_uj ? counter.range_uj : 0);
+  }
+  return counters_.empty() ? std::nullopt : std::optional(1e-6 * sum_uj);
 }
 
 void start_with_short_waits(char** argv) {

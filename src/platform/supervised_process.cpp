@@ -157,6 +157,12 @@ double SupervisedProcess::processor_seconds() const {
   return processor_seconds_;
 }
 
+std::optional<std::uint64_t> SupervisedProcess::peak_bytes() const {
+  SupervisorAnswer answer;
+  if (!ask(SupervisorRequest::peak_memory, answer) || answer.peak_bytes == 0) return std::nullopt;
+  return answer.peak_bytes;
+}
+
 const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
   if (ended_) return end_;
   if (paused_ && patience.count() > 0) resume();
@@ -166,12 +172,16 @@ const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
   return end_;
 }
 
-/// Sends a request and receives its answer. False if the program has ended.
 bool SupervisedProcess::ask(SupervisorRequest request) const {
+  SupervisorAnswer answer;
+  return ask(request, answer);
+}
+
+/// Sends a request and receives its answer. False if the program has ended.
+bool SupervisedProcess::ask(SupervisorRequest request, SupervisorAnswer& answer) const {
   if (ended_) return false;
   // If the supervisor is gone, hear() detects it.
   ::send(channel_.get(), &request, sizeof request, MSG_NOSIGNAL);
-  SupervisorAnswer answer;
   return hear(answer);
 }
 

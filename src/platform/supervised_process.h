@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,7 @@ namespace mssim {
 // "0,1," or empty. Descriptor 3 is its end of the channel, a stream.
 
 /// A one-byte request from mssim. Each is answered. If mssim closes its end, the supervisor kills everything.
-enum class SupervisorRequest : char { pause, resume, processor_time };
+enum class SupervisorRequest : char { pause, resume, processor_time, peak_memory };
 
 /// Kinds of answers of the supervisor.
 enum class SupervisorWord : int {
@@ -37,6 +39,7 @@ struct SupervisorAnswer {
   int value = 0;
   double processor_seconds = 0;  ///< with done and ended
   std::size_t output_bytes = 0;  ///< with ended
+  std::uint64_t peak_bytes = 0;  ///< with done, of peak_memory
 };
 
 /// Maximum size of the output that is kept.
@@ -93,9 +96,13 @@ class SupervisedProcess {
   /// CPU time of the program so far, s: of its living processes by their clocks, and of ended ones if their
   /// parents have waited for them (in clock ticks, 0.01 s).
   double processor_seconds() const;
+  /// Sum of the largest resident memory that each of its living processes has had, bytes; nothing once it has
+  /// ended, or if the system does not tell.
+  std::optional<std::uint64_t> peak_bytes() const;
 
  private:
   bool ask(SupervisorRequest request) const;
+  bool ask(SupervisorRequest request, SupervisorAnswer& answer) const;
   bool says_something() const;
   bool hear(SupervisorAnswer& answer) const;
   void take_end(const SupervisorAnswer& answer) const;

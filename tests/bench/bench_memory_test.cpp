@@ -1,41 +1,16 @@
 #include <gtest/gtest.h>
-#include <malloc.h>
 
-#include <fstream>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
 #include "integrators/all_integrators.h"
+#include "platform/machine.h"
 #include "tests/support/systems.h"
 
 namespace mssim {
 namespace {
-
-/// A line of /proc/self/status, in bytes.
-double status_bytes(const std::string& wanted) {
-  std::ifstream status("/proc/self/status");
-  for (std::string key; status >> key;) {
-    double kibibytes = 0;
-    if (key == wanted + ":" && status >> kibibytes) return 1024 * kibibytes;
-    status.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  ADD_FAILURE() << "no " << wanted;
-  return 0;
-}
-
-/// Bytes that this process has more at its peak during `act` than before.
-template <class Act>
-double growth_during(Act&& act) {
-  malloc_trim(0);  // what earlier tests have left in the heap would be used first
-  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
-  const double before = status_bytes("VmRSS");
-  act();
-  return status_bytes("VmHWM") - before;
-}
 
 std::vector<BackendInfo> backends_and_ways() {
   std::vector<BackendInfo> all(backends().begin(), backends().end());
@@ -51,11 +26,11 @@ constexpr double small_change = 20e6;  // of the runtimes and the heap, whatever
 template <class Make>
 void expect_as_stated(const Make& make, const MemoryUse& use, const Integrator& integrator,
                       const System& system, std::string_view what) {
-  const double grown = growth_during([&] {
-    const auto simulation = make();
-    simulation->step(1);
-    EXPECT_EQ(simulation->state().position.size(), system.nodes());
-  });
+  const MemoryPeak peak;
+  const auto simulation = make();
+  simulation->step(1);
+  EXPECT_EQ(simulation->state().position.size(), system.nodes());
+  const auto grown = static_cast<double>(peak.rise().value());
   const double stated = use.bytes(integrator, system.nodes(), system.springs.size(), two_threads.threads) +
                         2 * sizeof(Vec3d) * static_cast<double>(system.nodes());
   EXPECT_LT(grown, 1.25 * stated + small_change) << integrator.name << ", " << what;

@@ -413,5 +413,16 @@ TEST_F(SupervisedFamilies, CountTheirProcessorTime) {
   EXPECT_LT(process.processor_seconds(), before + 60);
 }
 
+TEST_F(SupervisedFamilies, AddThePeaksOfTheirMemory) {
+  // 30 MB in a child that still runs, and 30 MB that the program had for a moment.
+  const std::string fill = "x=$(head -c 30000000 /dev/zero | tr '\\0' x); x=; ";
+  SupervisedProcess process(shell("(" + fill + "touch child; sleep 60) & " + fill + "touch ready; sleep 60"));
+  ASSERT_TRUE(soon([&] { return exists(folder() / "child") && exists(folder() / "ready"); }));
+  EXPECT_GT(process.peak_bytes(), 60'000'000U);
+  EXPECT_LT(process.peak_bytes(), 300'000'000U);
+  process.end(0s);
+  EXPECT_EQ(process.peak_bytes(), std::nullopt);
+}
+
 }  // namespace
 }  // namespace mssim

@@ -48,6 +48,15 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.messages_per_step = 0.5;
   row.latency_us = 1.25;
   row.link_gigabytes_per_second = 8;
+  row.joules_per_step = 0.015625;
+  row.frame_steps = 33;
+  row.frame_p50_ms = 33 * ms;
+  row.frame_p95_ms = 34 * ms;
+  row.frame_p99_ms = 66 * ms;
+  row.setup_s = 0.125;
+  row.compile_s = 0.0625;
+  row.first_step_ms = 4 * ms;
+  row.peak_memory_bytes = 3'000'000;
   row.verified = true;
   row.warm_up_trials = 4;
   row.samples_ms = {2 * ms, ms / 2, ms};
@@ -62,6 +71,8 @@ inline ResultRow failed_row(const std::string& backend, const std::string& statu
     if (const auto* number = std::get_if<std::optional<double> ResultRow::*>(&column.value))
       (row.**number).reset();
   row.state_hash.reset();
+  row.peak_memory_bytes.reset();
+  row.frame_steps.reset();
   row.samples_ms.clear();
   row.sample_steps.clear();
   row.rounds = 0;

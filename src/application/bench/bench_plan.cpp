@@ -103,19 +103,32 @@ bool has_variants(const BenchOptions& options) {
   return options.backends.empty() && options.execution.threads == 0;
 }
 
+/// The requested instruction sets, the best first.
+std::vector<std::string_view> sets_of(const BenchOptions& options) {
+  std::vector<std::string_view> asked, sets;
+  for (const std::string& name : options.instruction_sets) asked.push_back(require_instruction_set(name));
+  for (const std::string_view set : asked.empty() ? asked : instruction_sets())
+    if (std::ranges::find(asked, set) != asked.end()) sets.push_back(set);
+  return sets;
+}
+
 BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison, BackendChoice& choice) {
   BenchSettings settings;
   ExecutionOptions execution = options.execution;
   if (execution.threads == 0) execution.threads = comparison.threads;
+  const std::vector<std::string_view> sets = sets_of(options);
+  if (!sets.empty()) execution.instruction_set = sets.front();
   settings.execution = complete(execution);
-  settings.backends = choice.with_fewer_threads(backends_of(options, comparison, settings.execution, choice),
-                                                options.threads, settings.execution);
+  settings.backends =
+      choice.with_lesser_sets(backends_of(options, comparison, settings.execution, choice), sets);
+  settings.backends = choice.with_fewer_threads(settings.backends, options.threads, settings.execution);
   if (has_variants(options))
     settings.backends = choice.with_variants(settings.backends, variants_of_suite(options.suite));
   require_use_of_ranks(options.execution, settings.backends);
   require_device(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.windows = options.windows;
+  settings.fps = options.fps;
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
   return settings;
 }

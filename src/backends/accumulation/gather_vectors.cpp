@@ -53,8 +53,9 @@ std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integra
 
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options) {
-  return make_gather_vectors(system, integrator, dt_s, options,
-                             best_kernel(step_kernels<PaddedRows>(integrator), options.roots));
+  return make_gather_vectors(
+      system, integrator, dt_s, options,
+      best_kernel(step_kernels<PaddedRows>(integrator), options.roots, options.instruction_set));
 }
 
 }  // namespace mssim

@@ -28,6 +28,7 @@ cl::Program DeviceQueue::build(const std::string& text) const {
   const cl::Device device(device_.id, true);
   const bool exact =
       (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+  const CompileTimer timer;
   cl::Program program(context_, text);
   try {
     program.build(device, exact ? "-cl-fp32-correctly-rounded-divide-sqrt" : "");

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "backends/devices/device.h"
+#include "backends/devices/drivers.h"
 
 namespace mssim {
 
@@ -252,6 +253,7 @@ class DeviceQueue {
 /// range.
 template <class Stepped>
 void warm_up(Stepped& backend, const State& start, int steps) {
+  const CompileTimer timer;
   backend.set_state(start);
   backend.step(steps);
   backend.set_state(start);

@@ -20,7 +20,6 @@
 
 #include "backends/devices/driver_environment.h"
 #include "platform/files.h"
-#include "platform/machine.h"
 #include "platform/process.h"
 #include "text/text.h"
 
@@ -31,6 +30,7 @@ constexpr const char* vendors_variable = "OCL_ICD_VENDORS";
 constexpr const char* pocl_platform = "Portable Computing Language";
 
 bool relied_on = false;
+thread_local double compiled_s = 0;
 std::function<void(const std::string&)> listener;
 
 /// Findings of the query process.
@@ -284,6 +284,10 @@ void hear_of_slow_drivers(std::function<void(const std::string& sentence)> told)
   listener = std::move(told);
 }
 
+CompileTimer::~CompileTimer() { compiled_s += watch_.seconds(); }
+
+double compile_seconds() { return compiled_s; }
+
 DriverTrial driver_trial_from(std::span<char*> arguments) {
   if (arguments.size() != 6) throw std::invalid_argument("a trial of a driver has six arguments");
   DriverTrial trial{arguments[0], arguments[1], static_cast<SteppedKind>(std::stoi(arguments[2])), {}};
@@ -297,6 +301,7 @@ void try_driver(const DriverTrial& trial, const OpenclDevice& device) {
   if (relied_on) return;
   static std::map<std::vector<std::string>, std::string> failures;
   const auto [tried, is_new] = failures.try_emplace(arguments_of(trial, device));
+  const CompileTimer timer;
   if (is_new) tried->second = failure_of(trial, device);
   if (!tried->second.empty()) throw Unavailable(tried->second);
 }

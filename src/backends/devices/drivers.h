@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backends/devices/device.h"
+#include "platform/machine.h"
 
 namespace mssim {
 
@@ -56,6 +57,22 @@ DriverTrial driver_trial_from(std::span<char*> arguments);
 /// Unavailable if the driver crashed the other process or did not finish in half an hour; the sentence has
 /// the driver's last words. Throws Interrupted.
 void try_driver(const DriverTrial& trial, const OpenclDevice& device);
+
+/// Adds the time for which it lives to compile_seconds().
+class CompileTimer {
+ public:
+  CompileTimer() = default;
+  ~CompileTimer();
+  CompileTimer(const CompileTimer&) = delete;
+  CompileTimer& operator=(const CompileTimer&) = delete;
+
+ private:
+  const Stopwatch watch_;
+};
+
+/// Time for which this thread has waited so far until drivers had compiled, s: trials, builds, and the first
+/// launches, at which some drivers finish compiling.
+double compile_seconds();
 
 /// From now on, `told` receives a sentence, from another thread, when a trial takes longer than ten seconds.
 void hear_of_slow_drivers(std::function<void(const std::string& sentence)> told);

@@ -62,6 +62,7 @@ struct ExecutionOptions {
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
   DeviceMemory memory = DeviceMemory::shared;  ///< for backends that use a device
   Roots roots = Roots::fast;
+  std::string instruction_set = {};       ///< Highway's name of that of vector code; empty: the best
   std::string scene = {};                 ///< the scene's name, for users' programs
   std::filesystem::path scene_file = {};  ///< the scene's file, for users' programs
   int ranks = 0;                          ///< processes of a program with ranks; 0: as many as threads
@@ -146,6 +147,9 @@ class Backend {
     ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
+  /// Sum of the largest resident memory that each living process of its program has had, bytes; none if it
+  /// has no program, or if the system does not tell.
+  virtual std::optional<std::uint64_t> program_peak_bytes() const { return std::nullopt; }
 };
 
 /// Peak memory of a backend, usually reached during construction: bytes per node, per node and pair that the

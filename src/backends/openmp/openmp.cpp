@@ -63,9 +63,11 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
+  const auto best =
+      best_kernel(step_kernels<SlicedBodies>(integrator), options.roots, options.instruction_set);
   return make_openmp(system, integrator, dt_s, static_cast<std::size_t>(options.threads),
-                     best_kernel(step_kernels<SlicedBodies>(integrator), options.roots).instruction_set,
-                     options.roots);
+                     best.instruction_set,
+                     options.instruction_set.empty() ? std::optional(options.roots) : std::nullopt);
 }
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,

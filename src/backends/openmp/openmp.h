@@ -10,9 +10,10 @@ namespace mssim {
 
 /// The harness's own multi-threaded CPU code for cloths and bodies: vectors over bands of a cloth (BandGrid)
 /// or over bodies (SlicedBodies, BodyLanes), fused stages, columns or slices distributed over OpenMP threads,
-/// bitwise identical for every number of threads. Uses the best instruction set with options.roots; for alike
-/// bodies a narrower one that needs no more vectors. Throws Unsupported for a garment, for bodies with
-/// springs of different materials at a node, and for more nodes than the layout can number.
+/// bitwise identical for every number of threads. Uses options.instruction_set or else the best one with
+/// options.roots; for alike bodies a narrower one that needs no more vectors. Throws Unsupported for a
+/// garment, for bodies with springs of different materials at a node, and for more nodes than the layout can
+/// number.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 

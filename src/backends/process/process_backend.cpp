@@ -40,6 +40,7 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
     all.push_back("MSSIM_INTEGRATOR=" + std::string(integrator.name));
     all.push_back("MSSIM_SCENE_FILE=" + std::filesystem::absolute(options.scene_file).string());
     all.push_back(std::string("MSSIM_ROOTS=") + (options.roots == Roots::exact ? "exact" : "fast"));
+    if (!options.instruction_set.empty()) all.push_back("MSSIM_INSTRUCTION_SET=" + options.instruction_set);
   }
   all.insert(all.end(), program.environment.begin(), program.environment.end());
   return all;
@@ -172,6 +173,7 @@ class ProcessBackend final : public WindowBackend {
   }
   std::string end() override { return end_politely(); }
   double processor_seconds() const override { return process_->processor_seconds(); }
+  std::optional<std::uint64_t> program_peak_bytes() const override { return process_->peak_bytes(); }
 
   std::optional<Communication> communication() override {
     if (!introduction_.tells_costs) return std::nullopt;

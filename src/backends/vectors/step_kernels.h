@@ -50,12 +50,18 @@ std::vector<StepKernel<Data>> step_kernels(const Integrator& integrator) {
   return compiled_kernels<Data, 3>();
 }
 
-/// The best of these kernels with these `roots`. Throws Unavailable if there is none.
+/// The best of these kernels with these `roots` and, if one is named, for this instruction set. Throws
+/// Unavailable if there is none.
 template <class Data>
-StepKernel<Data> best_kernel(const std::vector<StepKernel<Data>>& kernels, Roots roots) {
+StepKernel<Data> best_kernel(const std::vector<StepKernel<Data>>& kernels, Roots roots,
+                             std::string_view instruction_set = {}) {
   for (const StepKernel<Data>& kernel : kernels)
-    if (roots == Roots::fast || kernel.exact_roots) return kernel;
-  throw Unavailable("no vector code for this CPU has exact roots");
+    if ((roots == Roots::fast || kernel.exact_roots) &&
+        (instruction_set.empty() || kernel.instruction_set == instruction_set))
+      return kernel;
+  if (instruction_set.empty()) throw Unavailable("no vector code for this CPU has exact roots");
+  throw Unavailable("the vector code for " + std::string(instruction_set) +
+                    (roots == Roots::exact ? " has no exact roots" : " is not for this CPU"));
 }
 
 /// The kernel for an instruction set. Throws std::invalid_argument if it is not among these.
@@ -125,12 +131,13 @@ std::unique_ptr<Backend> make_vector_backend(const System& system, double dt_s, 
   return make(std::type_identity<Bodies>());
 }
 
-/// make_vector_backend with the best instruction set that has options.roots.
+/// make_vector_backend with the best instruction set that has options.roots, or with options.instruction_set.
 template <class Cloth, class Bodies, class... More>
 std::unique_ptr<Backend> make_vector_backend(const System& system, double dt_s,
                                              const ExecutionOptions& options, const More&... more) {
   return make_vector_backend<Cloth, Bodies>(
-      system, dt_s, options.threads, best_kernel(compiled_kernels<Cloth>(), options.roots).instruction_set,
+      system, dt_s, options.threads,
+      best_kernel(compiled_kernels<Cloth>(), options.roots, options.instruction_set).instruction_set,
       more...);
 }
 

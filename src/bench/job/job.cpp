@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "backends/devices/drivers.h"
 #include "integrators/all_integrators.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
@@ -23,6 +24,7 @@ constexpr double least_step_s = 1e-8;
 struct SampleTime {
   double wall_s = 0;
   double processor_s = 0;
+  std::optional<double> joules = {};  ///< of the machine's processors
 };
 
 /// Returns to the state from which samples start.
@@ -35,10 +37,9 @@ void restart(Combination& combination) {
 
 template <class Work>
 double seconds_of(const Work& work) {
-  using Clock = std::chrono::steady_clock;
-  const auto before = Clock::now();
+  const Stopwatch watch;
   work();
-  return std::chrono::duration<double>(Clock::now() - before).count();
+  return watch.seconds();
 }
 
 /// Times the steps of one sample.
@@ -50,9 +51,11 @@ SampleTime time_sample(Combination& combination, int steps) {
     restart(combination);
   }
   const double processor_before = backend.processor_seconds();
+  combination.energy.joules();
   // No clock resolves less than 1 ns.
   const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));
-  return {wall_s, backend.processor_seconds() - processor_before};
+  const std::optional<double> joules = combination.energy.joules();
+  return {wall_s, backend.processor_seconds() - processor_before, joules};
 }
 
 /// Description of a row beyond its names.
@@ -175,6 +178,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   Combination combination;
   combination.integrator = &integrator;
   combination.start = &start;
+  combination.in_double = info.in_double;
+  combination.energy = PackageEnergy(job.root);
   ResultRow& row = combination.row;
   row.scene = job.name;
   row.nodes = job.windowed ? job.windowed->nodes() : job.system->nodes();
@@ -185,6 +190,9 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   row.integrator = integrator.name;
   row.dt_s = job.dt_s;
   const auto make = [&] {
+    const MemoryPeak peak;
+    const double compiled_before = compile_seconds();
+    const Stopwatch watch;
     if (job.garment) {
       auto dressing = make_dressing_backend(info, *job.system, integrator, job.dt_s, job.execution);
       combination.dressing = dressing.get();
@@ -197,6 +205,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     } else {
       combination.backend = make_backend(info, *job.system, integrator, job.dt_s, job.execution);
     }
+    row.setup_s = watch.seconds();
+    if (const double compiled = compile_seconds() - compiled_before; compiled > 0) row.compile_s = compiled;
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
     append_sentence(row.note, combination.backend->note());
@@ -204,6 +214,10 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
     combination.stored_springs = combination.backend->stored_springs();
+    restart(combination);
+    row.first_step_ms = 1000 * seconds_of([&] { combination.backend->step(1); });
+    row.peak_memory_bytes = info.program ? combination.backend->program_peak_bytes() : peak.rise();
+    combination.backend->rest();
   };
   try {
     attempt(combination, make);
@@ -277,9 +291,34 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
           fail(combination, "failed: " + *wrong);
     }
     combination.processors.push_back(time.processor_s / time.wall_s);
+    if (time.joules) combination.joules.push_back(*time.joules / combination.steps);
     ms = 1000 * time.wall_s / combination.steps;
   });
   return ms;
+}
+
+void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop) {
+  const int steps = steps_of_frame(job.fps.value(), job.dt_s);
+  const int at_a_stretch = std::max(1, combination.most_steps / steps);
+  std::vector<double> frames_ms;
+  attempt(combination, [&] {
+    while (frames_ms.size() < timed_frames) {
+      restart(combination);
+      combination.backend->step(1);  // wakes threads and caches up
+      restart(combination);
+      for (int frame = 0; frame < at_a_stretch && frames_ms.size() < timed_frames; ++frame) {
+        if (stop()) return;
+        frames_ms.push_back(1000 * seconds_of([&] { combination.backend->step(steps); }));
+      }
+    }
+    if (combination.windows ? first_bad_node(*combination.windows, *job.windowed)
+                            : first_bad_node(combination.backend->state()))
+      return fail(combination,
+                  fmt::format("failed: not finite after frames of {}", pluralize(steps, "step")));
+    combination.backend->rest();
+    static_cast<FrameTimes&>(combination.row) = {static_cast<std::uint64_t>(steps), quantile(frames_ms, 0.5),
+                                                 quantile(frames_ms, 0.95), quantile(frames_ms, 0.99)};
+  });
 }
 
 void require_prompt_steps(Combination& combination) {
@@ -327,6 +366,7 @@ void require_finite(ResultRow& row) {
 
 void summarise_costs(const Combination& combination, ResultRow& row) {
   if (!combination.processors.empty()) row.processors_used = median(combination.processors);
+  if (!combination.joules.empty()) row.joules_per_step = median(combination.joules);
   const std::vector<Communication>& samples = combination.communication;
   if (samples.empty()) return;
   const auto median_of = [&](const auto& cost) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -15,6 +18,7 @@
 #include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
 #include "garment/fitting/fitting.h"
+#include "platform/machine.h"
 
 namespace mssim {
 
@@ -58,11 +62,20 @@ struct BenchSettings {
   int rounds = 0;                   ///< an upper limit if there is a deadline
   std::optional<int> windows = {};  ///< number of windows in which a cloth is verified instead of as a whole
   double sample_seconds = 0.1;      ///< target length of a sample
+  std::optional<double> fps = {};   ///< also times single frames of this rate, timed_frames of each row
   std::optional<ReferenceCache> references = {};  ///< none: references are not kept for later runs
   /// Rows of an earlier process of the same program that verified every combination. If set, only samples are
   /// taken, of the combinations that these rows verify.
   std::optional<std::vector<ResultRow>> verified = {};
 };
+
+/// Frames of a row that are timed: the 99th percentile is the third largest.
+inline constexpr int timed_frames = 300;
+
+/// Steps of a frame, at least 1.
+inline int steps_of_frame(double fps, double dt_s) {
+  return static_cast<int>(std::clamp(std::round(1 / (fps * dt_s)), 1.0, 1e9));
+}
 
 /// Number of combinations of a scene.
 inline std::size_t combinations(const BenchSettings& settings) {
@@ -84,6 +97,7 @@ struct SceneJob : BenchSettings {
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   /// Approximate share of the time before the rounds in the whole; for the progress only.
   double preparation = 0.3;
+  std::filesystem::path root = "/";     ///< of the files in which the system tells energies
   std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
 };
 
@@ -92,6 +106,7 @@ struct Combination {
   ResultRow row;
   const Integrator* integrator = nullptr;
   bool on_host = true;
+  bool in_double = false;  ///< so that the bytes of a step are not those of the roofline
   int steps_per_pass = 0;
   std::optional<std::uint64_t> stored_springs;
   const State* start = nullptr;         ///< start state of every sample of a round
@@ -102,6 +117,8 @@ struct Combination {
   int steps = 1;                        ///< in a sample
   int most_steps = max_sample_steps;    ///< per sample, so that its end can be compared with the reference
   std::vector<double> processors;       ///< processor seconds per second, for each sample of this run
+  std::vector<double> joules;           ///< per step, for each sample of this run, if the system tells
+  PackageEnergy energy;
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
   std::vector<double> sample_seconds,
@@ -152,6 +169,11 @@ void calibrate(Combination& combination, const SceneJob& job);
 /// `first`: if the sample's end is to be checked, the first node to examine (sample_end).
 std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
                                 std::optional<std::size_t> first);
+
+/// Times job.fps frames one after the other, each by itself. Returns to the start of samples before a frame
+/// would simulate further than samples may. Ends without a result if `stop` returns true. The row fails if
+/// the result is not finite, or if the backend's program fails.
+void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop);
 
 /// Fails the combination if its samples show that steps are not taken while the clock runs, but when the
 /// state is requested: the more steps there were, the longer reading it then takes.

@@ -71,10 +71,22 @@ struct Agreement {
 
 /// Costs of a row's steps other than time; medians of the samples.
 struct MeasuredCosts {
-  std::optional<double> processors_used;
+  std::optional<double> processors_used, joules_per_step;
   // For processes that step together (Communication).
   std::optional<double> waiting_share, packing_share, bytes_per_step, messages_per_step, latency_us,
       link_gigabytes_per_second;
+};
+
+/// Costs of a row before its first sample.
+struct PreparationCosts {
+  std::optional<double> setup_s, compile_s, first_step_ms;
+  std::optional<std::uint64_t> peak_memory_bytes;
+};
+
+/// Times of single frames, after the samples.
+struct FrameTimes {
+  std::optional<std::uint64_t> frame_steps;
+  std::optional<double> frame_p50_ms, frame_p95_ms, frame_p99_ms;
 };
 
 /// A row's samples.
@@ -86,7 +98,7 @@ struct Samples {
 /// One combination of scene, backend and integrator, measured and verified: a row of timings.csv, whose
 /// columns are described by result_columns. Missing values (a failed row's times, a time that was never
 /// published) are empty.
-struct ResultRow : Agreement, MeasuredCosts, Samples {
+struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, FrameTimes, Samples {
   std::string scene;
   /// Whether the scene is, to the byte, the one that mssim ships under its name; only such a scene can be a
   /// paper's. Not a column.
@@ -192,6 +204,22 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      &ResultRow::latency_us},
     {"link_gigabytes_per_second", "GB/s", "rate of a large message to a neighbour, while another one comes",
      &ResultRow::link_gigabytes_per_second},
+    {"setup_s", "s", "time to make the backend for the scene, once; of a program, to start and prepare it",
+     &ResultRow::setup_s},
+    {"compile_s", "s", "part of it in which an OpenCL driver compiled; drivers keep kernels of earlier runs",
+     &ResultRow::compile_s},
+    {"first_step_ms", "ms", "time of the first step after that, once", &ResultRow::first_step_ms},
+    {"peak_memory_bytes", "",
+     "largest rise of this process's resident memory from before `setup_s` to after the first step; of a "
+     "program, the peaks of its processes on this machine, added",
+     &ResultRow::peak_memory_bytes},
+    {"frame_steps", "", "steps of a frame, if `--fps` is given", &ResultRow::frame_steps},
+    {"frame_p50_ms", "ms", "time that half of the frames do not exceed", &ResultRow::frame_p50_ms},
+    {"frame_p95_ms", "ms", "time that 95 % of the frames do not exceed", &ResultRow::frame_p95_ms},
+    {"frame_p99_ms", "ms", "time that 99 % of the frames do not exceed", &ResultRow::frame_p99_ms},
+    {"joules_per_step", "J",
+     "energy that the processors' packages used in the timed samples, whoever used them; the median",
+     &ResultRow::joules_per_step},
 });
 
 /// Whether both are of the same scene, backend and integrator.

@@ -109,6 +109,71 @@ TEST_F(BenchPlanTest, TakesABackendOnItsOwnNumberOfThreads) {
   }
 }
 
+TEST_F(BenchPlanTest, HasARowForEachInstructionSetThatIsAskedFor) {
+  const std::vector<std::string_view> sets = instruction_sets();  // the best first
+  if (sets.size() < 2) GTEST_SKIP() << "this CPU has vector code for one instruction set only";
+  const std::string best(instruction_set_name(sets[0])), other(instruction_set_name(sets.back()));
+  options_.backends = {"serial", "openmp"};
+  options_.instruction_sets = {other, best, other};
+  options_.threads = {1, 2};
+  options_.execution.threads = 2;
+  BenchPlan plan = plan_of(options_);
+  EXPECT_THAT(
+      names_in(plan.settings.backends),
+      testing::ElementsAre("serial", "openmp:" + other + ":1", "openmp:" + other, "openmp:1", "openmp"));
+  const System system = plan.timed.front().prepare().system;
+  for (const BackendInfo* backend : plan.settings.backends) {
+    if (!backend->has_vectors) continue;
+    const auto made =
+        make_backend(*backend, system, *find_integrator("semi-euler"), 1e-4, plan.settings.execution);
+    const bool is_other = backend->name.starts_with("openmp:" + other);
+    EXPECT_EQ(made->device(), "cpu " + std::string(is_other ? sets.back() : sets[0])) << backend->name;
+    EXPECT_EQ(made->threads(), backend->name.ends_with(":1") ? 1 : 2) << backend->name;
+  }
+
+  options_.threads = {};
+  options_.instruction_sets = {other};
+  options_.backends = {"openmp", "openmp:" + best};
+  plan = plan_of(options_);
+  EXPECT_THAT(names_in(plan.settings.backends), testing::ElementsAre("openmp", "openmp:" + best));
+  EXPECT_EQ(plan.settings.execution.instruction_set, sets.back());
+  EXPECT_EQ(execution_of(*plan.settings.backends[1], plan.settings.execution).instruction_set, sets[0]);
+
+  for (const std::string& wrong : {"serial:" + best, "openmp:" + best + ":" + other, "openmp:1:" + best}) {
+    options_.backends = {wrong};
+    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
+  }
+  options_.backends = {"openmp"};
+  options_.instruction_sets = {"parallel"};
+  EXPECT_THAT([&] { plan_of(options_); }, testing::ThrowsMessage<UsageError>(testing::HasSubstr(best)));
+}
+
+TEST_F(BenchPlanTest, TakesTheBaselineInDoublePrecision) {
+  options_.backends = {"serial", "serial:double"};
+  options_.integrators = {"semi-euler", "rk4", "verlet"};
+  BenchPlan plan = plan_of(options_);
+  ASSERT_THAT(names_in(plan.settings.backends), testing::ElementsAre("serial", "serial:double"));
+  const BackendInfo &single = *plan.settings.backends[0], &twice = *plan.settings.backends[1];
+  EXPECT_NE(twice.role, BackendRole::baseline);
+  const System system = plan.timed.front().prepare().system;
+  const auto end_of = [](Backend& backend) {
+    backend.step(20);
+    return state_hash(backend.state());
+  };
+  for (const Integrator* integrator : plan.settings.integrators) {
+    EXPECT_GT(memory_of(twice, *integrator, true).bytes(*integrator, 1000, 6000, 1),
+              memory_of(single, *integrator, true).bytes(*integrator, 1000, 6000, 1));
+    const auto backend = make_backend(twice, system, *integrator, 1e-4, {});
+    EXPECT_EQ(end_of(*backend), end_of(*make_reference(system, *integrator, 1e-4))) << integrator->name;
+  }
+  EXPECT_THROW(make_backend(twice, system, *find_integrator("implicit-euler"), 1e-4, {}), Unsupported);
+  for (const char* wrong :
+       {"openmp:double", "serial:double:double", "serial:each:double", "serial:double:2"}) {
+    options_.backends = {wrong};
+    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
+  }
+}
+
 TEST_F(BenchPlanTest, TakesABackendThatStepsEachBodyForItself) {
   options_.scenes = {"bodies3858"};
   options_.backends = {"openmp:each:2"};
