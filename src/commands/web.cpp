@@ -49,7 +49,7 @@ int web(const WebOptions& options) {
     std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
     return exit_ok;
   }
-  AtomicFile(make_folder(options.results) / "results").remove();  // before a phone has measured
+  AtomicFile(make_folder(options.results) / ".probe").remove();  // before a phone has measured
   serve_page(
       web_page(), options.port, options.once,
       [&](const std::string& text) { return keep(options.results, text); },
