@@ -32,9 +32,8 @@ struct BackendInfo {
   bool uses_device;              ///< needs an OpenCL device
   /// The stack of its threads, if it creates as many as requested.
   std::optional<ThreadStack> makes_threads;
-  /// Makes a backend for a cloth or bodies and an explicit integrator, at the system's start state. `system`
-  /// must outlive it. Throws Unavailable or Unsupported. Null if a program takes its steps, or if it steps
-  /// garments only.
+  /// Makes a backend for a cloth or bodies and an explicit integrator, at the start state. `system` must
+  /// outlive it. Throws Unavailable or Unsupported. Null if a program steps, or if it only steps garments.
   std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth
@@ -136,9 +135,8 @@ inline bool steps_bodies(const BackendInfo& backend) {
 std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options);
 
 /// The integrator in double precision on one thread, at the system's start: the reference for verifying every
-/// timed row. Solvers of implicit integrators iterate until they improve no more; a long step ends when
-/// `stop` returns true, and the state is then useless. `system` must outlive it. Throws Unsupported for a
-/// garment.
+/// timed row. Solvers of implicit integrators iterate until they improve no more; if `stop` returns true, a
+/// long step ends with a useless state. `system` must outlive it. Throws Unsupported for a garment.
 std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s,
                                         const std::function<bool()>& stop = {});
 
@@ -146,8 +144,7 @@ std::unique_ptr<Backend> make_reference(const System& system, const Integrator& 
 MemoryUse reference_memory(const Integrator& integrator, bool grid);
 
 /// Runs mssim as another process for try_driver (devices/drivers.h) with these arguments: makes the backend
-/// for a small system, and ends with exit code 0 even if that throws: the requesting process then throws the
-/// same.
+/// for a small system, and ends with exit code 0 even if that throws: the requester then throws the same.
 [[noreturn]] void run_driver_trial(std::span<char*> arguments);
 
 }  // namespace mssim

@@ -44,8 +44,7 @@ inline constexpr std::array<std::string_view, 12> series_colours{"#2f7ed8", "#b8
 /// Reference lines are numbered separately.
 std::vector<std::size_t> looks_of(std::span<const Series> series, std::span<const std::string> fixed = {});
 
-/// Any text as a chart shows it: on one line, of characters allowed in XML, at most `most` letters wide; a
-/// longer text ends in "…".
+/// Any text as a chart shows it: a line of XML's characters, at most `most` letters wide; if cut, with "…".
 std::string shown_text(std::string_view text, std::size_t most);
 
 /// The same text on at most three lines, broken at spaces if possible.
@@ -61,8 +60,7 @@ struct AxisScale {
   double fraction(double value) const;
 };
 
-/// A scale with a small margin around the finite values from `low` to `high`. It begins at zero if it would
-/// begin near it.
+/// A scale with a small margin around the finite values from `low` to `high`. It begins at zero if near it.
 AxisScale linear_scale(double low, double high);
 
 /// A logarithmic scale of positive values: ticks at powers of ten, and between them if there are few.

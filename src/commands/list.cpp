@@ -1,7 +1,5 @@
-#include <algorithm>
 #include <array>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <vector>

@@ -87,8 +87,7 @@ std::string bench_command(const fs::path& program) {
   return "mssim bench --scene cloth2500 --backend " + shell_word("serial,openmp," + program.string());
 }
 
-/// The starter with that name, whose files are to be in `folder`. Throws UsageError for a name that would not
-/// work.
+/// The starter of that name, for files in `folder`. Throws UsageError for a name that would not work.
 Starter starter_of(const std::string& name, StarterLanguage language, const fs::path& folder) {
   require_usable(name);
   const fs::path program = folder / name;

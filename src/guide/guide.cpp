@@ -28,8 +28,7 @@ class GuideClock {
     for (const LateProgram& program : programs) forgiven_ += program.seconds;
   }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
-  /// End of a part that starts now, in seconds of this clock, with the fraction `later` left for the
-  /// following parts.
+  /// End of a part that starts now, in seconds of this clock, with the fraction `later` left for later parts.
   double end_of_part(double share, double later) const {
     return std::max(spent() + share * seconds_, (1 - later) * seconds_);
   }

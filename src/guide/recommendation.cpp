@@ -229,8 +229,7 @@ std::string integrators_of(std::span<const Compared> compared) {
   return listed(names);
 }
 
-/// Compares the order of the integrators by time per step with that at the requested error; empty if fewer
-/// than two were measured.
+/// Compares the order of integrators by time per step with that at the requested error; or empty.
 std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
   std::vector<Compared> all;
   for (const std::string_view name : paper_integrators) {

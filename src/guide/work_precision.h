@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "backends/interface/backend.h"
 #include "guide/limits.h"
@@ -17,8 +16,7 @@ namespace mssim {
 /// of springs and acceleration with the table of integrators: Boost.Odeint's Bulirsch-Stoer method
 /// (extrapolated modified midpoint rules of variable order and step; Hairer, Norsett and Wanner, Solving
 /// Ordinary Differential Equations I, section II.9). `tolerance`: absolute error per step of positions in m
-/// and velocities in m/s. The floor does not act. None if `stop` ended it between two steps, or if no step
-/// was small enough.
+/// and velocities in m/s. The floor does not act. None if `stop` ended it, or if no step was small enough.
 std::optional<State> independent_state(const System& system, double span_s, double tolerance,
                                        const std::function<bool()>& stop);
 
@@ -31,9 +29,8 @@ struct TrustedRequest {
   std::function<bool()> stop = [] { return false; };
 };
 
-/// Factor by which the distance of neighbouring trajectories may grow within a horizon. If it grows by more,
-/// the error at the end shows how chaotic the motion is, not how good a step was: rounding errors of single
-/// precision grow as much.
+/// Factor by which the distance of neighbouring trajectories may grow within a horizon. Beyond, the error at
+/// the end shows how chaotic the motion is, not how good a step was: rounding errors grow as much.
 inline constexpr double allowed_parting = 10;
 
 /// Smallest ratio of an error that is shown to the trusted state's own.
@@ -117,8 +114,7 @@ class WorkCurve {
   double seconds_of(int steps) const;
 
  private:
-  /// Whether the curve continues. If it ends because rounding limits its accuracy, the method's status says
-  /// so.
+  /// Whether the curve continues. If rounding limits its accuracy, it ends, and the method's status says so.
   bool goes_on_after(const WorkPoint& point);
 
   const System& system_;

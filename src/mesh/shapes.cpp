@@ -127,8 +127,7 @@ void require_ring(const TorusShape& torus) {
                      " m; give one less than the major radius");
 }
 
-/// Uniform numbers from the engine's own output: the standard fixes the output of std::mt19937, but not that
-/// of the std distributions.
+/// Uniform numbers from std::mt19937's own output, which the standard fixes, unlike the std distributions'.
 class UniformNumbers {
  public:
   explicit UniformNumbers(std::uint32_t seed) : engine_(seed) {}
@@ -144,8 +143,7 @@ class UniformNumbers {
   std::mt19937 engine_;
 };
 
-/// Three perpendicular unit vectors in a random direction, uniformly distributed: the rotation of a random
-/// quaternion of length 1.
+/// Three perpendicular unit vectors of uniform random direction: the rotation of a random unit quaternion.
 std::array<Vec3d, 3> random_axes(UniformNumbers& random) {
   double w = 0;
   Vec3d v;

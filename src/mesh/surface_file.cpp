@@ -44,8 +44,7 @@ std::vector<Corners> fan(std::size_t corners) {
   return triangles;
 }
 
-/// Cuts a polygon of four or more corners in its plane, whose normal is Newell's: the sum of the cross
-/// products along its edges.
+/// Cuts a polygon of four or more corners in its plane; the normal is Newell's: the edges' cross products.
 class PolygonCutter {
  public:
   explicit PolygonCutter(const std::vector<Vec3d>& corners) {
@@ -409,8 +408,7 @@ class AsciiReader {
   PointMerger merger_;
 };
 
-/// Binary files may begin with "solid" as well, so the length decides; if it is wrong too (truncated), a zero
-/// byte, which no text has.
+/// Binary files may begin with "solid", so the length decides; if truncated, a zero byte, which no text has.
 bool is_binary(std::string_view content) {
   if (content.size() < bytes_before_triangles) return content.find('\0') != std::string_view::npos;
   const std::size_t count = number_at(content, bytes_before_count);

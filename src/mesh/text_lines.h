@@ -22,8 +22,7 @@ struct LineSigns {
 };
 
 /// Iterates over the lines of a mesh file, splits them into words, and converts words to numbers. Lines end
-/// in LF, CR LF or CR. Every error is an InputError that begins "FILE, line N: "; N is the first of continued
-/// lines.
+/// in LF, CR LF or CR. Every error is an InputError "FILE, line N: ..."; N is the first of continued lines.
 class TextLines {
  public:
   /// `text` must outlive this object; a UTF-8 byte-order mark at its start is skipped.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,8 +25,7 @@ struct ColourMap {
   /// Evenly spaced, from the lower end; an odd number, so that one is in the middle.
   std::array<Rgb, 257> colours;
 
-  /// The colour at `share` of the way from the lower end to the upper. Beyond an end it is that end's colour,
-  /// for NaN grey.
+  /// The colour at `share` of the way from the lower to the upper end; beyond, the end's; for NaN grey.
   Rgb at(double share) const;
 };
 

@@ -22,8 +22,7 @@ class Movie {
   /// across), and std::invalid_argument if its size differs from that of the first frame.
   void add(const Picture& frame);
 
-  /// The bytes of the file. Ends the movie: no other call is allowed after it. Throws std::logic_error
-  /// if there are no frames.
+  /// The bytes of the file. Ends the movie: no other call may follow. Throws std::logic_error without frames.
   std::string take_bytes();
 
  private:

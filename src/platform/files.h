@@ -40,8 +40,7 @@ struct WriteError : ErrorWith<exit_file_error> {
 };
 
 /// The sentence of a WriteError: "cannot write FILE: ACTION failed: REASON; REMEDY". `error_number` is an
-/// errno value; `reason` replaces its text if the caller knows more (for example if a library reports no
-/// errno and `error_number` is 0).
+/// errno value; `reason` replaces its text if the caller knows more (a library reports no errno: 0).
 std::string write_failure(const std::filesystem::path& file, const std::string& action, int error_number,
                           const std::string& reason = {});
 
@@ -65,9 +64,8 @@ void require_replaceable(const std::filesystem::path& file);
 /// the user names, target_of() follows links first.
 class AtomicFile {
  public:
-  /// Creates or empties FILE.part and locks it for this writer. Throws WriteError if another writer of any
-  /// process has it, if FILE.part is a link or not a regular file, if it cannot be created, and like
-  /// require_replaceable().
+  /// Creates or empties FILE.part and locks it. Throws WriteError if another writer of any process has it, if
+  /// it is a link, no regular file or cannot be created, and like require_replaceable().
   explicit AtomicFile(std::filesystem::path file);
   AtomicFile(AtomicFile&&) = default;
   /// Removes FILE.part unless the writing has ended.
@@ -77,8 +75,7 @@ class AtomicFile {
 
   /// Appends to FILE.part. Throws WriteError; FILE.part then ends where it did before.
   void append(std::string_view text);
-  /// Ends the writing: syncs FILE.part, renames it to FILE and syncs the folder. On WriteError, FILE.part is
-  /// unchanged and still locked.
+  /// Syncs FILE.part, renames it to FILE and syncs the folder. On WriteError, FILE.part stays, locked.
   void move_into_place();
   /// Ends the writing and leaves the partial FILE.part to the user.
   void keep() { part_ = Descriptor(); }
@@ -134,8 +131,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The temporary folder of the process, made on first use and removed when main returns. Throws like
-/// TemporaryFolder.
+/// The process's temporary folder, made on first use, removed when main returns. Throws like TemporaryFolder.
 const std::filesystem::path& temporary_folder_of_process();
 
 /// Removes that folder, if it exists, before a signal ends the process.
@@ -146,8 +142,7 @@ void remove_temporary_folder_of_process();
 /// std::runtime_error with one sentence if it is missing.
 std::filesystem::path data_folder();
 
-/// The folder of that name in mssim's part of the user's cache folder, $XDG_CACHE_HOME or ~/.cache; empty if
-/// the user has neither.
+/// The folder of that name in mssim's part of $XDG_CACHE_HOME or ~/.cache; empty if the user has neither.
 std::filesystem::path cache_folder(std::string_view name);
 
 /// A helper program that mssim runs: in `libexec/mssim` next to the program's `bin` folder. Throws

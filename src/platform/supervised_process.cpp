@@ -45,8 +45,7 @@ std::string why_not_started(const SupervisedProgram& program, const SupervisorAn
   }
 }
 
-/// Starts the supervisor with only its end of the channel, as descriptor 3; the supervisor closes other
-/// inherited descriptors itself.
+/// Starts the supervisor with its end of the channel as descriptor 3; it closes other descriptors itself.
 pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   // The system would report this like a missing program.
   if (::access("/dev/null", R_OK | W_OK) != 0) fail(program, "/dev/null cannot be opened" + reason(errno));

@@ -62,8 +62,7 @@ struct ProgramEnd {
   std::string trouble;  ///< why its end is unknown: end of a sentence that begins with its name
 };
 
-/// End of a sentence that begins with the program's name: "ended with exit code 3", "was ended by signal 11
-/// (Segmentation fault)".
+/// A sentence without its subject: "ended with exit code 3", "was ended by signal 11 (Segmentation fault)".
 std::string describe(const ProgramEnd& end);
 
 /// An untrusted program that runs in parallel with mssim: it and all its descendants are gone when this
@@ -78,16 +77,14 @@ class SupervisedProcess {
   /// Kills all of it at once.
   ~SupervisedProcess();
 
-  /// Stops all its processes, including those that left its group, until resume(). No effect once it has
-  /// ended.
+  /// Stops all its processes, also those that left its group, until resume(). No effect after its end.
   void pause();
   void resume();
 
   /// Becomes readable when the program and all its descendants are gone; poll it, do not read it.
   int end_descriptor() const { return channel_.get(); }
 
-  /// Gives the program `patience` to end by itself (resumed, if it was paused), then kills all of it. Later
-  /// calls return the same result.
+  /// Resumes the program, gives it `patience` to end, then kills it. Later calls return the same result.
   const ProgramEnd& end(std::chrono::milliseconds patience);
 
   /// CPU time of the program so far, s: of its living processes by their clocks, and of ended ones if their

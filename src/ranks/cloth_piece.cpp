@@ -17,8 +17,7 @@ std::size_t columns_on_host(const Session& session, std::size_t columns) {
   return std::max<std::size_t>(1, columns * static_cast<std::size_t>(session.ranks_on_host()) / ranks);
 }
 
-/// The columns of a cloth that one rank steps, and their neighbouring ghost columns, with openmp's walk and
-/// bitwise identical results.
+/// A rank's columns of a cloth and their ghost columns, with openmp's walk and bitwise identical results.
 class ClothPiece final : public Piece {
  public:
   ClothPiece(const Session& session, const RankJob& job)

@@ -37,8 +37,7 @@ class Filling {
     for (std::size_t i = 0; i < bodies.size(); ++i)
       give(bodies[i], static_cast<std::size_t>(rank_of[i]), weights[i]);
   }
-  /// Fills the ranks up to one level, those with most room first: a body continues in the next rank when one
-  /// is full. No part is too small.
+  /// Fills ranks up to one level, most room first: a body continues in the next rank. No part is too small.
   void divide(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
     std::size_t together = 0;
     for (const std::size_t body : bodies) together += nodes[body];

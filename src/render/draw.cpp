@@ -215,8 +215,7 @@ struct PixelFragments {
   const Fragment& at(std::uint32_t i, std::uint32_t j) const { return first[j * row_pitch + i]; }
 };
 
-/// The mean light of a pixel's samples. Pixels with only ground, or one smooth surface, are shaded at fewer
-/// points.
+/// Mean light of a pixel's samples. Pixels of only ground, or one smooth surface, are shaded at fewer points.
 Light mean_light(const Stage& stage, const PixelFragments& pixel) {
   std::uint32_t hits = 0;
   double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -75,8 +75,7 @@ bool has_threads(const PaperLegend& legend, std::string_view backend) {
   return found != legend.backends.end() && found->has_threads;
 }
 
-/// Whether the row ran on the hardware that the claim is about. OpenCL on this CPU is not a GPU, and one
-/// thread is not several.
+/// Whether the row ran on the claim's hardware. OpenCL on this CPU is not a GPU, one thread is not several.
 bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& legend,
                 const Provenance& provenance) {
   return row && (row->threads > 1 || !has_threads(legend, row->backend)) &&
@@ -89,8 +88,7 @@ std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
   return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low};
 }
 
-/// The ratios of a test, for each scene and integrator with both times. `ratio` takes a scene and the
-/// integrators of `fast` and `slow`.
+/// Ratios of a test, for scenes and integrators with both times. `ratio`: of a scene and two integrators.
 template <class Scenes, class Ratio>
 auto ratios_of(const ClaimTest& test, const PaperLegend& legend, const Scenes& scenes, Ratio ratio) {
   std::vector<typename decltype(ratio(scenes.front(), std::string(), std::string()))::value_type> all;

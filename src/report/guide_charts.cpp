@@ -172,8 +172,7 @@ std::string reason_of(const FoundGuide& guide, const std::string& scene, const s
   return integrator;
 }
 
-/// Adds what the chart of work and precision does not draw: backends, steps of diverged points, and points
-/// that are left out.
+/// Adds what the chart of work and precision omits: backends, steps of diverged points, points left out.
 void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene,
                  const std::vector<GuideLine>& lines) {
   std::vector<std::string> crosses, without;

@@ -16,11 +16,9 @@
 
 namespace mssim {
 
-/// One HTML page about result folders: read_report_folder() reads each, even if damaged, and report_page()
-/// makes the page.
+/// An HTML page about result folders: read_report_folder() reads each, even damaged; report_page() makes it.
 
-/// A row of guide.csv (docs/guide.md): cost and error of one step size or, without a step, why a method has
-/// no points.
+/// A row of guide.csv (docs/guide.md): cost and error of a step or, without one, why a method has no points.
 struct GuidePoint {
   std::string scene{}, integrator{}, backend{};
   std::optional<double> dt_s{};
@@ -60,8 +58,7 @@ struct FoundPicture {
   std::string png;  ///< bytes
 };
 
-/// Everything that a report shows of a result folder. Missing or damaged parts become sentences, never
-/// errors.
+/// What a report shows of a result folder. Missing or damaged parts become sentences, never errors.
 struct ReportFolder {
   std::string name;                 ///< as given
   std::vector<ResultRow> rows;      ///< the readable ones; without any samples if those are damaged

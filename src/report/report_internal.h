@@ -14,8 +14,7 @@ namespace mssim {
 
 /// The parts of a report page: claims, findings, charts, and HTML.
 
-/// The exponent p of y ~ x^p by least squares on logarithmic axes; none for fewer than two different x. All
-/// values must be positive.
+/// The exponent p of y ~ x^p, by least squares on logarithmic axes, of positive values; none for one x.
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
 
 /// A published table and the measured rows of its scenes.
@@ -69,13 +68,11 @@ struct Finding {
   std::string sentence;
 };
 
-/// Findings about devices, rows that are not verified or have no time, and speed-ups whose interval
-/// includes 1. None without rows.
+/// Findings about devices, rows not verified or without time, and speed-ups whose interval includes 1.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
 
 /// Name of a backend on an OpenCL device ("" for none): "opencl on the CPU", "opencl, DEVICE". `family`
-/// decides its look in charts: OpenCL on a GPU shares that of the published GPU, OpenCL on the CPU has its
-/// own.
+/// decides its look in charts: OpenCL on a GPU shares the published GPU's, on the CPU it has its own.
 struct BackendLook {
   std::string name, family;
 };
@@ -122,8 +119,7 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& p
 std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                    const std::string& id);
 
-/// Time per step of the first integrator against nodes, for each kind of scene with at least two sizes, with
-/// the slope of every line.
+/// Time per step of the first integrator against nodes, per kind of scene with several sizes, with slopes.
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
                                   std::span<const PublishedTable> published, const Provenance& provenance,
                                   const std::string& id);
@@ -136,8 +132,7 @@ std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenan
 Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
                   std::span<const PublishedTable> published);
 
-/// One dot per backend on the largest scene with a roofline, with the first integrator, below the roofs that
-/// follow from the timings.
+/// A dot per backend on the largest scene with a roofline, first integrator, below roofs from the timings.
 std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                     const std::string& id);
 
@@ -147,12 +142,10 @@ std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportIn
 std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
                                       const std::string& id);
 
-/// Gives each backend the same look in every chart, whatever the other backends, unless the chart has its own
-/// families.
+/// Gives each backend the same look in every chart, unless the chart has its own families.
 std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend);
 
-/// Total energy against time, with the reference curve of the scene with whose name the curve's name begins,
-/// if any.
+/// Total energy against time, with the reference curve, if any, whose scene begins the curve's name.
 Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> references, const std::string& id);
 
 /// The charts of a scene of a guide: work and precision (Hairer, Norsett and Wanner, Solving Ordinary
@@ -163,8 +156,7 @@ std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& lege
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& id);
 
-/// For each scene and integrator of a machine's history: times per step by commit, counted from 1, with a
-/// ring where a level begins.
+/// Per scene and integrator of a machine's history: times per step by commit, from 1; a ring begins a level.
 std::vector<Chart> history_charts(const MachineHistory& machine, const std::string& id);
 
 /// The values of a chart with has_one_place(), as a table; references are left out.

@@ -160,8 +160,7 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
   return text + html_of(table);
 }
 
-/// The outcomes of all folders: a line for each claim that any of them decides or leaves undecided, a column
-/// for each folder.
+/// Outcomes of all folders: a line for each claim that any of them can test, a column for each folder.
 std::string outcomes_of(const ReportInput& input) {
   Table table{{{"what the paper says"}, {"where"}}, {}};
   std::map<const Claim*, std::vector<Cell>> outcomes;
@@ -434,8 +433,7 @@ std::string history_section(const ReportInput& input) {
 
 // Guides
 
-/// Splits the page of a guide before each heading of this level; the first part is what comes before, without
-/// a heading.
+/// Splits a guide's page before each heading of this level; the first part comes before, without a heading.
 std::vector<Document> parts_of(const Document& page, int level) {
   std::vector<Document> parts(1);
   for (const auto& block : page) {

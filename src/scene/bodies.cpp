@@ -179,8 +179,7 @@ SceneCounts least_counts(const OwnShape& own) {
 
 constexpr std::size_t most_bodies = 10'000;
 
-/// Range of lengths of a body's springs, m. Within it, lengths, masses and stiffnesses over masses are normal
-/// numbers in single precision.
+/// Range of lengths of a body's springs, m. Within it, all quantities are normal in single precision.
 constexpr double shortest_spring = 1e-7, longest_spring = 1e6;
 
 const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.content); }

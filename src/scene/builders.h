@@ -37,8 +37,7 @@ System build_cloth(const SceneSpec& spec);
 std::uint64_t memory_needed(const SceneCounts& counts);
 
 /// Lower bounds on the nodes and springs of a body of that shape, without making its mesh; zero if unknown.
-/// `folder` is the scene file's. Throws SceneError if the shape is of another scene that does not exist or
-/// cannot be used.
+/// `folder` is the scene file's. Throws SceneError for the shape of an unusable other scene.
 SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder);
 
 }  // namespace mssim

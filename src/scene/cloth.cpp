@@ -198,8 +198,7 @@ extern const SceneKind cloth_kind{
         "bending springs.",
     .visit_fields = visit_fields,
     .check = check,
-    // The published counts include the 12-neighbour stencil of every node, and so each spring from both of
-    // its ends.
+    // The published counts are of every node's 12-neighbour stencil, so each spring from both ends.
     .published_per_spring = 2,
     .files = [](const SceneSpec& /*spec*/) { return std::vector<std::string>(); },
     .stated = [](const SceneSpec& spec) { return std::optional(cloth_counts(spec)); },

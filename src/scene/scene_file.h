@@ -35,8 +35,7 @@ bool is_scene(std::string_view name_or_path);
 /// an unknown name it lists the known ones.
 SceneSpec find_scene(std::string_view name_or_path);
 
-/// The scenes in the data folder, by kind, the smallest (in stated nodes) first. Throws SceneError if one of
-/// them cannot be read.
+/// The scenes in the data folder, by kind, the fewest stated nodes first. Throws SceneError for a bad one.
 std::vector<SceneSpec> shipped_scenes();
 
 }  // namespace mssim

@@ -31,8 +31,7 @@ inline constexpr double interval_confidence = 0.95;
 double rank_coverage(std::size_t samples, std::size_t rank);
 
 /// The largest rank whose interval still covers 95 %: the narrowest such symmetric interval; 0 if there is
-/// none (fewer than 6 samples). The binomial distribution is discrete, so the coverage is often well above 95
-/// %; nothing is interpolated.
+/// none (fewer than 6 samples). The binomial distribution is discrete: the coverage is often well above 95 %.
 std::size_t interval_rank(std::size_t samples);
 
 /// The samples in ascending order. Throws std::invalid_argument for no samples or for one that is not finite.
@@ -58,8 +57,7 @@ MedianInterval median_interval(std::span<const double> samples);
 /// std::invalid_argument for unequal lengths.
 MedianInterval median_ratio(std::span<const double> numerators, std::span<const double> denominators);
 
-/// The `fraction` quantile (0 to 1): one of the values, not interpolated; 1 gives the largest. Needs at least
-/// one value.
+/// The `fraction` quantile (0 to 1): one of the values, not interpolated; 1 gives the largest. Needs a value.
 double quantile(std::vector<double> values, double fraction);
 
 /// First and third quartile: the samples number p (n + 1), p = 1/4 and 3/4, counted from 1 in ascending
@@ -83,8 +81,7 @@ std::string_view name_of(Outlier outlier);
 /// Tukey, Exploratory Data Analysis, Addison-Wesley 1977. Throws like quartiles().
 std::vector<Outlier> outliers(std::span<const double> samples);
 
-/// A ratio of two times, estimated on logarithms: there a factor is a shift, and both times are treated
-/// alike.
+/// A ratio of two times, estimated on logarithms: a factor is a shift, and both times are treated alike.
 struct RatioEstimate {
   double ratio = 1;
   double low = 1, high = 1;  ///< the 95 % interval
@@ -93,8 +90,7 @@ struct RatioEstimate {
 };
 
 /// next / base of two independent samples of times: rank_sum_shift() and rank_sum_test() (rank_tests.h) of
-/// the logarithms. Throws std::invalid_argument for an empty sample or a time that is not finite and
-/// positive.
+/// the logarithms. Throws std::invalid_argument without samples or for times not finite and positive.
 RatioEstimate ratio_of(std::span<const double> base, std::span<const double> next);
 
 /// next[i] / base[i] of pairs: signed_rank_shift() and signed_rank_test(). `fraction` is the share of their

@@ -15,8 +15,7 @@
 
 namespace mssim {
 
-/// Numbers and names as text, for messages, tables and files; no I/O. Sentences are made with fmt::format(),
-/// which this header includes.
+/// Numbers and names as text, for messages, tables and files; no I/O. Includes fmt::format() for sentences.
 
 /// The shortest decimal text that reads back as the same number, in every locale.
 std::string decimal(double value);
@@ -24,8 +23,7 @@ std::string decimal(double value);
 /// Three significant digits, without an exponent.
 std::string three_digits(double value);
 
-/// Two significant digits, with an exponent if the number is small or large ("2.1e-07"): for numbers that
-/// differ by orders of magnitude.
+/// Two significant digits, with an exponent if small or large ("2.1e-07"): for different orders of magnitude.
 std::string two_digits(double value);
 
 /// With `digits` decimals, rounded, without an exponent.
@@ -34,8 +32,7 @@ std::string fixed_decimal(double value, int digits);
 /// 4188004 as 4,188,004.
 std::string grouped(std::uint64_t number);
 
-/// The text as a number, in every locale and with or without a sign; nothing if it has anything besides the
-/// number or does not fit.
+/// The text as a number, in every locale, with or without sign; nothing if there is more or it does not fit.
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -124,8 +121,7 @@ std::string printable(std::string_view text, std::size_t length = 80);
 /// Each byte of invalid UTF-8 or of a control character is written as \xHH; the rest is unchanged.
 std::string escaped(std::string_view text);
 
-/// Whether a line has text: a letter, a digit or a byte beyond ASCII. Lines of frames that programs draw have
-/// none.
+/// Whether a line has text: a letter, a digit or a byte beyond ASCII. Drawn frames have none.
 bool has_words(std::string_view line);
 
 /// The text as one word of a shell command: in single quotes unless all its characters are plain.

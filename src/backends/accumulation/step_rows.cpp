@@ -163,8 +163,7 @@ HWY_INLINE void take_steps(const PaddedRows& cloth, const Team& team, int count)
 /// Takes `count` steps of an integrator of these Stages.
 template <std::size_t stages>
 void step_rows(PaddedRows& cloth, int count) {
-  // A node sums its springs in the stencil's order, in any lane and thread: the result is bitwise identical
-  // for any number of threads.
+  // Nodes sum their springs in the stencil's order: bitwise identical for any number of lanes and threads.
   with_integrator(*cloth.integrator, [&](auto method) HWY_ATTR {
     if constexpr (Stages<stages>::have(integrators[method]))
       with_team(cloth.threads, [&](const Team& team) HWY_ATTR { take_steps<method>(cloth, team, count); });

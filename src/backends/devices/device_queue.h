@@ -66,8 +66,7 @@ class OpenclBuffer {
       aligned(memory_.get());
       if (alignment == huge_page) wish_for_huge_pages(memory_.get(), bytes);
     }
-    // A buffer made from shared virtual memory is that memory (The OpenCL Specification, 3.0,
-    // clCreateBuffer).
+    // A buffer made from shared virtual memory is that memory (OpenCL 3.0, clCreateBuffer).
     if (memory_ && exchange_ != Exchange::copies) {
       buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory_.get());
     } else {
@@ -129,8 +128,7 @@ class OpenclBuffer {
     return {static_cast<T*>(clSVMAlloc(context(), flags, bytes, 0)),
             [context](T* memory) { clSVMFree(context(), memory); }};
   }
-  /// The driver's memory, if vectors can be loaded from it: not every driver gives the alignment that OpenCL
-  /// requires.
+  /// The driver's memory, if vectors can be loaded from it: not every driver aligns as OpenCL requires.
   static T* aligned(void* memory) {
     constexpr std::uintptr_t vector_bytes = 64;
     if (reinterpret_cast<std::uintptr_t>(memory) % vector_bytes != 0)
@@ -248,8 +246,7 @@ class DeviceQueue {
   cl::CommandQueue commands_;
 };
 
-/// Takes some steps and then returns to `start`: drivers finish compiling at a kernel's first launch with a
-/// range.
+/// Takes some steps and returns to `start`: drivers finish compiling at a kernel's first launch.
 template <class Stepped>
 void warm_up(Stepped& backend, const State& start, int steps) {
   backend.set_state(start);

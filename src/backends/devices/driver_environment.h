@@ -37,9 +37,8 @@ struct PoclCache {
   std::string note;     ///< the cost of having no permanent folder, a sentence; or empty
 };
 
-/// Makes sure that PoCL can write its cache: if its default folder cannot be written, sets POCL_CACHE_DIR to
-/// mssim's folder in the user's cache folder or, if that cannot be written either, to a temporary folder that
-/// is removed when the process ends.
+/// Lets PoCL write its cache: if its default folder cannot be written, sets POCL_CACHE_DIR to mssim's folder
+/// in the user's cache folder or, if that fails too, to a temporary folder of the process.
 PoclCache provide_pocl_cache();
 
 }  // namespace mssim

@@ -73,8 +73,7 @@ Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
   return answer;
 }
 
-/// Queries each driver separately; registers the surviving ones in `folder`, and returns how the others
-/// ended.
+/// Queries each driver separately; registers those that survive in `folder`, and returns how others ended.
 std::vector<std::string> keep_survivors(const std::vector<RegisteredDriver>& drivers,
                                         const std::filesystem::path& folder) {
   std::vector<std::string> troubles;

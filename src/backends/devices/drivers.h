@@ -25,8 +25,7 @@ const OpenclOffer& opencl_offer();
 /// Disables trials in another process: this process is itself one that drivers may crash.
 void rely_on_opencl_drivers();
 
-/// The device of this machine that `wanted` names (choose_opencl_device). Throws Unavailable if there is
-/// none.
+/// This machine's device that `wanted` names (choose_opencl_device). Throws Unavailable if there is none.
 OpenclDevice find_opencl_device(std::string_view wanted);
 /// The device that options.device names; if it is a CPU, part_of() it with options.threads.
 OpenclDevice device_for(const ExecutionOptions& options);

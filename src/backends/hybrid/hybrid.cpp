@@ -109,8 +109,7 @@ class SpringDevice {
     launch_ = {kernel, chunks.items};
   }
   ~SpringDevice() {
-    // A driver never frees a buffer that is released while mapped. Unmapped as if read: nothing is copied
-    // back.
+    // Drivers never free a buffer released while mapped. Unmapped as if read: nothing is copied back.
     try {
       for (std::size_t i = 0; i < pair_kinds; ++i)
         if (pairs_[i]) pairs_[i]->unmap(host_pairs_[i], CL_MAP_READ);
@@ -266,8 +265,8 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
   if (threads < 1)
     throw std::invalid_argument(fmt::format("hybrid needs at least one host thread, not {}", threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    // With seven bodies in sixteen lanes, a step takes 1.05 to 1.1 times as long as with packed springs, with
-    // thirteen 0.66 times (Intel Xeon).
+    // With seven bodies in 16 lanes, a step takes 1.05 to 1.1 times as long as with packed springs, with 13
+    // 0.66.
     constexpr double lanes_per_body = 2;
     const auto alike = alike_bodies_for(system, AlikeSprings::slice_nodes, lanes_per_body);
     before(alike ? SteppedKind::alike_bodies : SteppedKind::bodies);

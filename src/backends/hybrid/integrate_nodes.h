@@ -18,8 +18,7 @@ namespace mssim {
 struct SpringKernel {
   std::string text;  ///< text of the program
   const char* name;  ///< name of its kernel
-  /// Units of work; a work-item takes some of them in turn: the last arguments are their number and the
-  /// number per item.
+  /// Units of work; a work-item takes some in turn: the last arguments are their number in all and per item.
   std::size_t parts;
   std::size_t pair_floats, force_floats;  ///< its first two arguments: a pair of nodes, the forces
   std::vector<std::span<const std::byte>> constants;  ///< the arguments between those
@@ -63,8 +62,7 @@ struct AlikeNodes : ExplicitSteps {
   void forget_units() { springs.springs = {}; }
 };
 
-/// Mapped data of a stage: `pairs` by role, and the forces of all springs, in the layout of the corresponding
-/// nodes.
+/// Mapped data of a stage: `pairs` by role, and the forces of all springs, in the layout of the nodes.
 struct MappedNodes {
   std::array<float*, pair_kinds> pairs{};
   const float* forces = nullptr;

@@ -48,8 +48,7 @@ std::size_t narrowest_partition(const Integrator& integrator, std::size_t steps_
 /// Rows, including the cost of columns in rows, of a pass over one of the partitions.
 double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                     std::size_t threads, double rows_beside) {
-  // Measured on an Intel Xeon, rounded up: cost of a column whose nodes are not updated, including the copies
-  // it is read from.
+  // Measured on an Intel Xeon, rounded up: cost of a column whose nodes are not updated, copies included.
   constexpr double partial_column = 0.8;
   const std::size_t columns = (layout.columns + layout.halves - 1) / layout.halves;
   const std::size_t partitions = partitions_for(columns, threads, integrator, steps_per_pass);
@@ -117,8 +116,7 @@ ColumnCosts ColumnCosts::here() {
   return usual_column_costs();
 }
 
-/// Folds if that clearly reduces the rows to walk through, and if a cache holds the active columns: three of
-/// the state and two of forces.
+/// Folds for clearly fewer rows, if a cache holds the active columns: three of the state, two of forces.
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                        std::size_t threads, const ColumnCosts& of_one_stage) {
   if (layout.lanes < 2) return 1;

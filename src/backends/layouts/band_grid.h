@@ -99,8 +99,7 @@ struct ColumnRange {
   std::size_t end() const { return first + count; }
 };
 
-/// One of `parts` parts of these columns, which differ by at most one column: the share of a process, and of
-/// one of its threads.
+/// One of `parts` parts of these columns, equal but for one column: the share of a process or a thread.
 inline ColumnRange part_of(ColumnRange all, std::size_t part, std::size_t parts) {
   const std::size_t begin = all.count * part / parts, end = all.count * (part + 1) / parts;
   return {all.first + begin, end - begin};
@@ -113,9 +112,8 @@ inline ColumnRange with_ghosts(ColumnRange own, std::size_t ghosts, std::size_t 
 }
 
 /// Stages active at the same time. Each follows the previous one at a distance of two columns, so it gathers
-/// what has just been written, and the data between them are a few columns, which stay in a cache: a step of
-/// RK4 moves the state through memory once instead of four times, and steps of few stages are passed several
-/// at a time.
+/// what has just been written, and the few columns between them stay in a cache: a step of RK4 moves the
+/// state through memory once instead of four times, and a pass takes several steps of few stages.
 inline constexpr std::size_t stages_under_way = 4;
 static_assert(max_stages <= stages_under_way);
 
@@ -127,8 +125,7 @@ inline std::size_t ghost_columns(const Integrator& integrator, std::size_t steps
 /// How a banded cloth is divided, if not by its size.
 struct BandCut {
   std::optional<std::size_t> steps_per_pass{};  ///< the total of their stages is at most stages_under_way
-  /// The columns that a piece owns; of the others it needs ghost_columns on each side, or none at the end of
-  /// the cloth. A piece is not folded.
+  /// The columns that a piece owns; within the cloth it needs ghost_columns on each side. It is not folded.
   std::optional<ColumnRange> piece{};
   std::optional<std::size_t> halves{};  ///< BandLayout::halves
 };
@@ -174,13 +171,11 @@ class ColumnMessages {
   virtual void finish() = 0;
 };
 
-/// Columns between the first active stage and those that the last one still gathers, and so the columns that
-/// a trial pair keeps, as a ring.
+/// Columns from the first active stage to those that the last one gathers: a trial pair keeps a ring of them.
 inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * stages_under_way);
 
-/// Columns at one end of a partition, for the adjacent partition: copies, because the walk overwrites the
-/// state. Two alternating sets, so that a thread that is one pass behind still finds the data of its pass:
-/// threads need no barrier.
+/// Columns at an end of a partition, for the next one: copies, because the walk overwrites the state. Two
+/// alternating sets, so that a thread one pass behind still finds its data: threads need no barrier.
 struct EdgeColumns {
   /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: without halo rows, and without the half that no
   /// other thread reads, to move less between caches.
@@ -204,20 +199,17 @@ struct BandPartition {
   std::size_t count = 0;           ///< own columns of the thread
   std::size_t first_of_cloth = 0;  ///< column of the cloth that `first` is in the first half
   std::size_t ghosts = 0;          ///< on each side
-  /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty if
-  /// not stored.
+  /// State [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats] or empty.
   std::array<AlignedArray, pair_kinds> pairs;
   std::vector<std::vector<PlacedPin>> pins;  ///< [ghosts + count + ghosts] by column
   std::vector<const BandRows*> column_rows;  ///< by column: constants of its rows
   AlignedArray forces;                       ///< [stages_under_way][2][force_floats], active columns
-  /// Its first `ghosts` columns for the partition before it and its last ones for the next; empty if there is
-  /// none.
+  /// Its first `ghosts` columns for the partition before it, its last ones for the next; empty without one.
   EdgeColumns left, right;
 
   /// Index of a column in `pins` and in the state; first - ghosts <= column.
   std::size_t local(std::size_t column) const { return column + ghosts - first; }
-  /// The cloth's column for a column of the layout in a half; may be outside the cloth. The halves of a
-  /// partition are contiguous.
+  /// The cloth's column for one of the layout in a half; may be outside the cloth. Halves are contiguous.
   std::ptrdiff_t cloth_column(std::size_t column, std::size_t half) const {
     return static_cast<std::ptrdiff_t>(first_of_cloth + column + half * count) -
            static_cast<std::ptrdiff_t>(first);
@@ -256,8 +248,7 @@ struct BandGrid : ExplicitSteps {
   ColumnMessages* messages = nullptr;  ///< of a piece; must outlive the steps
   TeamGain team_gain;                  ///< for one thread per inner partition
 
-  /// Divides the cloth for `lanes` lanes and at most `most_threads` inner partitions. Arrays are untouched
-  /// until set_state.
+  /// For `lanes` lanes and at most `most_threads` inner partitions. set_state first touches the arrays.
   BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
            std::size_t lanes, std::size_t most_threads, const BandCut& given = {});
   /// Distributes the state over the partitions, including ghosts and dummies; each thread writes its own.

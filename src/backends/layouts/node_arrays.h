@@ -55,8 +55,7 @@ class AlignedArray {
   static constexpr std::size_t alignment = 4096;
 
   AlignedArray() = default;
-  /// `size` floats, all zero and untouched: the first writer determines their NUMA node. Throws
-  /// std::bad_alloc.
+  /// `size` floats, zero and untouched: the first writer sets their NUMA node. Throws std::bad_alloc.
   explicit AlignedArray(std::size_t size);
 
   float* data() { return data_.get(); }
@@ -75,8 +74,7 @@ class AlignedArray {
 
 /// Nodes as records of eight floats, x y z 0 u v w 0 (u v w: velocity), half a cache line, as in
 /// kernels/records.h: a vector of neighbours is gathered by loading whole records and transposing them in
-/// registers. On two Zen 4 cores with 38,148 nodes that is 3.6 times as fast as gather instructions on
-/// separate components.
+/// registers. On two Zen 4 cores with 38,148 nodes: 3.6 times as fast as gathers of separate components.
 constexpr std::size_t record_floats = 8;
 
 /// Writes the record of every node: node i's is number `slot[i]`. Rounds to float.
@@ -173,8 +171,7 @@ inline float* write_constants(float* to, std::size_t step, const SpringConstants
   return to;
 }
 
-/// SpringPerMass of a cloth's springs, by GridSpringKind. `unit_s`: as in spring_per_mass. Throws Unsupported
-/// if its nodes differ in mass.
+/// SpringPerMass of a cloth's springs, by GridSpringKind. Throws Unsupported if its nodes differ in mass.
 inline std::vector<SpringPerMass> springs_per_mass(const System& system, const GridPatch& grid,
                                                    double unit_s = 1) {
   const double mass = require_uniform_mass(system);

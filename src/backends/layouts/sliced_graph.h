@@ -13,8 +13,7 @@ namespace mssim {
 
 /// Data of the whole system that a part of it needs for bitwise identical steps.
 struct GraphPart {
-  /// [nodes] position in the whole's reverse_cuthill_mckee(): a node's springs are added in this order of its
-  /// neighbours.
+  /// [nodes] position in the whole's reverse_cuthill_mckee(), the order in which a node's springs are added.
   std::vector<std::uint32_t> place;
   /// Nodes from this one on are ghosts: neighbours of own nodes that other processes step.
   std::size_t own = 0;
@@ -53,8 +52,7 @@ struct SlicedGraph {
   std::vector<SpringConstants<float>> constants;  ///< [slots] divided by mass, of all springs of the node
   std::vector<std::uint32_t> held;                ///< [slots] 1 if pinned or padding, else 0
 
-  /// Throws Unsupported if springs of different materials meet in a node, or if there are too many springs
-  /// for 32-bit indices from both ends.
+  /// Throws Unsupported if springs of different materials meet, or are too many for 32-bit indices of ends.
   SlicedGraph(const System& system, std::size_t slice_lanes);
   /// Slices a part of a graph: its nodes have the same entries as in the whole's graph, in the same order,
   /// with the same constants. Springs between ghosts are omitted.
@@ -69,8 +67,7 @@ struct SlicedGraph {
 /// Unit of record offsets in slice entries, in floats: a scale factor that CPU addressing supports.
 inline constexpr std::size_t slice_offset_floats = 2;
 
-/// Throws Unsupported if there are more nodes than entries can address as records of `floats_of_record`
-/// floats.
+/// Throws Unsupported for more nodes than entries can address as records of `floats_of_record` floats.
 void require_nameable_records(const System& system, std::size_t floats_of_record);
 
 /// [entries][2][lanes] in one stream: offsets of the neighbours' records, in units of slice_offset_floats and

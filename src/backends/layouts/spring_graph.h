@@ -14,8 +14,7 @@ namespace mssim {
 /// [nodes] number of springs at each node.
 std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs);
 
-/// The neighbours of every node, ascending: node i's are neighbours[first[i]] to neighbours[first[i + 1] -
-/// 1].
+/// The neighbours of every node, ascending: node i's are [first[i], first[i + 1]) in `neighbours`.
 struct Adjacency {
   std::vector<std::uint32_t> first;       ///< [nodes + 1]
   std::vector<std::uint32_t> neighbours;  ///< [2 springs]

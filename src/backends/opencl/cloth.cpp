@@ -55,8 +55,7 @@ struct NodeShape {
   static constexpr std::size_t halo_rows = 2;   // above and below, as far as the stencil reaches
   static constexpr std::size_t left_halo = 16;  // floats; keeps every row aligned to what hardware reads
 
-  // A tile, so that most neighbours of a group's nodes are its own; 64 wide, at least as wide as the SIMD
-  // groups of any hardware.
+  // A tile: most neighbours of a group's nodes are its own; 64 wide, at least any hardware's SIMD group.
   NodeShape(const GridPatch& patch, const OpenclDevice& device) : grid(patch) {
     const std::size_t largest = cl::Device(device.id, true).getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
     local = {std::min<std::size_t>(64, largest), std::clamp<std::size_t>(largest / 64, 1, 4)};

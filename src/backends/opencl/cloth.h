@@ -29,15 +29,13 @@ struct BandShape {
   std::size_t ghosts = 0;      ///< columns on each side of a partition
   std::size_t partitions = 0;  ///< work-items
 
-  /// The shape whose steps are fastest on `units` compute units with a cache of `cache_bytes`; with
-  /// `steps_in_a_launch` if given.
+  /// The fastest shape on `units` compute units with `cache_bytes`; `steps_in_a_launch` if given.
   BandShape(const GridPatch& grid, const Integrator& integrator, std::size_t lanes, std::size_t units,
             std::uint64_t cache_bytes, std::optional<std::size_t> steps_in_a_launch = {});
 
   /// First column of a partition.
   std::size_t first(std::size_t partition) const { return bands.columns * partition / partitions; }
-  /// Columns that a partition keeps of a trial pair: at least those between the first stage and what the last
-  /// one gathers.
+  /// Columns that a partition keeps of a trial pair: those from the first stage to what the last one gathers.
   std::size_t ring() const;
 
   /// Layout of the state, which is contiguous.

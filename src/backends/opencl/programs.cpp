@@ -324,8 +324,7 @@ std::string mesh_program_text(const Integrator& integrator, int lanes) {
 }
 
 std::size_t alike_slice_lanes(int lanes) {
-  // If a work-item owns one node, slices of as many bodies as vectors on CPUs have lanes leave few lanes
-  // empty.
+  // If a work-item owns one node, slices of as many bodies as CPU vectors have lanes leave few lanes empty.
   return lanes > 1 ? static_cast<std::size_t>(lanes) : 16;
 }
 

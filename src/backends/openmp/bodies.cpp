@@ -10,8 +10,7 @@
 namespace mssim {
 namespace {
 
-/// Cost of a chunk, in entries of slices or in springs of all lanes, unless that makes too many chunks: some
-/// microseconds.
+/// Cost of a chunk, some microseconds, in entries or springs of all lanes, unless that makes too many chunks.
 constexpr std::size_t chunk_cost = 1024;
 
 /// Minimum number of chunks per thread: awake threads can then take over small parts of a sleeping thread's

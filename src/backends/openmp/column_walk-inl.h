@@ -37,8 +37,7 @@ HWY_INLINE void store_nodes(const NodeLanes& nodes, float* column, std::ptrdiff_
   store3(to + row_floats() / 2, nodes.v);
 }
 
-/// Component of a missing node: far from all nodes, because the length of springs without stiffness to it
-/// must not be zero.
+/// Component of a missing node: far from all, because springs without stiffness to it need a length.
 constexpr float far_away = 1e9F;
 
 /// The row with each lane's values taken from the lane before, or after.

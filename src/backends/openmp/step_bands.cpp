@@ -120,8 +120,7 @@ HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition,
     leave(partition.right, partition.ghosts - behind, layout.halves - 1);
 }
 
-/// Resets the pins of a newly written column in every pair that the stage has written and that a later stage,
-/// or the next step's first, gathers.
+/// Resets the pins of a new column in every pair that the stage wrote and a later one gathers.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition, std::size_t column) {
   const auto put_back = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
@@ -219,8 +218,7 @@ struct BandPass {
 ///
 /// Columns of other partitions from the previous pass are read as late as possible, and own columns are
 /// published as soon as they are complete. No set is overwritten while it is read: a thread that publishes
-/// columns for a pass has seen those that the reader published in the previous pass, after reading the same
-/// set.
+/// for a pass has seen what the reader published, after reading the set, in the previous pass.
 template <std::size_t method>
 HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& pass, ColumnMessages* messages,
                                std::optional<ForcesUnderWay>* handed_on) {

@@ -68,8 +68,7 @@ class Conversation {
   std::string received_;  ///< received part of the next line, possibly more
 };
 
-/// An answer that reports a failure, or an invalid answer. what() is the predicate of a sentence, without the
-/// program's name: "failed at ...".
+/// A failure, reported or an invalid answer. what() is a sentence without its subject: "failed at ...".
 struct AnswerFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -88,8 +87,7 @@ struct Introduction {
 
 // Parsers of a program's answers; each throws AnswerFailure for an unexpected line.
 
-/// One of the answers to `prepare`; returns true for the last. Throws the Unsupported and Unavailable that
-/// the program reports.
+/// An answer to `prepare`; returns true for the last. Throws what it reports: Unsupported or Unavailable.
 bool take_introduction(Introduction& introduction, const std::string& line);
 
 /// One of the answers to `costs`; returns true for the last.

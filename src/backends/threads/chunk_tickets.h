@@ -41,8 +41,7 @@ class ChunkTickets {
   /// Ends all work.
   void close() { change_and_notify(opened_, closed); }
 
-  /// Calls act(ticket) for every chunk that it can get, those of `range` first; returns whether that finished
-  /// the phase.
+  /// Calls act(ticket) for every chunk it can get, `range` first; returns whether that finished the phase.
   template <class Act>
   bool work(std::uint32_t range, Act&& act) {
     const std::uint32_t opened = opened_.load(std::memory_order_acquire);

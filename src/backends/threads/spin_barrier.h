@@ -24,8 +24,7 @@ class SpinBarrier {
     gain.begin(begin);
   }
 
-  /// Returns when all threads have called it, or end_round(), as often as this one. Earlier writes are then
-  /// visible.
+  /// Returns when all threads have called it or end_round() as often. Earlier writes are then visible.
   void wait() {
     const Arrival mine = arrive();
     if (mine.is_last)
@@ -91,8 +90,8 @@ class SpinBarrier {
     change_and_notify(phase_, phase + 2);
   }
 
-  /// For threads before the last one. Reads the clock only in long waits: a step of the smallest cloths takes
-  /// as long as a few hundred readings.
+  /// For all threads but the last. Reads the clock only in long waits: small steps last a few hundred
+  /// readings.
   unsigned wait_for_others(const Arrival& mine) {
     if (!mine.is_first || !gain_) return wait_for_change(phase_, mine.phase, spins);
     constexpr int first_spins = spins / 10;
@@ -135,8 +134,7 @@ struct Team {
   }
 };
 
-/// Calls act(team) on `threads` OpenMP threads, or fewer if OpenMP gives no more. `gain`: SpinBarrier's
-/// further arguments.
+/// Calls act(team) on `threads` OpenMP threads, or as many as OpenMP gives. `gain`: SpinBarrier's arguments.
 template <class Act, class... Gain>
 void with_team(std::size_t threads, const Act& act, Gain&&... gain) {
   std::optional<SpinBarrier> barrier;

@@ -15,8 +15,7 @@ namespace mssim {
 /// negative, one thread works alone, each time for twice as long, until the team has gained as much as that
 /// time: on a busy machine threads often run simultaneously for some milliseconds, and then do not for many.
 ///
-/// Use one object for all work of one kind, because its history is worth more than one call. One thread calls
-/// it at a time.
+/// Use one object for all work of one kind: its history outlives a call. One thread calls it at a time.
 class TeamGain {
  public:
   using Clock = std::chrono::steady_clock;

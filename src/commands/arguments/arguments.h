@@ -54,8 +54,7 @@ class Argument {
   Argument& needs(const Argument& other);
   /// Makes it an error to give this together with `other`.
   Argument& excludes(const Argument& other);
-  /// Has shells complete its value to these words, which are made only for that. A rule that is a list of
-  /// words offers them by itself.
+  /// Has shells complete its value to these words, made only then. A rule that is a list offers its own.
   Argument& offers(OfferedWords words);
 
  private:
@@ -77,8 +76,7 @@ class Arguments {
   Argument add(const std::string& name, std::string& target, const std::string& description,
                const ValueRule& rule = {});
 
-  /// Takes a number that `rule` accepts: an int or a double, an optional one, or several. `rule` must only
-  /// accept numbers of that type.
+  /// Takes an int or double that `rule` accepts, an optional one, or several. `rule` must fit the type.
   template <class Target>
   Argument add_number(const std::string& name, Target& target, const std::string& description,
                       const ValueRule& rule) {

@@ -70,8 +70,7 @@ TypedWord typed_word(const CLI::App& program, std::span<const std::string> words
   return typed;
 }
 
-/// Text in the language of man(7), where a plain hyphen is no minus, and a dot at the start of a line begins
-/// a request.
+/// Text for man(7), where a plain hyphen is no minus, and a dot at the start of a line begins a request.
 std::string roff(std::string_view text) {
   std::string escaped = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const char character : text) {

@@ -53,8 +53,7 @@ class Half {
   double covered_ = 0;
 };
 
-/// The gap between the legs at this height; none if the section does not divide into two halves of about
-/// equal width.
+/// The gap between the legs at this height; none without a division into two halves of about equal width.
 std::optional<LegGap> leg_gap(const Surface& body, double height) {
   constexpr double least_gap = 1e-3;  // of the section's width: more than gaps by rounding
   // Width over that of the wider half; hands and objects next to the body are narrower.

@@ -27,8 +27,7 @@ double between_legs(const std::vector<LegGap>& gaps);
 /// The measures that a pattern needs of a body, mannequin or scan: a closed surface, m, that is upright in y,
 /// faces +z and has one leg on each side of the plane x = 0. It may consist of several closed parts that
 /// overlap. Only its trunk and legs count (trunk_and_legs): an arm next to the hip does not make it wider.
-/// Measures are of the exact section of the triangles with a horizontal plane, including triangles in the
-/// plane.
+/// Measures are of the exact horizontal section of the triangles, including those in its plane.
 class BodyProfile {
  public:
   /// `name` starts messages of errors. Throws InputError for a surface that is not closed (validate_surface).

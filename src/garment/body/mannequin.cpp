@@ -192,8 +192,7 @@ class Tube {
 
 double between(double from, double to, double fraction) { return from + (to - from) * fraction; }
 
-/// Sections of the torso and of the leg at x > 0. Values that the measures do not give are in proportion to
-/// the reference body's.
+/// Sections of the torso and the leg at x > 0. Values without a measure are in proportion to the reference.
 class Figure {
  public:
   explicit Figure(const BodyMeasures& measures) : m_(measures) {

@@ -88,8 +88,7 @@ std::vector<Group> grouped(std::vector<SectionLoop> loops) {
   return groups;
 }
 
-/// A thigh has eight times the section of a hand, a trunk six times that of an arm; halves of a foot are
-/// about equal.
+/// A thigh has eight times a hand's section, a trunk six times an arm's; halves of a foot are about equal.
 constexpr double much_smaller = 0.25;
 
 /// Splits large groups of a single loop at narrow necks into separate groups.
@@ -203,8 +202,7 @@ void keep_bulges(std::vector<Level>& levels) {
         group.kept = i + 1 == levels.size() || !any_overlaps(levels[i + 1], false, group);
 }
 
-/// Whether each triangle stays: as its loop at the level nearest to its middle that cuts it, or as its
-/// neighbours if no level cuts it.
+/// Whether each triangle stays: as its loop at the nearest level that cuts it, or else as its neighbours.
 std::vector<bool> staying(const Surface& surface, const std::vector<Level>& levels) {
   enum class Part : std::uint8_t { unknown, other, kept };
   std::vector<Part> of_triangle(surface.triangles.size(), Part::unknown);

@@ -14,8 +14,7 @@ namespace mssim {
 
 /// Depth and normal map of a body from one side, row by row.
 struct SideMap {
-  /// m, z of the nearest face at the pixel's centre; without a body -infinity from the front, +infinity from
-  /// the back.
+  /// m, z of the nearest face at the pixel's centre; without one -infinity in front, +infinity at the back.
   std::vector<double> depth;
   /// Unit normal there, interpolated between those of the face's corners; (0, 0, 0) without a body.
   std::vector<Vec3d> normal;
@@ -72,8 +71,7 @@ class BodyMaps {
   /// frame().rows x frame().columns, row-major (kernels/parameters.h).
   std::span<const BodyPixel> pixels() const { return pixels_; }
 
-  /// The pixel in which a point (m) lies; an empty one of the border, without contact, if the point is
-  /// outside the maps or not finite.
+  /// A point's (m) pixel; an empty one, without contact, if the point is outside the maps or not finite.
   template <class Real>
   const BodyPixel& pixel_at(Real x, Real y) const {
     const auto column = static_cast<std::size_t>(body_column(

@@ -249,8 +249,7 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
   const PanelBoxes::Block& nodes = of_nodes.blocks()[node_block];
   const PanelBoxes::Block& cells = of_triangles.blocks()[triangle_block];
   const Box<float>& around = of_triangles.box(triangle_block);
-  // A node belongs to the cell whose lower left node it is, or to the last cell on the upper and right
-  // border.
+  // A node belongs to the cell of which it is the lower left one; on the upper and right border, to the last.
   const std::uint32_t row_end = nodes.row_end + (nodes.row_end + 1 == panel.rows ? 1 : 0);
   const std::uint32_t column_end = nodes.column_end + (nodes.column_end + 1 == panel.columns ? 1 : 0);
   for (std::uint32_t row = nodes.row_begin; row < row_end; ++row)

@@ -103,9 +103,8 @@ class ClothContactSearch {
   /// `reach` (m, positive) are contacts.
   ClothContactSearch(const Garment& garment, double reach, int threads);
 
-  /// The contacts at these positions, pair by pair, first those of the outer panel's nodes, in ascending
-  /// order of nodes; bitwise identical for every number of threads. Valid until the next call. Positions that
-  /// are not finite have no contacts.
+  /// The contacts at these positions, pair by pair, first of the outer panel's nodes, by ascending nodes;
+  /// bitwise identical for every number of threads. Valid until the next call. None if not finite.
   std::span<const ClothContact> find(const Coordinates& position);
 
  private:

@@ -255,8 +255,7 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
   fields.one_of({"correction", "Section that describes the correction of over-elongated springs."}, sections);
 }
 
-/// The maps of the body for each layer. If layers touch, an outer one's lie further out by the thickness of
-/// those beneath.
+/// Maps of the body for each layer. If layers touch, outer ones lie further out by the thickness beneath.
 std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
                                                              const Surface& body, double offset) {
   std::uint32_t outermost = 0;
@@ -389,8 +388,7 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 /// pattern does not fit together.
 ///
 /// The built scene has the panels at rest around the body, and the maps of the body that they collide with.
-/// Its note names the parts of the body that they ignore. Deterministic. Building it throws SceneError if the
-/// garment starts below the floor.
+/// Its note names ignored parts of the body. Throws SceneError if the garment starts below the floor.
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-#include <string>
 #include <variant>
 
 #include "garment/body/body_profile.h"

@@ -14,9 +14,8 @@ struct UnitInfo {
   const char* quantity;
   const char* unit;
 };
-/// In the notation of H5MD's units module. They are separate, in /parameters/units, because MDAnalysis
-/// refuses a `unit` attribute that is a fixed-length string and does not know metres; without any it needs
-/// convert_units=False.
+/// In H5MD's notation of units. They are separate, in /parameters/units, because MDAnalysis refuses a `unit`
+/// attribute of fixed length and does not know metres; without any it needs convert_units=False.
 constexpr auto units = std::to_array<UnitInfo>({
     {"position", "m"},
     {"velocity", "m s-1"},

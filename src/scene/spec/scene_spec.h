@@ -37,8 +37,7 @@ struct MeshFiles {
   bool operator==(const MeshFiles&) const = default;
 };
 
-/// A closed surface in an OBJ or STL file, to be filled with tetrahedra. Relative paths are relative to the
-/// scene file's folder.
+/// A closed surface, OBJ or STL, to fill with tetrahedra. Relative paths: from the scene file's folder.
 struct SurfaceFile {
   std::string file;
   double unit_m = 1;                  ///< metres in one unit of the file
@@ -47,8 +46,7 @@ struct SurfaceFile {
   bool operator==(const SurfaceFile&) const = default;
 };
 
-/// The shape of another scene's first body: the scene's name, or the path of its file, relative to the scene
-/// file's folder.
+/// The shape of another scene's first body: its name, or its file's path, relative to this file's folder.
 struct ShapeOfScene {
   std::string name;
 
@@ -141,8 +139,7 @@ struct BuiltScene {
 /// The parts that a scene is built from. All files that its file names have been read, each once, and made
 /// into meshes, or into a measured body and the garment cut for it; none is read again.
 ///
-/// Copies share the meshes. Estimates of memory do not count them, so drop the parts after the last build of
-/// the scene.
+/// Copies share the meshes. Estimates of memory omit them: drop the parts after the last build.
 struct SceneParts {
   SceneCounts counts;                 ///< nodes and springs of the scene
   std::optional<SceneCounts> stated;  ///< nodes and springs that the files state; nothing if they state none
@@ -162,8 +159,7 @@ struct SceneKind {
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
   /// Checks what no single field shows. Throws SceneError.
   void (*check)(const SceneSpec& spec);
-  /// Counts per spring in Hong et al.'s tables, inferred from their numbers; nothing for a kind that they do
-  /// not have.
+  /// Counts per spring in Hong et al.'s tables, inferred from their numbers; nothing for other kinds.
   std::optional<std::uint64_t> published_per_spring;
   /// The files that the section names, relative to the scene file's folder.
   std::vector<std::string> (*files)(const SceneSpec& spec);

@@ -23,8 +23,7 @@ struct SolverGoal {
   double rounding_of_motion = 0;  ///< contribution of rounded velocities, relative to sqrt(w . M w)
 };
 
-/// Largest error of a spring's force, in u k L: (k - k L / l) d is rounded at d, 1 / l and the products with
-/// k L and with d.
+/// Largest error of a spring's force, in u k L: (k - k L / l) d is rounded at d, 1 / l and two products.
 inline constexpr double roundings_of_force = 4;
 
 /// The goal of a solver that computes springs in precision Real. Each error below varies from spring to

@@ -29,8 +29,7 @@ HWY_INLINE SlopeLanes keep(Exists exists, const SlopeLanes& slope) {
   return {keep(exists, slope.n), keep(exists, slope.across)};
 }
 
-/// The springs from a vector of nodes to their neighbours in one place of the stencil, the i-th of
-/// spring_of_node().
+/// Springs from a vector of nodes to their neighbours in one place of the stencil, i of spring_of_node().
 template <std::size_t i, class Exists>
 struct RowSprings {
   const SpringLanes& law;  ///< divided by the mass of a node
