@@ -120,8 +120,7 @@ struct Stat {
   }
 };
 
-/// Adds the children of a process: from the lists of its threads, or from a scan of all processes if the
-/// kernel was built without those lists.
+/// Adds a process's children: from its threads' lists or, without those in the kernel, from a scan of all.
 void add_children(pid_t process, Processes& all) {
   bool listed = false;
   char path[64];

@@ -38,8 +38,7 @@ struct BackendInfo {
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth
   MemoryUse mesh_memory;  ///< for bodies
-  /// Approximate time of a step of a cloth or of bodies with an explicit integrator on two cores, relative to
-  /// `serial`: for plans (results/table1, results/table3).
+  /// Approximate time of an explicit step on two cores over `serial`'s, for plans (results/table1, table3).
   double step_share = 1;
   BackendRole role = BackendRole::as_published;
   /// Makes a backend that dresses a garment; null if it does not implement Algorithm 1.
@@ -72,8 +71,7 @@ BackendInfo own_backend(const BackendProgram& program);
 /// The TABLE of backends, in the order of all listings and results. A new backend is one row in backends.cpp.
 std::span<const BackendInfo> backends();
 
-/// The rows of the TABLE of published dressings (garment/stepping/published_dressing.h), in its order. They
-/// step only garments, and have the role `as_published`.
+/// The TABLE of published_dressing.h as rows for garments, with the role `as_published`.
 std::span<const BackendInfo> garment_backends();
 
 /// The row of that role.

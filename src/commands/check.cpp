@@ -83,10 +83,7 @@ Table combination_table(const PreparedScene& scene, const SceneSize& size, const
 
 /// Default integrators of a bench.
 std::vector<const Integrator*> usual_integrators() {
-  std::vector<const Integrator*> usual;
-  for (const std::string_view name : comparison_of_suite("").integrators)
-    usual.push_back(find_integrator(name));
-  return usual;
+  return mapped<const Integrator*>(comparison_of_suite("").integrators, find_integrator);
 }
 
 /// A warning about default integrators with which the scene may blow up, by a safe limit; or empty.

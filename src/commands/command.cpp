@@ -107,9 +107,8 @@ std::span<const Command> commands() { return table; }
 
 std::string unknown_command(std::string_view name) {
   constexpr auto others = std::to_array<OtherName>({{"version", "--version"}});
-  std::vector<std::string_view> known;
-  for (const Command& command : commands()) known.push_back(command.name);
-  return unknown_name("command", name, known, others) + "; see mssim --help";
+  return unknown_name("command", name, mapped<std::string_view>(table, &Command::name), others) +
+         "; see mssim --help";
 }
 
 int run_program(int argc, char** argv) {

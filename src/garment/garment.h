@@ -50,8 +50,7 @@ struct DressingSettings {
 struct ClothClothSettings {
   double thickness = 0.003;  ///< m, distance that layers keep; more than they approach per step
   double friction = 0.3;     ///< Coulomb's coefficient, not negative
-  /// m/s, not negative: largest speed at which layers that are too near, or have crossed, are moved apart.
-  /// Only positions change, not velocities.
+  /// m/s, not negative: largest speed at which near or crossed layers' positions are moved apart.
   double push_speed = 1;
   std::uint32_t sweeps =
       2;  ///< over all contacts per step, at least 1; more propagate farther through stacks of contacts

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "backends/interface/backend.h"
@@ -79,8 +80,7 @@ struct Recommendation {
   /// point_at_error of the cheapest method with another integrator, else on another backend.
   std::optional<std::size_t> runner_up;
   std::optional<std::size_t> nearest;  ///< the most accurate point, if none is accurate enough
-  /// Wall time, s, with which the guide would have recommended a method; none: the time sufficed, or the
-  /// guide was stopped. If set, none of the above is.
+  /// Wall time, s, with which the guide would recommend a method; if set, none of the above is.
   std::optional<double> needed_s;
   std::vector<std::string> sentences;  ///< up to three, with full stops; one if nothing is recommended
 };
@@ -153,8 +153,7 @@ std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& met
 /// backend, and its order; it is at most the largest usable step. With that step and the measured time per
 /// step, the method is cheaper than all measured ones. A method also counts if its step or time is unknown,
 /// but not if its integrator's curve on another backend is complete and does not reach the error. Implicit
-/// methods, whose cost per step is unknown, count only if there are neither such explicit methods nor points
-/// that count.
+/// methods, whose cost per step is unknown, count only without such explicit methods and points.
 std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide);
 
 /// Wall time, s, with which the curves of these methods would have reached the requested error, with points

@@ -60,12 +60,11 @@ inline constexpr double allowed_energy_growth = 0.01;
 /// The largest total energy, J, that a stable run of `system` may have: that of its start, plus
 /// allowed_energy_growth of its kinetic and elastic energy and of the energy that gravity can still add (down
 /// to the floor, or along the free fall of `span_s`, whichever is less). Springs, gravity, resting pins and
-/// the floor do not increase the total of kinetic, elastic and gravitational energy; damping decreases it. So
-/// any increase is an error of the integrator.
+/// the floor do not increase the total of kinetic, elastic and gravitational energy; damping decreases it.
+/// Any increase is the integrator's error.
 double energy_bound(const System& system, double span_s);
 
-/// Takes `steps` steps from the system's start, and checks the state about thirty times: all numbers must be
-/// finite and the total energy within the bound.
+/// Takes `steps` steps from the start; about thirty times, numbers must be finite, energy within the bound.
 bool stays_below(Backend& backend, const System& system, int steps, double bound_j);
 
 /// Makes a backend of one integrator with this step, at the system's start.
@@ -105,8 +104,7 @@ inline constexpr double step_resolution = 1.02;
 /// bisects their ratio. Growth too slow to show in a run counts as stable.
 StableStep largest_stable_step(const System& system, const StepMaker& make, const StepSearch& search);
 
-/// An integrator's largest stable step by linear theory, s; infinite for implicit integrators (backward Euler
-/// is A-stable) and 0 if some mode grows with every step.
+/// An integrator's largest stable step by linear theory, s; infinite if A-stable, 0 if a mode always grows.
 struct StepTheory {
   double at_start_s = 0;    ///< with the spectrum at the scene's start
   double on_the_way_s = 0;  ///< with the spectrum of the strained state that a run reaches

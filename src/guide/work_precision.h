@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "backends/interface/backend.h"
 #include "guide/limits.h"
@@ -88,8 +89,7 @@ struct MeasuredPoint {
 /// A work-precision curve, from its coarsest step on.
 class WorkCurve {
  public:
-  /// `limit`: of the method's integrator. All references must outlive the curve. `wanted_error`: the curve
-  /// ends after a point with at most a quarter of it.
+  /// `limit`: the integrator's. References must outlive this. It ends at a quarter of `wanted_error`.
   WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit, GuidedMethod& method,
             const ExecutionOptions& execution, double wanted_error);
 
@@ -105,8 +105,7 @@ class WorkCurve {
   bool is_timed() const { return method_.step_seconds > 0; }
   /// Times a step of an explicit method. If the backend does not run, or fails, the curve ends.
   void time_step();
-  /// Measures the next point, with half the step of the one before. None if the backend does not run, or
-  /// fails; method.status gives the reason.
+  /// Measures the next point, with half the step. None, with a method.status, if the backend does not run.
   std::optional<MeasuredPoint> next();
   /// Measures an additional point, of `steps` steps over the horizon. None as for next().
   std::optional<MeasuredPoint> measure(int steps);

@@ -125,8 +125,7 @@ inline void write_row(const Hdf5Dataset& dataset, const std::string& name, hsize
   write_rows(dataset, name, row, 1, memory_type, data);
 }
 
-/// Thrown if the content of an HDF5 file cannot be used. what() is only the problem and its place:
-/// "/connectivity/springs has 2 extents instead of 1".
+/// Thrown for bad content. what() has problem and place: "/connectivity/springs has 2 extents instead of 1".
 struct Hdf5ContentError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

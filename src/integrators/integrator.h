@@ -111,8 +111,7 @@ constexpr bool writes(const Stage& stage, Pair pair) {
   return writes(stage, position_slot(pair)) || writes(stage, velocity_slot(pair));
 }
 
-/// Does the stage read the slot from memory, because an assignment uses it before one has written it? The
-/// force reads the gathered pair in any case.
+/// Does the stage read the slot from memory, before an assignment writes it? The force reads its pair anyway.
 constexpr bool reads(const Stage& stage, Slot slot) {
   for (const Assignment& assignment : stage.assignments) {
     for (std::size_t t = 0; t < term_count(assignment); ++t)

@@ -119,9 +119,8 @@ std::optional<TetMesh> read_entry(const fs::path& file) {
 }
 
 /// Cache of meshes, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME or ~/.cache).
-/// A file's name is INPUT-PROGRAM: hashes of TetGen's input and of the TetGen that made the mesh. The cache
-/// only saves time: an entry that is missing, damaged or cannot be written is no error, and several processes
-/// may use it at once.
+/// A file's name is INPUT-PROGRAM: hashes of TetGen's input and of the TetGen that made the mesh. It only
+/// saves time: a missing or damaged entry is no error, and processes may share it.
 class MeshCache {
  public:
   /// The mesh that this TetGen made from this input.

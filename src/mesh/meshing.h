@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -26,8 +27,7 @@ struct TetMesh {
 /// The unique edges of the tetrahedra, the lower node first, ascending.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const TetMesh& mesh);
 
-/// The faces of the tetrahedra in ascending order, the nodes of each ascending. A face inside the body
-/// appears twice, one on its surface once.
+/// The faces of the tetrahedra, ascending, as are the nodes of each. A face inside the body appears twice.
 std::vector<std::array<std::uint32_t, 3>> faces_of(const TetMesh& mesh);
 
 /// The sum of the tetrahedra's volumes, m^3.
@@ -99,8 +99,7 @@ struct TorusShape {
 /// Points of the surface: cells_around x cells_across.
 std::uint64_t surface_point_count(const TorusShape& torus);
 
-/// The surface with surface_point_count points. Throws InputError for radii that make no ring, an odd number
-/// of cells around, and fewer than 4 around or 3 across.
+/// The surface. Throws InputError for radii that make no ring, odd cells around, fewer than 4 or 3 across.
 Surface surface_of(const TorusShape& torus);
 
 /// Depth of a point: distance from the ring's surface, m; not positive outside.
@@ -164,8 +163,7 @@ ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
 
 /// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add
 /// (none for the bodies of the committed scenes). Made by TetGen or taken from the cache (tetrahedralise).
-/// Throws InputError for parameters out of range and for more points than can be meshed (tetgen.h),
-/// MissingProgram if TetGen is needed and not installed.
+/// Throws InputError for parameters out of range and too many points, and MissingProgram without TetGen.
 TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior);
 
 /// A body whose surface comes from a user's file.
@@ -177,8 +175,8 @@ struct SurfaceShape {
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
 /// shaped and small enough; the shape stays. Uses the cache. Throws InputError, which names the file, if it
-/// cannot be read, encloses no body or is too thin to be filled, and for numbers out of range; MissingProgram
-/// if TetGen is needed and not installed.
+/// cannot be read, encloses no body or is too thin, and for numbers out of range; MissingProgram without
+/// TetGen.
 TetMesh surface_mesh(const SurfaceShape& body);
 
 }  // namespace mssim

@@ -13,8 +13,7 @@
 namespace mssim {
 namespace {
 
-/// Throws InputError unless `metres` is between a tenth of a millimetre and a kilometre: coordinates are
-/// rounded to micrometres. `what` names it in the message.
+/// Throws InputError, with `what`, unless it is from 0.1 mm to 1 km: coordinates are rounded to micrometres.
 void require_length(double metres, std::string_view what) {
   if (!(metres >= 1e-4 && metres <= 1000))
     throw InputError("{} is {} m; give a length from 0.0001 to 1000 m", what, decimal(metres));
@@ -78,8 +77,7 @@ constexpr std::array<std::array<std::uint32_t, 3>, 20> icosahedron_faces{{
     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1},
 }};
 
-/// The points of the cut icosahedron. A point on an edge belongs to several faces and has one number: its key
-/// is its weights at the corners around it.
+/// Points of the cut icosahedron. One on an edge has one number in all faces, by its corners' weights.
 class SpherePoints {
  public:
   SpherePoints(const SphereShape& sphere, Surface& surface) : sphere_(sphere), surface_(surface) {}

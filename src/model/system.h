@@ -120,8 +120,7 @@ struct SolverSettings {
   std::uint32_t substeps = 10;    ///< of xpbd: substeps per step
 };
 
-/// Positions and velocities of all nodes, in the scene file's node order and in double precision: the form in
-/// which states enter and leave every backend.
+/// Positions and velocities of all nodes, in the scene's order and double precision, as backends take them.
 struct State {
   std::vector<Vec3d> position;  ///< [nodes] m
   std::vector<Vec3d> velocity;  ///< [nodes] m/s
@@ -256,8 +255,7 @@ std::string_view energies_leave_out(const System& system);
 /// Energy of one spring, J.
 double elastic_energy(const System& system, const Spring& spring, const State& state);
 
-/// Power dissipated by damping of the springs and of the air in `state`, W: the sum of spring_loss over all
-/// springs, and of viscous_damping m v^2 over all nodes.
+/// Power lost in damping in `state`, W: spring_loss of all springs, viscous_damping m v^2 of all nodes.
 double damping_power(const System& system, const State& state);
 
 }  // namespace mssim

@@ -88,7 +88,6 @@ Rgb srgb(const Lch& colour) {
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }
 
-/// The map with the colour `colour_at(share)` at each share.
 template <class ColourAt>
 ColourMap map_of(const ColourAt& colour_at) {
   ColourMap map{};
@@ -97,7 +96,6 @@ ColourMap map_of(const ColourAt& colour_at) {
   return map;
 }
 
-/// Sizes of a legend, in pixels.
 struct LegendSizes {
   Letters letters;
   /// Between the content and the edge of a panel, and between panel and edge of the picture.

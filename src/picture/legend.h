@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,12 +30,10 @@ struct ColourMap {
   Rgb at(double share) const;
 };
 
-/// For deviations from a middle value, such as compression and stretch: from blue over light grey to red.
-/// Lightness falls evenly from the middle to both ends.
+/// For deviations from a middle: from blue over light grey to red. Lightness falls evenly to both ends.
 const ColourMap& diverging_map();
 
-/// For names. All differ in lightness, so that they can be told apart with any colour vision and, less
-/// easily, in black and white. The first ones differ most.
+/// For names. All differ in lightness, for any colour vision and black and white; the first ones most.
 const std::array<Rgb, 8>& category_colours();
 
 /// A colour and its meaning.

@@ -10,8 +10,7 @@ struct WebPAnimEncoder;  // in libwebp
 
 namespace mssim {
 
-/// An animated WebP that repeats for ever, made frame by frame; only compressed frames are stored. The same
-/// frames give the same bytes with the same libwebp.
+/// An animated WebP that repeats for ever, made frame by frame. The same libwebp makes the same bytes.
 class Movie {
  public:
   /// Frame i is shown from time i / `frames_per_second` on, rounded to milliseconds. Throws

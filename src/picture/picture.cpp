@@ -35,8 +35,6 @@ using PngMessage = std::array<char, 200>;
   png_longjmp(png, 1);
 }
 
-void ignore_warning(png_structp, png_const_charp) {}
-
 void append_bytes(png_structp png, png_bytep data, std::size_t size) {
   bool appended = false;
   try {
@@ -47,12 +45,11 @@ void append_bytes(png_structp png, png_bytep data, std::size_t size) {
   if (!appended) png_error(png, "out of memory");
 }
 
-void flush_nothing(png_structp) {}
-
 /// libpng's structures, freed by the destructor.
 struct PngWriter {
   PngMessage message{};
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, give_up, ignore_warning);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, give_up, [](png_structp, png_const_charp) {});
   png_infop info = png ? png_create_info_struct(png) : nullptr;
 
   PngWriter() = default;
@@ -119,7 +116,7 @@ std::string png_of(const Picture& picture) {
   PngWriter writer;
   if (!writer.info) throw std::runtime_error("no memory to write a PNG picture");
   std::string bytes;
-  png_set_write_fn(writer.png, &bytes, append_bytes, flush_nothing);
+  png_set_write_fn(writer.png, &bytes, append_bytes, [](png_structp) {});
   if (!write_png(writer.png, writer.info, picture))
     throw std::runtime_error(fmt::format("a picture of {} x {} pixels cannot be written as PNG: {}",
                                          picture.width, picture.height, writer.message.data()));

@@ -28,8 +28,7 @@ struct ReadError : std::runtime_error {
 /// Throws ReadError unless the file exists and is regular.
 void require_regular_file(const std::filesystem::path& file);
 
-/// All bytes of a regular file: a pipe would block, a device may never end, and a folder reads as empty.
-/// Throws ReadError, also for more than `most_bytes`.
+/// All bytes of a regular file, no pipe, device or folder. Throws ReadError, also beyond `most_bytes`.
 std::string read_file(const std::filesystem::path& file,
                       std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
@@ -145,24 +144,20 @@ std::filesystem::path data_folder();
 /// The folder of that name in mssim's part of $XDG_CACHE_HOME or ~/.cache; empty if the user has neither.
 std::filesystem::path cache_folder(std::string_view name);
 
-/// A helper program that mssim runs: in `libexec/mssim` next to the program's `bin` folder. Throws
-/// std::runtime_error if this program cannot be found.
+/// A helper program of mssim, in `libexec/mssim` next to `bin`. Throws std::runtime_error without /proc.
 std::filesystem::path helper_program(std::string_view name);
 
-/// mssim itself, to be run as another process: the program in `bin`, or, under an emulator, the helper that
-/// starts it. Throws like helper_program.
+/// mssim itself, to be run: the one in `bin` or, under an emulator, its helper. Throws like helper_program.
 std::filesystem::path mssim_program();
 
 /// The file that the shell would run for this name: the first executable one in the folders of PATH; for a
 /// name with a slash, the file at that path. Absolute; nothing if there is none.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
-/// Why the system did not execute this file, given errno: the end of a sentence. execve has the same errno
-/// for a missing interpreter as for a missing program.
+/// Why the system did not execute this file, given errno, the same for no interpreter: a sentence's end.
 std::string why_not_executed(const std::filesystem::path& file, int error);
 
-/// Whether the file is a script whose first line ends in CR LF: then the name of its interpreter, or of that
-/// one's last argument, ends in a carriage return.
+/// Whether it is a script whose first line ends in CR LF, and so its interpreter's name in a carriage return.
 bool names_interpreter_with_return(const std::filesystem::path& file);
 
 }  // namespace mssim

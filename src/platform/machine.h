@@ -82,8 +82,7 @@ std::optional<std::string> thread_shortage(int threads, ThreadStack stack);
 /// step would take as long as the system needs to run them all. Nothing if they do.
 std::optional<std::string> thread_excess(int threads);
 
-/// Threads for a parallel region whose result does not depend on their number: `wanted` (0: OpenMP's
-/// default), or fewer if the system allows only those.
+/// Threads for a parallel region: `wanted` (0: OpenMP's default), or as many as the system allows.
 int openmp_team(int wanted);
 
 /// Wall time since construction, from a monotonic clock.

@@ -174,8 +174,7 @@ bool SupervisedProcess::ask(SupervisorRequest request) const {
   return hear(answer);
 }
 
-/// Waits for data from the supervisor, and continues it if it was stopped: the program could send signals to
-/// its parent. False if there is none in time.
+/// Waits for data from the supervisor, and continues it if the program stopped it. False without data.
 bool SupervisedProcess::says_something() const {
   constexpr std::chrono::milliseconds look{500};
   for (std::chrono::milliseconds waited{0}; waited < supervisor_patience; waited += look) {

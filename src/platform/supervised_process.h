@@ -49,8 +49,7 @@ struct SupervisedProgram {
   std::vector<std::string> environment;  ///< NAME=VALUE, added to mssim's; replaces variables of that name
   std::filesystem::path folder;          ///< working directory
   std::vector<int> cpus;                 ///< logical CPUs that it is bound to; empty: those of mssim
-  /// Files and folders that are removed, with their contents, if mssim ends before the program does, for
-  /// example by SIGKILL. Otherwise the caller removes them.
+  /// Files and folders to remove if mssim ends before the program (SIGKILL). Else the caller removes them.
   std::vector<std::filesystem::path> removed = {};
 };
 
@@ -87,8 +86,7 @@ class SupervisedProcess {
   /// Resumes the program, gives it `patience` to end, then kills it. Later calls return the same result.
   const ProgramEnd& end(std::chrono::milliseconds patience);
 
-  /// CPU time of the program so far, s: of its living processes by their clocks, and of ended ones if their
-  /// parents have waited for them (in clock ticks, 0.01 s).
+  /// CPU time of the program so far, s: living processes by their clocks, reaped ones in ticks of 0.01 s.
   double processor_seconds() const;
 
  private:

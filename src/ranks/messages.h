@@ -37,8 +37,7 @@ class SecondsAdded {
   Stopwatch watch_;
 };
 
-/// Longest wait for a message of another rank, s. All ranks do the same work at the same time, so a rank that
-/// is silent for so long has ended, or its host has.
+/// Longest wait for a message of another rank, s: all work alike, so a silent one, or its host, has ended.
 inline constexpr double longest_silence_s = 20;
 
 /// An MPI session: the rank of this process, and waiting for other ranks. One thread at a time may call it.
@@ -121,12 +120,10 @@ class StandingMessages : public ColumnMessages {
   bool under_way_ = false;
 };
 
-/// The edge columns of a rank's piece of a cloth as messages to its neighbours, directly from and to the
-/// arrays of the state: nothing is packed.
+/// The edge columns of a rank's piece as messages, directly from and to the arrays: nothing is packed.
 class NeighbourMessages final : public StandingMessages {
  public:
-  /// The arrays of `bands` must stay at their address; both arguments must outlive this object. Rank r has
-  /// the columns to the right of those of rank r - 1.
+  /// `bands` must stay in place; both must outlive this. Rank r has the columns to the right of rank r - 1's.
   NeighbourMessages(const Session& session, BandGrid& bands);
 };
 

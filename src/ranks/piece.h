@@ -108,8 +108,7 @@ StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Da
 }
 
 /// Transfer of states between mssim and the pieces: rank 0 has a state's file (docs/protocol.md), each rank
-/// its part. No rank holds more than its part and a message. All ranks call these together; they throw
-/// RankFailure.
+/// its part. No rank holds more than its part and a message. All ranks call these; they throw RankFailure.
 
 /// Sends every rank its part of the state in the file.
 void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece);

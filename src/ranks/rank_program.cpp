@@ -90,7 +90,6 @@ std::string take_processors(const Session& session, int threads) {
   return "";
 }
 
-/// The first nonempty text.
 std::string first_of(const std::vector<std::string>& texts) {
   const auto found = std::ranges::find_if(texts, [](const std::string& text) { return !text.empty(); });
   return found == texts.end() ? "" : *found;

@@ -75,8 +75,7 @@ struct BodiesPart {
     std::size_t ghosts;               ///< number of its nodes that are ghosts here
   };
 
-  /// Own nodes in the order of the bodies, then the ghosts of each neighbour in the same order. It has the
-  /// springs with an own end, and no topology.
+  /// Own nodes in the order of bodies, then each neighbour's ghosts; springs with an own end; no topology.
   System system;
   GraphPart graph;
   std::vector<Neighbour> neighbours;  ///< ascending by rank

@@ -82,7 +82,6 @@ class Lights {
 
   const Camera& key() const { return key_; }
 
-  /// The light on a surface with this normal.
   PointLight on(const Vec3d& normal) const {
     const auto key = static_cast<float>(dot(normal, key_.near()));
     const auto fill = static_cast<float>(dot(normal, fill_.near()));

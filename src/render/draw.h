@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -53,8 +54,7 @@ class Camera {
   Vec3d right_, up_, near_;
 };
 
-/// The smallest grid of columns x rows square pixels around `seen`, a box of Camera::seen, with `margin` (a
-/// fraction of the picture) free on every side.
+/// The smallest grid of square pixels around `seen` (Camera::seen), with `margin` (a fraction) on each side.
 PixelGrid grid_around(const Box<double>& seen, std::uint32_t columns, std::uint32_t rows, double margin);
 
 /// Level ground with a grid of lines, which fades out around the subject.

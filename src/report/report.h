@@ -106,8 +106,7 @@ struct Claim {
   std::optional<ClaimTest> test;  ///< none if no rows can decide it
 };
 
-/// The claims of results/published/claims.json in the data folder. Throws SceneError if the file is invalid,
-/// and std::runtime_error if the folder is missing.
+/// The claims of published/claims.json in the data folder. Throws SceneError and std::runtime_error.
 std::vector<Claim> published_claims();
 
 /// Parses the claims in the text of a file. Throws SceneError.
@@ -135,8 +134,8 @@ struct ReportInput {
 /// A self-contained page: no network, no script, no other file. The element "mssim-data" has the data as
 /// JSON: {made_by, folders: [{name, problems, claims: [{name, outcome, published, measured}], findings:
 /// [{is_warning, sentence}], timings: [a row of timings.csv], provenance: as in provenance.json, or null}]};
-/// folders of guides also have guide: [a row of guide.csv, with the columns that charts show]. A history is
-/// history: [a line of its file].
+/// folders of guides also have guide: [a row of guide.csv, with the columns that charts show]. A history: [a
+/// line of its file].
 std::string report_page(const ReportInput& input);
 
 /// A page with tables about a folder.

@@ -17,30 +17,6 @@ namespace mssim {
 /// The exponent p of y ~ x^p, by least squares on logarithmic axes, of positive values; none for one x.
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
 
-/// A published table and the measured rows of its scenes.
-class PaperScenes {
- public:
-  /// The arguments must outlive this.
-  PaperScenes(std::span<const ResultRow> rows, const PaperLegend& legend, const PublishedTable& published);
-
-  const std::vector<PaperScene>& scenes() const { return scenes_; }  ///< by size
-  const PaperLegend& legend() const { return legend_; }
-  std::span<const ResultRow> rows() const { return rows_; }
-  /// Speed-up over one thread; none if either time is missing.
-  std::optional<double> published_speedup(const PaperScene& scene, std::string_view integrator,
-                                          std::string_view configuration) const;
-  /// Null if there is none.
-  const ResultRow* row(const PaperScene& scene, std::string_view backend, std::string_view integrator) const;
-  /// The backends of a configuration that have a time.
-  std::vector<std::string> backends_of(std::string_view configuration) const;
-
- private:
-  std::span<const ResultRow> rows_;
-  const PaperLegend& legend_;
-  const PublishedTable& published_;
-  std::vector<PaperScene> scenes_;
-};
-
 /// Outcome of a claim, judged by rows.
 enum class ClaimOutcome : std::uint8_t {
   held,
@@ -108,11 +84,11 @@ inline constexpr std::string_view how_to_read_times =
 /// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);
 
-/// Charts. `id` is the prefix of their ids, so that those of several folders differ. Charts without values
-/// are left out. Each names its processor, if known.
+/// Charts; those without values are left out. `id`: prefix of ids. Each names its processor, if known.
 
 /// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
-std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& provenance,
+std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
+                                  const PublishedTable& published, const Provenance& provenance,
                                   const std::string& id);
 
 /// Figure 6 of Vassilev: milliseconds per iteration against vertices, of garments.
@@ -164,12 +140,10 @@ Table values_of(const Chart& chart);
 /// Whether all values of a chart over whole numbers, such as nodes, are at one of them.
 bool has_one_place(const Chart& chart);
 
-/// Escapes any text (a file's name, a scene's, a message) for elements and quoted attributes. All text of a
-/// page passes through it or is written in the program.
+/// Escapes any text for elements and quoted attributes: all text that is not written in the program.
 std::string html_text(std::string_view text);
 
-/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that is
-/// not closed, or is followed by a blank, is plain text.
+/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds), closed ones.
 std::string html_prose(std::string_view text);
 
 /// A table in its own box, which scrolls if the page is narrower. The first column names the rows.

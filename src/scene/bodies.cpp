@@ -98,8 +98,7 @@ void visit_scene_shape(FieldVisitor& fields, BodySpec& body) {
               Presence::required, body.shape.emplace<ShapeOfScene>().name);
 }
 
-/// The TABLE of shapes, in the order of BodyShape's alternatives: value of `shape`, its section, and the
-/// function that names the section's fields.
+/// The TABLE of shapes, in BodyShape's order: value of `shape`, its section, and the function of its fields.
 struct ShapeKind {
   Field section;
   void (*visit_fields)(FieldVisitor& fields, BodySpec& body);

@@ -16,8 +16,7 @@ System build_cloth_window(const SceneSpec& spec, const GridWindow& window);
 /// The system of a cloth without its nodes: without masses, pins, springs and start.
 System outline_of_cloth(const SceneSpec& spec);
 
-/// Ratio of the ripple's displacement in the plane to that out of it. A small ripple only out of the plane
-/// would strain the springs in second order only.
+/// The ripple's displacement in the plane over that out of it, which alone strains springs in second order.
 inline constexpr double ripple_in_plane_share = 0.5;
 
 /// Phases of the ripple's six components along x and z, in radians. A component is zero along lines of

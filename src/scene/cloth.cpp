@@ -109,8 +109,7 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
                 [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
 }
 
-/// The nodes can be numbered, the pinned row exists, the cloth starts above the floor, and the ripple
-/// compresses no spring to length zero.
+/// Checks the number of nodes, the pinned row, the height, and that the ripple leaves springs a length.
 void check(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   constexpr std::uint64_t largest = std::numeric_limits<std::uint32_t>::max();

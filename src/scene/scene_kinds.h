@@ -10,8 +10,7 @@
 
 namespace mssim {
 
-/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is a row, defined
-/// next to its spec and builder, and an alternative.
+/// The TABLE of scene kinds, in SceneSpec::content's order. A new kind is a row next to its builder.
 std::span<const SceneKind* const> scene_kinds();
 
 /// The row of the scene's kind.

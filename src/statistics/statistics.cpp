@@ -81,14 +81,12 @@ Division best_of_parts(std::span<const double> values, std::span<const std::size
   return best;
 }
 
-/// Random orders of a series that a change is tested against. With 499, the fifth largest of 500 divergences,
-/// the observed one included, is just significant.
+/// Random orders that a change is tested against: of 500 divergences, the fifth largest is just significant.
 constexpr int random_orders = 499;
 /// Random numbers begin with it in every test, so that the same series gives the same changes.
 constexpr std::uint64_t order_seed = 1;
 
-/// Whether no more than `change_error` of the random orders, the observed one included, have a division at
-/// least as good. Stops when that is decided.
+/// Whether at most `change_error` of the orders, the observed one included, divide as well; stops if decided.
 bool is_significant(const Division& observed, std::vector<double> values,
                     std::span<const std::size_t> bounds) {
   constexpr double rounding = 1e-9;

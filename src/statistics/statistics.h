@@ -104,8 +104,7 @@ double geometric_mean(std::span<const double> ratios);
 /// A place in a series of times from which on they are others.
 struct ChangePoint {
   std::size_t first = 0;  ///< the first time after the change
-  /// The times from it to the next change, over those before it from the previous one on: ratio_of(). Its
-  /// interval takes the place of the change as known.
+  /// Times from it to the next change over those since the previous: ratio_of(), as if its place were known.
   RatioEstimate ratio;
 };
 
@@ -116,8 +115,7 @@ inline constexpr double change_error = 0.01;
 /// part of the series best, by the energy distance of its two sides, is a change if at most `change_error` of
 /// random orders have a place that divides them as well. All parts are searched again until none has one. A
 /// random order shuffles each part between known changes, so the test needs no distribution of the times. It
-/// needs that all orders are equally likely without a change: a trend counts as changes. The same series
-/// gives the same changes.
+/// needs that all orders are equally likely without a change: a trend counts as changes. Deterministic.
 ///
 /// Sources: D. S. Matteson, N. A. James, A nonparametric approach for multiple change point analysis of
 /// multivariate data, Journal of the American Statistical Association 109 (2014), 334-345, with exponent 1,
@@ -133,8 +131,7 @@ std::vector<ChangePoint> change_points(std::span<const double> times);
 /// k-th look may spend the fraction 1 / (k (k + 1)) of a single test's error. The fractions of all looks,
 /// however many there will be, add up to 1, and so do the error probabilities: p over the fraction is a
 /// p-value, and the interval with the error times the fraction is valid, whenever and for whatever reason the
-/// measurement stops (a repeated p-value, a repeated confidence interval). Looks may depend on each other in
-/// any way.
+/// measurement stops (a repeated p-value, a repeated confidence interval). Looks may depend on each other.
 ///
 /// If the measurement ends between two looks, for a reason independent of the pairs (a time budget), the next
 /// look is taken then. Looks may come at unplanned times, if these do not depend on the results.

@@ -131,7 +131,6 @@ HWY_INLINE void put_back_pins(const PaddedRows& cloth, std::size_t row, float* a
   }
 }
 
-/// One stage at the nodes of one row.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void step_row(const PaddedRows& cloth, const ClothConstants& constants, const Arrays& arrays,
                          std::size_t row) {

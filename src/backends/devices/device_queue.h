@@ -42,8 +42,7 @@ std::string slices_program_text(std::size_t slice_nodes, int lanes, std::initial
 /// never copied; if the device supports it, it is fine-grained shared virtual memory, and changing hands
 /// needs no command in the queue: a step of hybrid on bodies38233 takes 0.8 of the time. On a device with its
 /// own memory the array is there, and the driver copies it when the host maps or unmaps it. In copied memory
-/// there are two arrays, one on the device and one on the host; mapping and unmapping are the explicit
-/// transfers between them.
+/// there are two arrays, one on the device and one on the host; mapping and unmapping transfer explicitly.
 template <class T>
 class OpenclBuffer {
  public:
@@ -179,8 +178,7 @@ struct Launch {
   WorkItems items;
 };
 
-/// A device as used by one backend: arrays that host and device use in turn, programs, and a queue of
-/// launches in order. All functions may throw cl::Error.
+/// A device as one backend uses it: arrays, programs, and a queue of launches. All may throw cl::Error.
 class DeviceQueue {
  public:
   DeviceQueue(const OpenclDevice& device, DeviceMemory memory)
@@ -207,8 +205,7 @@ class DeviceQueue {
     return buffer;
   }
 
-  /// The built program. Square roots and divisions are correctly rounded if the device supports it. Throws
-  /// Unavailable with the compiler's first error.
+  /// The built program; roots and divisions are exact if supported. Throws Unavailable with the first error.
   cl::Program build(const std::string& text) const;
 
   void launch(const Launch& launch) const {
@@ -236,8 +233,7 @@ class DeviceQueue {
   bool runs_on_host() const { return device_.type == OpenclDeviceType::cpu; }
 
  private:
-  /// Launches between two waits for an empty queue: waits are rare enough to cost nothing, and a driver never
-  /// has more unfinished commands than this.
+  /// Launches between two waits for an empty queue, rare enough to cost nothing: a limit for drivers.
   static constexpr std::size_t longest_queue = 256;
 
   OpenclDevice device_;

@@ -52,8 +52,7 @@ inline constexpr std::string_view driver_trial_word = "--driver-trial";
 DriverTrial driver_trial_from(std::span<char*> arguments);
 
 /// Tries it, once per process and unless this process is itself a trial (rely_on_opencl_drivers). Throws
-/// Unavailable if the driver crashed the other process or did not finish in half an hour; the sentence has
-/// the driver's last words. Throws Interrupted.
+/// Unavailable, with its last words, if the driver crashed or took half an hour, and Interrupted.
 void try_driver(const DriverTrial& trial, const OpenclDevice& device);
 
 /// From now on, `told` receives a sentence, from another thread, when a trial takes longer than ten seconds.

@@ -24,9 +24,8 @@ struct SpringKernel {
   std::vector<std::span<const std::byte>> constants;  ///< the arguments between those
 };
 
-/// Data with which the host's threads sum the spring forces at the nodes and integrate them, for one
-/// integrator and one dt (made in hybrid.cpp). Nodes are records (kernels/records.h), forces are in the order
-/// of PackedSprings, four floats each, N.
+/// Data with which the host's threads sum spring forces and integrate, for one integrator and dt. Nodes are
+/// records (kernels/records.h), forces are in the order of PackedSprings, four floats each, N.
 struct HostNodes : ExplicitSteps {
   PackedSprings packed;
   /// [slices][inverse mass, held][16]: 1/kg; 1 if pinned or padding, else 0.

@@ -12,7 +12,6 @@
 namespace mssim {
 namespace {
 
-/// The functions for the steps of one solver.
 struct SolverSteps {
   using Make = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s);
   using MakeOpenMp = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s,

@@ -115,8 +115,7 @@ class Backend {
   /// Cores of this machine that compute a step; for a discrete device, 1 (the host thread that waits). More
   /// than ExecutionOptions::threads only if a driver cannot be limited.
   virtual int threads() const = 0;
-  /// Whole steps per pass over the state in memory, if stages overlap; 0 if every stage makes its own pass.
-  /// The memory traffic of a step is derived from it.
+  /// Whole steps per pass over the state in memory; 0 if every stage makes a pass. Gives the memory traffic.
   virtual int steps_per_pass() const { return 0; }
   /// Springs whose ends and rest lengths a step reads, if fewer than the system's: alike bodies share them.
   virtual std::optional<std::uint64_t> stored_springs() const { return std::nullopt; }
@@ -183,8 +182,7 @@ class WindowBackend : public Backend {
 void move_back(State& state, double seconds, double floor);
 
 /// Adapts `backend`, whose stages see positions integrator.ahead of a step ahead of the state's: moves states
-/// along their velocities on the way in, and back on the way out. `system` must outlive it. An integrator
-/// that is not ahead leaves the backend unchanged.
+/// along their velocities on the way in, and back on the way out. `system` must outlive it. Else returns it.
 std::unique_ptr<Backend> step_ahead(std::unique_ptr<Backend> backend, const System& system,
                                     const Integrator& integrator, double dt_s);
 

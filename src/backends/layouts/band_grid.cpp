@@ -109,8 +109,7 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
 
 ColumnCosts ColumnCosts::here() {
 #if defined(__x86_64__)
-  // On Zen 4 a column costs 1 to 1.4 rows in addition to its own, and the second-level cache, part of which
-  // threads and other arrays need, is as fast as the first.
+  // On Zen 4 a column costs 1 to 1.4 rows more than its own; the second-level cache is as fast as the first.
   if (__builtin_cpu_is("amd")) return {1, 0.98, cache_bytes(_SC_LEVEL2_CACHE_SIZE, 1L << 20) / 4};
 #endif
   return usual_column_costs();
@@ -244,8 +243,7 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {
         const std::size_t row = lane % layout.bands * layout.height + r;
         const std::ptrdiff_t of_cloth = partition.cloth_column(column, lane / layout.bands);
-        // Dummies keep the spacing of a cloth at rest, also from those of other pieces: springs between them
-        // have no stiffness, but must not have length zero.
+        // Dummies keep a cloth's spacing, also from other pieces: springs between them need a length.
         Vec3d x{static_cast<double>(static_cast<std::ptrdiff_t>(first_column_) + of_cloth) * spacing_,
                 dummy_height, static_cast<double>(row) * spacing_};
         Vec3d v{};

@@ -27,8 +27,7 @@ namespace mssim {
 ///
 /// The cloth may be folded: its columns are divided into halves that share the lanes, so there are lanes / 2
 /// bands of twice the height. Column c of the layout is then two columns of the cloth; BandPartition defines
-/// the mapping. Folding leaves fewer empty rows in a small cloth and halves the columns, each of which has a
-/// fixed cost.
+/// the mapping. Folding leaves fewer empty rows in a small cloth and halves the columns, which cost.
 ///
 /// Two halo rows above and below have room for the neighbouring bands' rows: opencl keeps them there, openmp
 /// writes them only where it reads them. Padding rows in the last bands are dummies: they stay at rest and
@@ -57,13 +56,11 @@ struct BandLayout {
   std::size_t offset(std::size_t row, std::size_t half = 0) const {
     return (row % height + halo) * row_floats() + half * bands + row / height;
   }
-  /// Floats of one column of forces: rows 0 .. height, three components. The last row has the forces of the
-  /// first row on the column's last row, one lane before.
+  /// Floats of a column of forces: rows 0 .. height, three components; the last: of row 0 on the lane before.
   std::size_t force_floats() const { return (height + 1) * 3 * lanes; }
 };
 
-/// For each half of a layout's columns: the number of the cloth's columns from this one to the end, including
-/// this one; 0 if it is not a column of the cloth.
+/// For each half: the number of the cloth's columns from this one on, 0 if it is none of the cloth's.
 using ColumnsToEnd = std::array<std::size_t, 2>;
 
 /// Constants for the nodes of each row of a banded cloth, one value per lane: those of the springs that they
@@ -152,8 +149,7 @@ struct ColumnCosts {
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                        std::size_t threads, const ColumnCosts& of_one_stage = ColumnCosts::here());
 
-/// Exchange of the edge columns of a piece with the processes that step the adjacent columns: the counterpart
-/// between processes of the copies between threads.
+/// Exchange of a piece's edge columns with the adjacent processes, as threads do by copies.
 class ColumnMessages {
  public:
   ColumnMessages() = default;
@@ -161,8 +157,7 @@ class ColumnMessages {
   ColumnMessages& operator=(const ColumnMessages&) = delete;
   virtual ~ColumnMessages() = default;
 
-  /// Starts to send the edge columns, which are complete for the next pass. The ghosts next to them must not
-  /// be read before finish(). Does not wait.
+  /// Starts to send the complete edge columns. The ghosts must not be read before finish(). Does not wait.
   virtual void begin() = 0;
   /// Lets messages progress. Does not wait.
   virtual void advance() = 0;
@@ -177,8 +172,7 @@ inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * sta
 /// Columns at an end of a partition, for the next one: copies, because the walk overwrites the state. Two
 /// alternating sets, so that a thread one pass behind still finds its data: threads need no barrier.
 struct EdgeColumns {
-  /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: without halo rows, and without the half that no
-  /// other thread reads, to move less between caches.
+  /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: only what another thread reads.
   std::array<AlignedArray, 2> sets;
   ThreadProgress pass;  ///< the next pass that may read its set
 

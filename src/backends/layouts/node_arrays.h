@@ -23,8 +23,7 @@ struct IndexRange {
   std::size_t begin, end;
 };
 
-/// `floats` in whole vectors, an odd number of them: rows and components at a distance of a power of two
-/// share a few sets of the first-level cache.
+/// `floats` in an odd number of vectors: powers of two would share few sets of the first-level cache.
 constexpr std::size_t odd_pitch(std::size_t floats, std::size_t lanes) {
   const std::size_t whole = round_up(floats, lanes);
   return whole / lanes % 2 == 0 ? whole + lanes : whole;

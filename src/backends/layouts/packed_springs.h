@@ -20,8 +20,8 @@ namespace mssim {
 ///
 /// The nodes are renumbered: a grid's keep their order, those of bodies are ordered so that neighbours are
 /// near each other (reverse Cuthill-McKee), then sorted within windows by the number of forces that they add
-/// and subtract. Except for the sorting, a first end comes before the second one in that order, so a force is
-/// subtracted shortly after it was added.
+/// and subtract. But for the sorting, a first end comes before the second, so a force is soon subtracted
+/// again.
 struct PackedSprings {
   static constexpr std::size_t slice_nodes = 16;
   static constexpr std::size_t list_nodes = 4;

@@ -22,8 +22,7 @@ struct GraphPart {
 /// The springs of a system as every node sees them, for code that gathers: the nodes are renumbered so that
 /// neighbours are near each other (reverse Cuthill-McKee), then sorted by degree within windows, then divided
 /// into slices of `lanes` nodes, whose springs are interleaved (sliced ELLPACK; M. Kreutzer et al., 2014,
-/// call it SELL-C-sigma). The spring law's constants are divided by the mass of the node, so forces are
-/// accelerations.
+/// call it SELL-C-sigma). Constants are divided by the node's mass: forces are accelerations.
 ///
 /// A slice has as many entries as the largest degree of its nodes; a node's neighbours are in the order
 /// before sorting. Entry e of the slice gives each lane's node one neighbour, in elements e * lanes + lane of

@@ -196,8 +196,7 @@ BandShape::BandShape(const GridPatch& grid, const Integrator& integrator, std::s
     : bands(grid, lanes) {
   constexpr std::size_t most_stages = 16;  // whose columns still fit in a second-level cache
   constexpr std::size_t most_partitions_per_unit = 4;
-  // If half of the cache does not hold the state, it comes from memory: more steps per launch then also mean
-  // fewer passes over it, as in the host's walk.
+  // If half of the cache does not hold the state, more steps per launch also mean fewer passes over memory.
   const bool fits = bands.columns * bands.column_floats() * sizeof(float) <= cache_bytes / 2;
   const std::size_t fewest = fits ? 1 : stages_under_way / integrator.stage_count;
   const std::size_t first = steps_in_a_launch.value_or(fewest);

@@ -17,8 +17,7 @@ std::string grid_program_text(const Integrator& integrator, int lanes);
 /// Name of the kernel that takes steps in a walk.
 inline constexpr const char* steps_kernel_name = "take_steps";
 
-/// The program that steps a sliced graph with one kernel per stage of the integrator (kernels/mesh_stage.cl),
-/// and the number of nodes per slice that it requires.
+/// The program for a sliced graph, one kernel per stage (kernels/mesh_stage.cl), and its nodes per slice.
 std::string mesh_program_text(const Integrator& integrator, int lanes);
 std::size_t mesh_slice_lanes(int lanes);
 

@@ -81,8 +81,7 @@ struct StageKernels {
   std::optional<std::uint64_t> stored_springs = {};  ///< Backend::stored_springs
 };
 
-/// Steps a system with one kernel per stage of the integrator, all steps queued in order: the `opencl`
-/// backend, except for the walk over a cloth (cloth.h).
+/// Steps a system with one kernel per stage, all queued in order: `opencl` but for cloth.h's walk.
 class OpenclStages final : public OpenclBackend {
  public:
   /// Throws Unsupported unless the device can hold the integrator's pairs and the arguments.

@@ -31,8 +31,7 @@ struct BodySteps : SeparateSteps {
                                 const std::function<std::size_t(std::size_t chunk)>& first_float);
 };
 
-/// Exchange of nodes with the processes that have them as ghosts, once per stage, between two stages: the
-/// counterpart of ColumnMessages for bodies.
+/// Exchange of nodes with the processes that have them as ghosts, between two stages (as ColumnMessages).
 class NodeMessages {
  public:
   NodeMessages() = default;
@@ -44,8 +43,7 @@ class NodeMessages {
   virtual void begin(const float* records) = 0;
   /// Lets messages progress. Does not wait.
   virtual void advance() = 0;
-  /// Waits until the ghosts' records are in the pair that the stage gathers. Must not throw, like the other
-  /// functions: threads of a step call them, one at a time.
+  /// Waits until the ghosts are in the pair that the stage gathers. Threads call it: none of these may throw.
   virtual void finish(float* records) = 0;
 };
 

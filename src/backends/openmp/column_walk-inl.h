@@ -125,9 +125,8 @@ struct Carry {
 
 HWY_INLINE Carry nothing_carried() { return {zero3(), zero3(), zero3(), zero3()}; }
 
-/// A spring of known length and unknown force. A reciprocal root has a long latency, and a CPU looks about
-/// one row ahead, so each spring is begun before the previous one is finished. On Zen 4, one thread: 0.98 of
-/// the time at 200 x 200 and 0.99 at 500 x 700.
+/// A spring of known length and unknown force. A root has a long latency, and a CPU looks about one row
+/// ahead, so each spring is begun before the previous one ends. On Zen 4: 0.98 to 0.99 of the time.
 struct BegunSpring {
   Lanes3 d;  ///< from the other end to this one
   Lanes closing, inverse_length;
@@ -356,8 +355,7 @@ HWY_NOINLINE void walk_column_before(const BandGrid& bands, const ColumnView& vi
                                [](std::ptrdiff_t, const NodeLanes&, const Lanes3&) MSSIM_INLINE_LAMBDA {});
 }
 
-/// A column at the end of the cloth, without springs beyond it, in any stage: the complete forces on its
-/// nodes replace those from earlier columns.
+/// The cloth's last column, in any stage: complete forces on its nodes replace those from earlier columns.
 template <unsigned set>
 HWY_NOINLINE void pull_last_column(const BandGrid& bands, const ColumnView& view) {
   const RowConstants constants(bands, view);

@@ -114,7 +114,6 @@ HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, cons
   return sum;
 }
 
-/// One stage at the nodes of one slice.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::size_t slice,
                            EntryWalk& entries) {
@@ -216,7 +215,6 @@ HWY_INLINE void work_on(Bodies& bodies, std::uint32_t number, IndexRange chunk, 
   });
 }
 
-/// Executes `stages` stages.
 template <std::size_t method, class Bodies>
 HWY_INLINE void take_stages(Bodies& bodies, std::uint32_t count) {
   work_in_phases(
@@ -255,8 +253,7 @@ HWY_INLINE void take_stages(SlicedBodies& bodies, std::uint32_t count) {
 
 template <std::size_t method, class Bodies>
 HWY_INLINE void take_steps(Bodies& bodies, int count) {
-  // A node's sums are in the order of its neighbours, on any thread and for any division of bodies: the
-  // result is bitwise identical for any number of threads.
+  // Sums are in the order of neighbours, for any division: bitwise identical for any number of threads.
   const auto stages =
       static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(integrators[method].stage_count);
   if (stages == 0 || bodies.chunks.empty()) return;

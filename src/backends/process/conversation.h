@@ -31,8 +31,7 @@ struct ConversationFailure : std::runtime_error {
 /// Interrupted (platform/process.h) within a tenth of a second after an ending signal.
 class Conversation {
  public:
-  /// Listens at a socket in `folder`, or in a new folder in /tmp if the name is too long for a socket. Throws
-  /// std::runtime_error with one sentence if that fails.
+  /// Listens at a socket in `folder`, or in /tmp if its name is too long. Throws std::runtime_error.
   explicit Conversation(const std::filesystem::path& folder);
 
   const std::filesystem::path& socket() const { return socket_; }
@@ -41,8 +40,7 @@ class Conversation {
   /// `end_descriptor` becomes readable when the program has ended.
   void begin(std::chrono::duration<double> time_limit, int end_descriptor);
 
-  /// Sends lines, each ended by a newline, that request one answer. `asked` names the request in messages. An
-  /// answer that arrived before its request is an error.
+  /// Sends lines that request one answer; `asked` names them in messages. An earlier answer is an error.
   void ask(std::string_view lines, const std::string& asked);
 
   /// The program's next line, without its newline. The time limit counts from ask().

@@ -57,8 +57,7 @@ using namespace std::chrono_literals;
 
 /// Time for a program to end after it was asked to.
 constexpr std::chrono::milliseconds patience = 2s;
-/// Time after a program has closed its connection: it may still print the reason, and a launcher takes
-/// seconds to learn that its remote processes have ended.
+/// Time after a program has closed its connection, in which it prints the reason, or its launcher learns it.
 constexpr std::chrono::milliseconds patience_for_reasons = 8s;
 /// Maximum number of a program's answers to `prepare`.
 constexpr int most_lines = 100;

@@ -55,8 +55,7 @@ class ChunkTickets {
     }
     return false;
   }
-  /// Works in every phase until close(). Calls finished() whenever it has finished a phase. Between phases it
-  /// spins `spins` times before it yields its core.
+  /// Works until close(). Calls finished() after phases that it ended. Spins `spins` times, then yields.
   template <class Act, class Finished>
   void work_until_closed(std::uint32_t range, int spins, Act&& act, Finished&& finished) {
     for (std::uint32_t opened = opened_.load(std::memory_order_acquire); opened != closed;) {
@@ -68,8 +67,7 @@ class ChunkTickets {
       }
     }
   }
-  /// Waits until all chunks of the phase are done. They are being processed, so this is short, unless a
-  /// thread was interrupted: it may need this thread's core.
+  /// Waits until the phase's chunks, all in work, are done. An interrupted thread may need this one's core.
   void wait_until_finished() const {
     while (finished_.load(std::memory_order_acquire) != chunks_) std::this_thread::yield();
   }

@@ -107,8 +107,7 @@ HWY_INLINE Mask below(Index index, std::uint32_t limit) {
   return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
 }
 
-/// Rotates: each lane gets the value of the lane `before` places earlier in `a`. In each `group` of lanes, a
-/// power of two, lane `outside` gets the value of `other`.
+/// Each lane gets the one `before` places earlier in `a`; in each `group` (2^n), `outside` gets `other`.
 HWY_INLINE Lanes from_lane(Lanes a, std::size_t before, std::size_t group, std::size_t outside, Lanes other) {
   const FloatTag d;
   const auto set = [](std::size_t number)

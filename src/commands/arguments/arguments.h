@@ -34,8 +34,7 @@ ValueRule number_between(double low, double high);
 ValueRule whole_number(std::int64_t low, std::int64_t high);
 /// Accepts one whole number, or several different ones separated by commas.
 ValueRule whole_numbers(std::int64_t low, std::int64_t high);
-/// Accepts one of these words, in any case, and replaces the text by the word as given here. `what` names
-/// their kind; `others` are alternative spellings.
+/// Accepts one of these words, in any case, and replaces the text by it. `what`: kind; `others`: spellings.
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others = {});
 
 /// Makes the texts that a shell may complete the value of an argument to.

@@ -96,8 +96,7 @@ std::string manual_entries(const CLI::App& command) {
   return entries;
 }
 
-/// The end of a help page: paragraphs, and indented commands. With `sections`, the words before the colon at
-/// the start of a paragraph are the heading of a section.
+/// The end of a help page: paragraphs, indented commands. With `sections`, words before a colon are headings.
 std::string manual_end(const std::string& text, bool sections) {
   std::istringstream lines(text);
   std::string page, line;

@@ -32,8 +32,7 @@ inline constexpr int stretch_steps = 5;
 inline constexpr int stretches = verification_steps / stretch_steps;
 
 /// Runs the reference. A draped stretch starts with a wave added to the settled garment's velocities, so that
-/// friction, damping and the correction of elongations act. `draped` is a state of the system, at rest and
-/// draped.
+/// friction, damping and corrections act. `draped`: a state of the system, at rest and draped.
 ///
 /// Stretches are short because the correction of springs and contact have thresholds. A rounding error that
 /// changes such a decision moves a node as far as the law does, and its neighbours follow. Over 100

@@ -20,14 +20,12 @@ double misfit(double height) { return std::max({1.0, shortest_person / height, h
 
 constexpr std::array<Vec3d, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// The bounding box of a surface.
 Box<double> box_of(const Surface& surface) {
   Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
   for (const Vec3d& point : surface.points) extend(box, point);
   return box;
 }
 
-/// The body in one possible stance.
 struct Candidate {
   BodyStance stance;
   Surface body;

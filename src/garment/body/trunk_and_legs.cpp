@@ -47,7 +47,6 @@ void leave_out_rim(const Surface& surface, std::vector<bool>& stays) {
                                                 [&](std::uint32_t corner) { return is_near[corner]; });
 }
 
-/// Loops of one section that overlap.
 struct Group {
   std::vector<SectionLoop> loops;
   double area = 0;       ///< m^2, of the largest loop
@@ -193,8 +192,7 @@ void keep_above(std::vector<Level>& levels, std::size_t from) {
   }
 }
 
-/// Keeps groups cut off at a neck that do not hang from a separate part above: they are no limb, or the start
-/// of one, such as arms at the shoulders.
+/// Keeps groups cut off at a neck that hang from no separate part: no limb, or its start, as at shoulders.
 void keep_bulges(std::vector<Level>& levels) {
   for (std::size_t i = levels.size(); i-- > 0;)
     for (Group& group : levels[i].groups)

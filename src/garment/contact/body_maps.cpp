@@ -32,8 +32,7 @@ SideMap side_map(const Surface& surface, const std::vector<Vec3d>& normals, cons
 
 namespace {
 
-/// Smallest z of a plane's unit normal towards the camera: 6 degrees from edge-on. The face of a limb turns
-/// by about as much within a pixel at the silhouette.
+/// Smallest z of a plane's unit normal to the camera: 6 degrees from edge-on, a limb's turn in a pixel there.
 constexpr double least_facing = 0.1;
 /// n . P of a plane with no point behind it.
 constexpr float beyond_all = -1e30F;

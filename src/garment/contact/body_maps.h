@@ -40,13 +40,11 @@ static_assert(sizeof(BodyPixel) == BODY_FLOATS * sizeof(float));
 /// A body as cloth collides with it: orthographic images from the front (z = +infinity) and the back. Each
 /// pixel holds the tangent plane of the nearest face (Vassilev, Spanlang and Chrysanthou, "Fast cloth
 /// animation on walking avatars", 2001, compare with the depth instead). A point is tested against the two
-/// planes of the pixel in which it lies, so that the cost of a test does not depend on the number of
-/// triangles.
+/// planes of its pixel, at a cost that no number of triangles changes.
 ///
 /// Beyond the silhouette, `dilation` pixels repeat the planes of their neighbours. Otherwise a point that
 /// slides from pixel to pixel there would touch in every other step and chatter. The plane of a face seen
-/// edge-on leans 6 degrees towards the camera, so that points far in front of the body do not count as behind
-/// the plane.
+/// edge-on leans 6 degrees towards the camera, so that points far in front do not count as behind it.
 ///
 /// Limitations of images:
 /// - Each pixel has one interval of depth. The space between the nearest and the farthest face counts as

@@ -14,8 +14,7 @@
 namespace mssim {
 namespace {
 
-/// Two sub-patches with fewer cells than this in all do not get a task of their own: searching them takes
-/// microseconds, as creating a task does.
+/// Two sub-patches with fewer cells get no task of their own, which takes as long as their search.
 constexpr std::uint32_t least_cells_of_task = 1024;
 
 /// The search of boxes reaches a little farther than the comparison of distances, to cover rounding errors.
@@ -66,8 +65,7 @@ bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& tr
   return lowest || highest || leftmost || rightmost;
 }
 
-/// The contact of a node with its nearest triangle, if there is one. outward: 1 if the node belongs on the
-/// side of the panel's normal, else -1.
+/// A node's contact with its nearest triangle, if any. outward: 1 if it belongs where the normal is, or -1.
 std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t node, std::uint32_t nearest,
                                        float outward, const Coordinates& position) {
   const std::uint32_t cell = nearest / 2, row_length = panel.columns - 1;

@@ -117,8 +117,7 @@ class Drafting {
     return girth;
   }
 
-  /// Half of the front or back, m, of jeans with the circumference of girth, offset and ease. Front and back
-  /// have the fractions of the body at the height y.
+  /// Half of the front or back, m, of jeans around girth, offset and ease, shared as the body's at height y.
   double quarter(double y, double girth, double ease) const {
     const double front = m_.front_share ? m_.front_share(y) : 0.5;
     const double share = half_.before ? front : 1 - front;
@@ -131,8 +130,7 @@ class Drafting {
   double centre_bend() const { return crotch_line_ + half_.curve_height; }
   double centre_height() const { return m_.waist_height + half_.raised - centre_bend(); }
 
-  /// x of the centre seam, extended below: vertical up to the bend, above it a cubic of the height that leans
-  /// more with height, as the body does over seat and belly.
+  /// x of the centre seam, extended below: vertical up to the bend, then a cubic, as over seat and belly.
   double centre_x(double y) const {
     const double t = std::max(0.0, (y - centre_bend()) / centre_height());
     return hip_width_ - centre_taken() * t * t * (3 - top_lean + (top_lean - 2) * t);
@@ -140,8 +138,7 @@ class Drafting {
   /// -dx/dy of the centre seam at the waist.
   double centre_lean() const { return top_lean * centre_taken() / centre_height(); }
 
-  /// The upper edge, with the length of the waist. It rises to the side, where front and back would otherwise
-  /// form a notch, and is perpendicular to the centre seam.
+  /// The upper edge, as long as the waist. It rises to the side, for no notch, at right angles to the seam.
   Curve waist(const Vec3d& at_centre) const {
     double width = waist_width_;
     const auto drawn = [&] {
@@ -269,8 +266,7 @@ JeansDraft draft_with(const JeansMeasures& measures, double fork_factor) {
   return {front_outline, back.outline(most)};
 }
 
-/// The factor of the forks' length for which the centre seams are as long as the body there plus some ease: a
-/// body that is deep for its girth needs longer forks.
+/// The factor of the forks' length at which the centre seams fit the body plus ease: deep bodies need more.
 double fork_factor(const JeansMeasures& measures) {
   if (!measures.crotch_length) return 1;
   constexpr double ease = 0.05;  // m, including that of the crotch and the raised back
@@ -286,7 +282,6 @@ double fork_factor(const JeansMeasures& measures) {
 
 double inner_length(const JeansOutline& outline) { return outline.inseam.length() + outline.centre.length(); }
 
-/// The mean length of an outline's inner and outer sides, m.
 double mean_height(const JeansOutline& outline) {
   return 0.5 * (inner_length(outline) + outline.outer.length());
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "garment/layers/cloth_cloth.h"
 #include "garment/stepping/dressing_backend.h"

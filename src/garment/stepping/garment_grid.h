@@ -74,8 +74,7 @@ struct GarmentGrid {
     float fraction;                   ///< of the edge
   };
 
-  /// Throws Unsupported if springs of one row and direction differ in stiffness, and std::invalid_argument if
-  /// the springs are not those of the panels.
+  /// Throws Unsupported for rows of springs of different stiffness, std::invalid_argument for other springs.
   explicit GarmentGrid(const System& system);
 
   void set_state(const State& state);

@@ -369,7 +369,6 @@ void move(PanelDressing& dressing, const Worker& worker) {
     move_block(grid, grid.blocks[b], Lanes(rule.dt), dressing.system.floor);
 }
 
-/// Collides the layers of the garment.
 void collide_layers(PanelDressing& dressing) {
   GarmentGrid& grid = dressing.grid;
   dressing.layers->collide(

@@ -66,8 +66,7 @@ struct BodySpec {
   double turn_deg = 0;       ///< rotation of the shape about its centre
   Vec3d velocity_m_per_s;    ///< of the centre
   Vec3d spin_rad_per_s;      ///< angular velocity about the centre
-  /// Initial growth rate, so that every spring is active from the first step on: a node at distance r from
-  /// the centre starts with swell * r outwards.
+  /// Initial growth rate: every spring acts at once. A node at r from the centre starts with swell * r.
   double swell_per_s = 0;
 };
 
@@ -149,13 +148,11 @@ struct SceneParts {
 
 class FieldVisitor;
 
-/// A kind of scene and its operations. The rows are defined next to their specs, in scene/cloth.cpp,
-/// scene/bodies.cpp and garment/scene/garment_scene.cpp.
+/// A kind of scene and its operations; rows in cloth.cpp, bodies.cpp and garment/scene/garment_scene.cpp.
 struct SceneKind {
   std::string_view name;         ///< value of the file's `kind`, and the key of its section
   std::string_view description;  ///< description of the section in the schema
-  /// Names the section's fields, with their targets in spec.content, which it first sets to its alternative.
-  /// The functions below need a spec of this alternative.
+  /// Names the section's fields, with targets in spec.content, set to its alternative, which the others need.
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
   /// Checks what no single field shows. Throws SceneError.
   void (*check)(const SceneSpec& spec);

@@ -49,8 +49,7 @@ HWY_INLINE void store_part(Mask lanes, const Lanes3& value, float* to, std::size
   hn::BlendedStore(value.z.v, lanes, d, to + 2 * pitch);
 }
 
-/// Pull of compliant springs between nodes a and b in a substep of h, per unit of `way`, which becomes the
-/// vector from a to b at the substep's end.
+/// Pull of compliant springs from a to b in a substep of h, per unit of `way`, set to a - b at its end.
 HWY_INLINE Lanes pull_between(const NodeLanes& a, const NodeLanes& b, Lanes h, const SpringLanes& c,
                               Lanes3& way) {
   const Lanes3 u = b.v - a.v;
@@ -69,8 +68,7 @@ HWY_INLINE void project(float* first, float* second, std::size_t pitch, Lanes h,
   store_part(second_moves, mul_add(-pull, way, b.v), second + 3 * pitch, pitch);
 }
 
-/// Springs of a colour: from nodes of a stream, in `rows` rows at distances of `row_step`, to nodes `down`
-/// rows and `right` columns further.
+/// Springs of a colour: from a stream's nodes, in `rows` rows `row_step` apart, `down` and to the `right`.
 struct Springs {
   std::size_t first_row, rows, row_step;
   std::ptrdiff_t down;
@@ -132,7 +130,6 @@ HWY_NOINLINE inline void let_fall(QuarteredRows& cloth, std::size_t first_row, s
     }
 }
 
-/// The colours along rows.
 HWY_INLINE void project_along_rows(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
   for (const std::size_t stream : {0U, 2U, 1U, 3U})
     project_springs(cloth, {first_row, rows, 1, 0, stream, 1, structural});
@@ -270,7 +267,6 @@ HWY_NOINLINE void walk_down(QuarteredRows& cloth, std::size_t begin, std::size_t
     });
 }
 
-/// Takes `count` steps.
 void step_cloth(QuarteredRows& cloth, int count) {
   // For any division among threads, each spring sees the result of the colours before its own: bitwise
   // identical for any number of threads and of substeps per pass.
@@ -308,8 +304,7 @@ void step_cloth(QuarteredRows& cloth, int count) {
 constexpr std::size_t vector_springs = hn::MaxLanes(FloatTag());
 
 /// Writes the velocities of the nodes whose records are at record(0), record(1) ..., one per lane, in stores
-/// of blocks of four floats. With scatter instructions, one per component, a step of 38,233 and of 3,858
-/// nodes takes 1.8 to 2 times as long on Zen 4.
+/// of blocks of four floats. Scatter instructions take 1.8 to 2 times as long on Zen 4.
 #if HWY_TARGET == HWY_SCALAR
 template <class Record>
 HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
@@ -447,7 +442,6 @@ HWY_INLINE void step_part(SpringBatches& bodies, const SpringBatches::Part& part
   move_nodes(bodies, {true, true, false}, part.begin + team.begin(nodes), part.begin + team.end(nodes));
 }
 
-/// Takes `count` steps.
 void step_bodies(SpringBatches& bodies, int count) {
   // Springs of a colour share no node, and parts share nothing: bitwise identical for any number of threads.
   const std::size_t small_steps = static_cast<std::size_t>(count) * bodies.substeps;

@@ -126,8 +126,7 @@ struct QuarteredRows : SmallSteps {
   AlignedArray free;
   std::vector<const float*> free_of_row;  ///< [rows] into `free`; its start if the row has no pin
 
-  /// By GridSpringKind, between free nodes and between a free one and a pin; divided by the mass of a node,
-  /// so the impulse on a free end is its change of velocity.
+  /// By GridSpringKind, between free nodes, and to a pin; over a node's mass: impulses are velocities.
   std::vector<LinearSpring<float>> of_free, of_pinned;
   std::size_t threads = 1;
   std::size_t depth = 1;  ///< substeps per pass over the cloth

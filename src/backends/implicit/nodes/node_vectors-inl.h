@@ -1,5 +1,4 @@
-// The walk over the nodes of a cloth or of bodies (node_vectors.h), vector by vector. Compiled once per
-// instruction set, so the guard toggles.
+// The walk over node_vectors.h, vector by vector. Compiled once per instruction set: the guard toggles.
 #if defined(MSSIM_NODE_VECTORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_NODE_VECTORS_INL_H_
 #undef MSSIM_NODE_VECTORS_INL_H_
