@@ -1,5 +1,4 @@
-// Steps cloths on several processes, on one or several machines: a backend that is a program of its own, so
-// mssim does not depend on MPI.
+// Steps scenes on several processes and machines: a program of its own, so mssim does not depend on MPI.
 
 #include <cstring>
 

@@ -78,8 +78,7 @@ constexpr const BackendInfo& only_row(BackendRole role) {
 static_assert(std::ranges::count(table, BackendRole::baseline, &BackendInfo::role) == 1 &&
               std::ranges::count(table, BackendRole::best_of_host, &BackendInfo::role) == 1);
 
-/// Throws Unavailable if the system cannot create the threads that the backend would, or if the row fixes
-/// more than make sense here.
+/// Throws Unavailable if the system cannot create the backend's threads, or the row fixes too many.
 void require_threads(const BackendInfo& backend, const ExecutionOptions& options) {
   if (backend.threads > 0)
     if (const auto excess = thread_excess(backend.threads))

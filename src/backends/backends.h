@@ -33,15 +33,13 @@ struct BackendInfo {
   bool uses_device;              ///< needs an OpenCL device
   /// The stack of its threads, if it creates as many as requested.
   std::optional<ThreadStack> makes_threads;
-  /// Makes a backend for a cloth or bodies and an explicit integrator, at the system's start state. `system`
-  /// must outlive it. Throws Unavailable or Unsupported. Null if a program takes its steps, or if it steps
-  /// garments only.
+  /// Makes a backend for a cloth or bodies and an explicit integrator, at the start state. `system` must
+  /// outlive it. Throws Unavailable or Unsupported. Null if a program steps, or if it only steps garments.
   std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth
   MemoryUse mesh_memory;  ///< for bodies
-  /// Approximate time of a step of a cloth or of bodies with an explicit integrator on two cores, relative to
-  /// `serial`: for plans (results/table1, results/table3).
+  /// Approximate time of an explicit step on two cores over `serial`'s, for plans (results/table1, table3).
   double step_share = 1;
   BackendRole role = BackendRole::as_published;
   /// Makes a backend that dresses a garment; null if it does not implement Algorithm 1.
@@ -80,8 +78,7 @@ BackendInfo own_backend(const BackendProgram& program);
 /// The TABLE of backends, in the order of all listings and results. A new backend is one row in backends.cpp.
 std::span<const BackendInfo> backends();
 
-/// The rows of the TABLE of published dressings (garment/stepping/published_dressing.h), in its order. They
-/// step only garments, and have the role `as_published`.
+/// The TABLE of published_dressing.h as rows for garments, with the role `as_published`.
 std::span<const BackendInfo> garment_backends();
 
 /// The instruction sets of vector code (has_vectors) that this CPU supports, by Highway's names, the best
@@ -150,9 +147,8 @@ inline bool steps_bodies(const BackendInfo& backend) {
 std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options);
 
 /// The integrator in double precision on one thread, at the system's start: the reference for verifying every
-/// timed row. Solvers of implicit integrators iterate until they improve no more; a long step ends when
-/// `stop` returns true, and the state is then useless. `system` must outlive it. Throws Unsupported for a
-/// garment.
+/// timed row. Solvers of implicit integrators iterate until they improve no more; if `stop` returns true, a
+/// long step ends with a useless state. `system` must outlive it. Throws Unsupported for a garment.
 std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s,
                                         const std::function<bool()>& stop = {});
 
@@ -160,8 +156,7 @@ std::unique_ptr<Backend> make_reference(const System& system, const Integrator& 
 MemoryUse reference_memory(const Integrator& integrator, bool grid);
 
 /// Runs mssim as another process for try_driver (devices/drivers.h) with these arguments: makes the backend
-/// for a small system, and ends with exit code 0 even if that throws: the requesting process then throws the
-/// same.
+/// for a small system, and ends with exit code 0 even if that throws: the requester then throws the same.
 [[noreturn]] void run_driver_trial(std::span<char*> arguments);
 
 }  // namespace mssim

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -10,7 +9,6 @@
 namespace mssim {
 namespace {
 
-/// A body as a system of its own.
 struct OneBody {
   System system;
   std::vector<std::uint32_t> scene_node;  ///< [nodes] ascending

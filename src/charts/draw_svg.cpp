@@ -60,11 +60,9 @@ class Drawing {
   /// The start tag, with a title and a description for screen readers.
   void head(const std::vector<std::string>& notes) {
     constexpr std::size_t most = 4000;
-    std::vector<std::string> names;
-    for (const Series& one : chart_.series) names.push_back(one.name);
     std::string description = chart_.subtitle.empty() ? "" : chart_.subtitle + ". ";
     description += fmt::format("Along: {}. Upwards: {}. Series: {}.", words_of(chart_.x), words_of(chart_.y),
-                               join(names, ", "));
+                               join(mapped<std::string>(chart_.series, &Series::name), ", "));
     for (const std::string& note : notes) description += ' ' + note + '.';
     svg_ = fmt::format(
         R"(<svg id="{0}" class="chart" viewBox="0 0 {1} {2}" xmlns="http://www.w3.org/2000/svg" role="img" )"

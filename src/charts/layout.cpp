@@ -108,9 +108,9 @@ std::vector<Tick> ticks_at(const PlottedValues& values) {
   std::set<double> along;
   for (const auto& points : values.series)
     for (const PlottedPoint& point : points) along.insert(point.x);
-  std::vector<Tick> ticks;
-  for (const double x : along) ticks.push_back({x, grouped(static_cast<std::uint64_t>(std::llround(x)))});
-  return ticks;
+  return mapped<Tick>(along, [](double x) {
+    return Tick{x, grouped(static_cast<std::uint64_t>(std::llround(x)))};
+  });
 }
 
 /// The row of each label: labels that would overlap go to a second row, and those without room there are left
@@ -151,9 +151,7 @@ void lay_out_plot(ChartLayout& layout, const Chart& chart, const PlottedValues& 
   layout.y = scale_of(chart.y, range.y);
   layout.x = scale_of(chart.x, range.x);
   if (chart.x.ticks_at_values) layout.x.ticks = ticks_at(values);
-  std::vector<std::string> labels;
-  for (const Tick& tick : layout.y.ticks) labels.push_back(tick.label);
-  layout.left = chart_edge + widest(labels) + 12;
+  layout.left = chart_edge + widest(mapped<std::string>(layout.y.ticks, &Tick::label)) + 12;
   // Half of the last label of the x axis may extend beyond the plot.
   const double beside = layout.x.ticks.empty() ? 0 : drawn_width(layout.x.ticks.back().label) / 2;
   layout.right = chart_width - chart_edge - beside;

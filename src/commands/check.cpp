@@ -58,8 +58,7 @@ bool can_step(const SceneSize& size, const Integrator& integrator, const Backend
 }
 
 /// A row for each integrator and backend that can step the scene: the largest stable dt, the memory of a
-/// bench of this combination with all processors, and the expected times of a bench and a run of default
-/// length.
+/// bench with all processors, and the expected times of a bench and a run of default length.
 Table combination_table(const PreparedScene& scene, const SceneSize& size, const ModeBound& modes) {
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
   Table table;
@@ -84,14 +83,10 @@ Table combination_table(const PreparedScene& scene, const SceneSize& size, const
 
 /// Default integrators of a bench.
 std::vector<const Integrator*> usual_integrators() {
-  std::vector<const Integrator*> usual;
-  for (const std::string_view name : comparison_of_suite("").integrators)
-    usual.push_back(find_integrator(name));
-  return usual;
+  return mapped<const Integrator*>(comparison_of_suite("").integrators, find_integrator);
 }
 
-/// A warning about the default integrators with which the scene may blow up, according to a limit on the safe
-/// side. Empty if there is none.
+/// A warning about default integrators with which the scene may blow up, by a safe limit; or empty.
 std::string warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
   std::vector<std::string_view> unstable;
   double smallest = scene.dt_s;

@@ -63,8 +63,7 @@ constexpr std::string_view exit_codes =
     "input; 3 a requested device or program is missing; 4 a file could not be\n"
     "written, or a trace could not be read.";
 
-/// mssim's first argument when a shell asks what may stand in the place of the last of the words that follow
-/// (src/completion).
+/// mssim's first argument when a shell asks for completions of the last word that follows (src/completion).
 constexpr std::string_view complete_word = "--complete";
 
 /// A user may name a scene without --scene before it.
@@ -108,9 +107,8 @@ std::span<const Command> commands() { return table; }
 
 std::string unknown_command(std::string_view name) {
   constexpr auto others = std::to_array<OtherName>({{"version", "--version"}});
-  std::vector<std::string_view> known;
-  for (const Command& command : commands()) known.push_back(command.name);
-  return unknown_name("command", name, known, others) + "; see mssim --help";
+  return unknown_name("command", name, mapped<std::string_view>(table, &Command::name), others) +
+         "; see mssim --help";
 }
 
 int run_program(int argc, char** argv) {

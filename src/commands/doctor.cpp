@@ -7,7 +7,6 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -40,8 +39,7 @@ std::string gigabytes(std::uint64_t bytes) {
   return fmt::format("{:.3g} GB", static_cast<double>(bytes) * 1e-9);
 }
 
-/// The finding that `look` completes; if it throws, the thing is missing, and the sentence says how to get
-/// it.
+/// The finding that `look` completes; if it throws, the thing is missing; its sentence says the remedy.
 Checkup looked_at(std::string item, std::string use, const std::function<void(Checkup& finding)>& look) {
   Checkup finding{.item = std::move(item), .use = std::move(use)};
   try {

@@ -62,9 +62,7 @@ std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<
                           : fs::path(options.out);
   require_extension({"--out", out}, name_of(options.format), extensions_of(options.format));
   if (options.format == ExportFormat::vtkhdf || frames.size() == 1) return {target_of(out)};
-  std::vector<fs::path> files;
-  for (const std::size_t frame : frames) files.push_back(target_of(numbered(out, frame)));
-  return files;
+  return mapped<fs::path>(frames, [&](std::size_t frame) { return target_of(numbered(out, frame)); });
 }
 
 int run(const ExportOptions& options) {

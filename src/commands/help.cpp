@@ -3,6 +3,7 @@
 
 #include "commands/command.h"
 #include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -11,9 +12,7 @@ std::function<int()> declare_help(Arguments& arguments) {
   const auto manual = std::make_shared<bool>(false);
   const Argument command =
       arguments.add("COMMAND", *name, "Command to explain (default: all, with one line each)").offers([] {
-        std::vector<std::string> names;
-        for (const Command& known : commands()) names.emplace_back(known.name);
-        return names;
+        return mapped<std::string>(commands(), &Command::name);
       });
   arguments.add_flag("--manual", *manual, "Print all pages as one manual page, for man").excludes(command);
   return [name, manual, arguments] {

@@ -1,7 +1,5 @@
-#include <algorithm>
 #include <array>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -151,10 +149,11 @@ Table list_claims(const ListOptions& /*options*/) {
   return table;
 }
 
-/// The TABLE of what can be listed.
+/// The TABLE of what can be listed: a table, or the schema of a JSON file as it is.
 struct Listed {
   std::string_view name;
   Table (*list)(const ListOptions& options);
+  std::string (*schema)() = nullptr;
 };
 constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"suites", list_suites},
@@ -162,23 +161,14 @@ constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"methods", list_methods},
                                                  {"integrators", list_integrators},
                                                  {"devices", list_devices},
-                                                 {"claims", list_claims}});
-
-/// Things that are printed as they are: schemas of JSON files.
-struct Printed {
-  std::string_view name;
-  std::string (*text)();
-};
-constexpr auto printed = std::to_array<Printed>({{"schema", scene_schema}, {"claims-schema", claims_schema}});
+                                                 {"claims", list_claims},
+                                                 {"schema", nullptr, scene_schema},
+                                                 {"claims-schema", nullptr, claims_schema}});
 
 int run_list(const ListOptions& options) {
   require_device(options.execution, table_backends());
-  for (const Printed& subject : printed)
-    if (subject.name == options.subject) std::cout << subject.text();
-  for (const Listed& subject : subjects) {
-    if (subject.name != options.subject) continue;
-    std::cout << to_text(subject.list(options), options.format);
-  }
+  const Listed& subject = *found_in(subjects, options.subject, &Listed::name);
+  std::cout << (subject.schema ? subject.schema() : to_text(subject.list(options), options.format));
   return exit_ok;
 }
 
@@ -186,14 +176,12 @@ int run_list(const ListOptions& options) {
 
 std::function<int()> declare_list(Arguments& arguments) {
   const auto options = std::make_shared<ListOptions>();
-  std::vector<std::string_view> known;
-  for (const Listed& subject : subjects) known.push_back(subject.name);
-  for (const Printed& subject : printed) known.push_back(subject.name);
+  const auto known = mapped<std::string>(subjects, &Listed::name);
   arguments
       .add("WHAT", options->subject,
            "What to list: " + listed(known, "or") +
                "; the schemas are JSON Schemas of scene files and of claims.json",
-           one_of("word", {known.begin(), known.end()}))
+           one_of("word", known))
       .required();
   declare_listing_format(arguments, options->format);
   arguments.add("--device N|NAME", options->execution.device,

@@ -44,19 +44,14 @@ Vec3d to_tenths(const Vec3d& point) {
   return {to_tenths(point.x) + 0.0, to_tenths(point.y) + 0.0, to_tenths(point.z) + 0.0};
 }
 
-std::string name_of_unit(double metres) {
-  const auto units = length_units();
-  const auto unit = std::ranges::find(units, metres, &LengthUnit::metres);
-  return unit == units.end() ? "" : std::string(unit->name);
-}
-
 /// The results of `mssim measure` for a body: rows of measure, value, unit and note.
 class BodyListing {
  public:
   /// `how`: the source of all three values.
   void add_stance(const BodyStance& stance, const std::string& how) {
-    const std::string name = name_of_unit(stance.unit_m);
-    add("unit", stance.unit_m, "m", name.empty() ? how : name + ", " + how);
+    const auto units = length_units();
+    const auto* unit = found_in(units, stance.unit_m, &LengthUnit::metres);
+    add("unit", stance.unit_m, "m", unit ? fmt::format("{}, {}", unit->name, how) : how);
     add("up", up_axis_names.at(static_cast<std::size_t>(stance.up)), "", how);
     add("facing", facing_names.at(static_cast<std::size_t>(stance.facing)), "", how);
     if (stance.turn_deg != 0)
@@ -130,9 +125,8 @@ ordered_json garment_for(const BodyFile& body, const ordered_json& garment) {
   return changed;
 }
 
-/// The mass of a node is proportional to the area of its cell, which is smaller in smaller jeans of as many
-/// nodes; dt is proportional to the square root of the mass. Rounds down to two digits, and never exceeds the
-/// template's tested dt.
+/// The mass of a node is proportional to the area of its cell, smaller in smaller jeans of as many nodes; dt
+/// is proportional to the root of the mass. Rounds down to two digits, at most the template's dt.
 double shorter_dt(double dt_s, const JeansMeasures& jeans, double hip_girth) {
   const JeansMeasures reference;
   constexpr double reference_hip = 0.98;

@@ -34,8 +34,7 @@ std::vector<std::size_t> all_of(std::size_t frames) {
   return list;
 }
 
-/// Length of the first name or file in the text. Files of scenes and of backends are recognised in the same
-/// way: a path that exists.
+/// Length of the first name or file in the text. A file, of a scene or backend, is a path that exists.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
@@ -145,11 +144,7 @@ std::vector<std::string> names_and_files_in(std::string_view argument) {
   return names;
 }
 
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
-  for (const SceneSpec& spec : shipped_scenes()) names.push_back(spec.name);
-  return names;
-}
+std::vector<std::string> scene_names() { return mapped<std::string>(shipped_scenes(), &SceneSpec::name); }
 
 std::vector<const BackendInfo*> every_backend(BackendChoice& choice) {
   std::vector<const BackendInfo*> all = with_garment_backends(table_backends());
@@ -160,15 +155,11 @@ std::vector<const BackendInfo*> every_backend(BackendChoice& choice) {
 
 std::vector<std::string> backend_names() {
   BackendChoice choice(with_garment_backends(table_backends()), {});
-  std::vector<std::string> names;
-  for (const BackendInfo* backend : every_backend(choice)) names.emplace_back(backend->name);
-  return names;
+  return mapped<std::string>(every_backend(choice), &BackendInfo::name);
 }
 
 std::vector<std::string> integrator_names() {
-  std::vector<std::string> names;
-  for (const Integrator* integrator : all_integrators) names.emplace_back(integrator->name);
-  return names;
+  return mapped<std::string>(all_integrators, &Integrator::name);
 }
 
 Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,

@@ -37,17 +37,11 @@ std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const 
   return curve;
 }
 
-/// Wall time of a frame, s.
-double frame_seconds(const WorkPoint& point, double frames_per_second) {
-  return steps_a_frame(point.dt_s, frames_per_second) * point.seconds_a_step;
-}
-
 std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
-  const double seconds = frame_seconds(point, wish.frames_per_second), rate = 1 / seconds;
-  const std::string asked = decimal(wish.frames_per_second);
-  return seconds * wish.frames_per_second <= 1
-             ? fmt::format("fast enough for {} frames per second (up to {})", asked, three_digits(rate))
-             : fmt::format("too slow for {} frames per second (up to {})", asked, three_digits(rate));
+  const double frame_s = steps_a_frame(point.dt_s, wish.frames_per_second) * point.seconds_a_step;
+  return fmt::format("{} for {} frames per second (up to {})",
+                     frame_s * wish.frames_per_second <= 1 ? "fast enough" : "too slow",
+                     decimal(wish.frames_per_second), three_digits(1 / frame_s));
 }
 
 std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const CostAtError& cost) {
@@ -89,8 +83,7 @@ struct ErrorRange {
   std::optional<double> to;
 };
 
-/// Advantage in cost of `other` over `winner` at an error, as the logarithm of the ratio: infinite if only
-/// one of them keeps it, and negative if neither does.
+/// Logarithm of the costs of `winner` over `other` at an error: infinite if one fails, negative if both do.
 double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winner, const GuidedMethod& other,
                     double error) {
   const auto mine = cost_at_error(points, other, error), its = cost_at_error(points, winner, error);
@@ -129,7 +122,6 @@ std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const G
   return ranges;
 }
 
-/// At most three ranges, in words.
 std::string in_words(std::span<const ErrorRange> ranges) {
   constexpr std::size_t most = 3;
   std::vector<std::string> texts;
@@ -224,13 +216,10 @@ struct Compared {
 };
 
 std::string integrators_of(std::span<const Compared> compared) {
-  std::vector<std::string> names;
-  for (const Compared& one : compared) names.emplace_back(one.integrator);
-  return listed(names);
+  return listed(mapped<std::string>(compared, &Compared::integrator));
 }
 
-/// Compares the order of the integrators by time per step with that at the requested error; empty if fewer
-/// than two were measured.
+/// Compares the order of integrators by time per step with that at the requested error; or empty.
 std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
   std::vector<Compared> all;
   for (const std::string_view name : paper_integrators) {
@@ -287,8 +276,7 @@ std::string explicit_euler_beside(const SceneGuide& guide) {
 }  // namespace
 
 const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator) {
-  const auto limit = std::ranges::find(guide.limits, integrator, &StepLimit::integrator);
-  return limit == guide.limits.end() ? nullptr : &*limit;
+  return found_in(guide.limits, integrator, &StepLimit::integrator);
 }
 
 std::optional<double> expected_step(const SceneGuide& guide, const Integrator& integrator) {

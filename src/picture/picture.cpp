@@ -35,8 +35,6 @@ using PngMessage = std::array<char, 200>;
   png_longjmp(png, 1);
 }
 
-void ignore_warning(png_structp, png_const_charp) {}
-
 void append_bytes(png_structp png, png_bytep data, std::size_t size) {
   bool appended = false;
   try {
@@ -47,12 +45,11 @@ void append_bytes(png_structp png, png_bytep data, std::size_t size) {
   if (!appended) png_error(png, "out of memory");
 }
 
-void flush_nothing(png_structp) {}
-
 /// libpng's structures, freed by the destructor.
 struct PngWriter {
   PngMessage message{};
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, give_up, ignore_warning);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, give_up, [](png_structp, png_const_charp) {});
   png_infop info = png ? png_create_info_struct(png) : nullptr;
 
   PngWriter() = default;
@@ -61,8 +58,7 @@ struct PngWriter {
   ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
-/// Whether libpng wrote everything. On an error it returns here by longjmp, so no variable in between may
-/// have a destructor.
+/// Whether libpng wrote everything. Errors return here by longjmp: no variable in between has a destructor.
 bool write_png(png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_IHDR(png, info, picture.width, picture.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
@@ -120,7 +116,7 @@ std::string png_of(const Picture& picture) {
   PngWriter writer;
   if (!writer.info) throw std::runtime_error("no memory to write a PNG picture");
   std::string bytes;
-  png_set_write_fn(writer.png, &bytes, append_bytes, flush_nothing);
+  png_set_write_fn(writer.png, &bytes, append_bytes, [](png_structp) {});
   if (!write_png(writer.png, writer.info, picture))
     throw std::runtime_error(fmt::format("a picture of {} x {} pixels cannot be written as PNG: {}",
                                          picture.width, picture.height, writer.message.data()));

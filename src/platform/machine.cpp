@@ -203,8 +203,7 @@ std::string in_gigabytes(std::uint64_t bytes, int digits) {
 }
 
 constexpr const char* spin_variable = "GOMP_SPINCOUNT";
-/// Tens to hundreds of microseconds, depending on the CPU's pause instruction. The sign, which only this
-/// program writes, shows that it restarted itself.
+/// Tens to hundreds of microseconds, by the CPU's pause. The sign, only this program's, shows a restart.
 constexpr std::string_view short_spins = "+1000";
 
 /// OMP_STACKSIZE as libgomp reads it, in bytes; nothing if it is unset or not a size.

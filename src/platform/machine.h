@@ -34,8 +34,7 @@ class OnAllProcessCpus {
   bool changed_ = false;
 };
 
-/// Launch policy for std::async: in a new thread, or, if the system refuses one, in the thread that waits for
-/// the result.
+/// Launch policy for std::async: in a new thread, or, if the system refuses one, in the waiting one.
 inline constexpr std::launch as_the_system_can = std::launch::async | std::launch::deferred;
 
 /// Calls `work` with 0 to `count` - 1, at most `at_once` at the same time. Throws what `work` throws.
@@ -46,8 +45,7 @@ void for_each_at_once(std::size_t count, std::size_t at_once, const std::functio
 struct ContainerLimits {
   std::optional<double> processors;           ///< CPU seconds per second
   std::optional<std::uint64_t> memory_bytes;  ///< the limit
-  /// Bytes of it that are not in use; the page cache counts as unused, because the kernel releases it before
-  /// it refuses memory.
+  /// Bytes of it not in use; the page cache counts as unused, because the kernel releases it first.
   std::optional<std::uint64_t> memory_left;
 };
 
@@ -117,8 +115,7 @@ std::optional<std::string> thread_shortage(int threads, ThreadStack stack);
 /// step would take as long as the system needs to run them all. Nothing if they do.
 std::optional<std::string> thread_excess(int threads);
 
-/// Threads for a parallel region whose result does not depend on their number: `wanted` (0: OpenMP's
-/// default), or fewer if the system allows only those.
+/// Threads for a parallel region: `wanted` (0: OpenMP's default), or as many as the system allows.
 int openmp_team(int wanted);
 
 /// Wall time since construction, from a monotonic clock.
@@ -131,8 +128,7 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// The facts that decide how an output stream is written; the texts are environment variables, empty if
-/// unset.
+/// What decides how an output stream is written; texts are environment variables, empty if unset.
 struct StreamFacts {
   bool is_terminal = false;
   int columns = 0;  ///< of the terminal; 0 if unknown
@@ -153,8 +149,7 @@ Terminal terminal_with(const StreamFacts& facts);
 /// The capabilities of a descriptor in this environment. Only this function inspects a stream's type.
 Terminal terminal_of(int descriptor);
 
-/// Highway's name of an instruction set as people know it: "AVX-512" for "AVX3"; the others are their
-/// makers'.
+/// Highway's name of an instruction set as people know it: "AVX-512" for "AVX3"; others are unchanged.
 std::string_view instruction_set_name(std::string_view highway_name);
 
 /// What a backend says that it ran on, as people know it: "cpu AVX-512" for "cpu AVX3", and "PoCL on MODEL"

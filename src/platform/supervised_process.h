@@ -52,8 +52,7 @@ struct SupervisedProgram {
   std::vector<std::string> environment;  ///< NAME=VALUE, added to mssim's; replaces variables of that name
   std::filesystem::path folder;          ///< working directory
   std::vector<int> cpus;                 ///< logical CPUs that it is bound to; empty: those of mssim
-  /// Files and folders that are removed, with their contents, if mssim ends before the program does, for
-  /// example by SIGKILL. Otherwise the caller removes them.
+  /// Files and folders to remove if mssim ends before the program (SIGKILL). Else the caller removes them.
   std::vector<std::filesystem::path> removed = {};
 };
 
@@ -65,8 +64,7 @@ struct ProgramEnd {
   std::string trouble;  ///< why its end is unknown: end of a sentence that begins with its name
 };
 
-/// End of a sentence that begins with the program's name: "ended with exit code 3", "was ended by signal 11
-/// (Segmentation fault)".
+/// A sentence without its subject: "ended with exit code 3", "was ended by signal 11 (Segmentation fault)".
 std::string describe(const ProgramEnd& end);
 
 /// An untrusted program that runs in parallel with mssim: it and all its descendants are gone when this
@@ -81,20 +79,17 @@ class SupervisedProcess {
   /// Kills all of it at once.
   ~SupervisedProcess();
 
-  /// Stops all its processes, including those that left its group, until resume(). No effect once it has
-  /// ended.
+  /// Stops all its processes, also those that left its group, until resume(). No effect after its end.
   void pause();
   void resume();
 
   /// Becomes readable when the program and all its descendants are gone; poll it, do not read it.
   int end_descriptor() const { return channel_.get(); }
 
-  /// Gives the program `patience` to end by itself (resumed, if it was paused), then kills all of it. Later
-  /// calls return the same result.
+  /// Resumes the program, gives it `patience` to end, then kills it. Later calls return the same result.
   const ProgramEnd& end(std::chrono::milliseconds patience);
 
-  /// CPU time of the program so far, s: of its living processes by their clocks, and of ended ones if their
-  /// parents have waited for them (in clock ticks, 0.01 s).
+  /// CPU time of the program so far, s: living processes by their clocks, reaped ones in ticks of 0.01 s.
   double processor_seconds() const;
   /// Sum of the largest resident memory that each of its living processes has had, bytes; nothing once it has
   /// ended, or if the system does not tell.

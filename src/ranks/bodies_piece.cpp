@@ -61,9 +61,7 @@ std::vector<std::vector<BodyShare>> shares_for(int ranks, const std::vector<std:
 }
 
 std::vector<std::size_t> nodes_of(const std::vector<SceneCounts>& bodies) {
-  std::vector<std::size_t> nodes;
-  for (const SceneCounts& body : bodies) nodes.push_back(body.nodes);
-  return nodes;
+  return mapped<std::size_t>(bodies, &SceneCounts::nodes);
 }
 
 /// A body with nodes on this rank, in the system of all such bodies.
@@ -101,8 +99,7 @@ std::vector<std::vector<int>> ranks_of_nodes(const Session& session, const std::
   for (const BodyHere& body : here) {
     const std::vector<BodyShare>& share = shares[body.number];
     if (share.size() == 1 || share.front().rank != session.rank()) continue;
-    std::vector<std::size_t> wanted;
-    for (const BodyShare& part : share) wanted.push_back(part.nodes);
+    const auto wanted = mapped<std::size_t>(share, &BodyShare::nodes);
     std::vector<int> ranks;
     for (const std::uint32_t part : graph_partition(body.nodes, body.springs, wanted))
       ranks.push_back(share[part].rank);

@@ -11,14 +11,7 @@
 namespace mssim {
 namespace {
 
-/// Approximate number of a cloth's columns per host of this run: hosts share their last-level cache.
-std::size_t columns_on_host(const Session& session, std::size_t columns) {
-  const auto ranks = static_cast<std::size_t>(session.ranks());
-  return std::max<std::size_t>(1, columns * static_cast<std::size_t>(session.ranks_on_host()) / ranks);
-}
-
-/// The columns of a cloth that one rank steps, and their neighbouring ghost columns, with openmp's walk and
-/// bitwise identical results.
+/// A rank's columns of a cloth and their ghost columns, with openmp's walk and bitwise identical results.
 class ClothPiece final : public Piece {
  public:
   ClothPiece(const Session& session, const RankJob& job)
@@ -99,11 +92,13 @@ class ClothPiece final : public Piece {
   std::size_t chosen_steps(const Session& session, const RankJob& job) {
     const Integrator& integrator = *job.integrator;
     const auto& cloth = std::get<ClothSpec>(job.scene.content);
-    const GridPatch on_host{cloth.rows, static_cast<std::uint32_t>(columns_on_host(session, columns_)),
+    // A host's ranks share its last-level cache.
+    const auto ranks_on_host = static_cast<std::size_t>(session.ranks_on_host());
+    const std::size_t columns_on_host = columns_ * ranks_on_host / static_cast<std::size_t>(ranks_);
+    const GridPatch on_host{cloth.rows, std::max(1U, static_cast<std::uint32_t>(columns_on_host)),
                             cloth.spacing_m};
-    const std::size_t found = steps_per_pass_for(
-        BandLayout(on_host, kernel_.lanes), integrator,
-        static_cast<std::size_t>(session.ranks_on_host()) * static_cast<std::size_t>(job.threads));
+    const std::size_t found = steps_per_pass_for(BandLayout(on_host, kernel_.lanes), integrator,
+                                                 ranks_on_host * static_cast<std::size_t>(job.threads));
     const std::size_t usual = std::stoul(session.share(std::to_string(found)));
     const std::size_t narrowest = columns_ / static_cast<std::size_t>(ranks_);
     // In a larger piece, messages cost little and the trial takes long.

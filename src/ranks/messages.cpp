@@ -108,8 +108,7 @@ void check_mpi(int result, const char* action) {
 }
 
 Session::Session(int* argc, char*** argv) {
-  // Open MPI (4 and 5) leaves 4 MB of shared memory behind for each killed rank: in a folder that mssim
-  // removes, if it is in this machine's shared memory.
+  // Open MPI (4, 5) leaves 4 MB behind for each killed rank: in a folder in shared memory that mssim removes.
   if (const std::string folder = variable("MSSIM_MEMORY_FOLDER");
       folder.starts_with("/dev/shm/") && ::access(folder.c_str(), W_OK) == 0)
     for (const char* name : {"OMPI_MCA_btl_vader_backing_directory", "OMPI_MCA_btl_sm_backing_directory"})
@@ -165,8 +164,7 @@ void Session::wait(std::span<MPI_Request> requests, std::span<const int> peers) 
     if (!begin) begin = now;
     if (now - *begin < std::chrono::duration<double>(longest_silence_s)) continue;
     std::vector<std::string> silent;
-    for (const int peer : peers)
-      if (std::ranges::find(silent, name_of(peer)) == silent.end()) silent.push_back(name_of(peer));
+    for (const int peer : peers) add_once(silent, name_of(peer));
     throw RankFailure(fmt::format("it has received nothing for {} from {}",
                                   pluralize(static_cast<std::uint64_t>(longest_silence_s), "second"),
                                   listed(silent, "or")));

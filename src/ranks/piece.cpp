@@ -13,7 +13,6 @@
 
 #include "backends/openmp/openmp.h"
 #include "model/system.h"
-#include "platform/machine.h"
 #include "platform/process.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
@@ -69,8 +68,7 @@ class CopiesPiece final : public Piece {
 constexpr std::size_t nodes_at_once = std::size_t{1} << 18;
 constexpr int state_tag = 2;
 
-/// The file of a state, [2: positions, velocities][nodes] vectors, mapped into memory. mssim made it and does
-/// not change its size.
+/// The file of a state, [2: positions, velocities][nodes] vectors, in memory. mssim made it, in its size.
 class MappedState {
  public:
   MappedState(const std::filesystem::path& file, std::size_t nodes) : nodes_(nodes) {
@@ -136,8 +134,7 @@ struct Message {
   Vec3d* velocities() { return vectors.data() + nodes; }
 };
 
-/// Calls `pass` for every message between rank 0 and a rank that involves this process, with the rank, the
-/// runs and the message.
+/// Calls `pass` with rank, runs and message for every message between rank 0 and a rank by this process.
 template <class RunsOf, class Pass>
 void for_each_message(const Session& session, const RunsOf& runs_of, const Pass& pass) {
   for (int rank = 0; rank < session.ranks(); ++rank) {
@@ -160,8 +157,7 @@ void exchange(const Session& session, Message& message, int rank, const Start& s
   session.wait({&request, 1}, std::array{rank});
 }
 
-/// Writes the ranks' own nodes into a file of some nodes: runs_of(rank) gives the nodes of a rank, `own` is
-/// the state of this rank's.
+/// Writes the ranks' nodes into a file: runs_of(rank) gives a rank's nodes, `own` is the state of this one's.
 template <class RunsOf>
 void gather(const Session& session, const std::filesystem::path& file, std::size_t nodes,
             const RunsOf& runs_of, const State& own) {

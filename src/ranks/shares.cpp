@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "text/text.h"
+
 namespace mssim {
 namespace {
 
@@ -31,14 +33,12 @@ class Filling {
   }
   /// Assigns whole bodies, the heaviest first.
   void give_whole(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
-    std::vector<std::size_t> weights;
-    for (const std::size_t body : bodies) weights.push_back(nodes[body]);
+    const auto weights = mapped<std::size_t>(bodies, [&](std::size_t body) { return nodes[body]; });
     const std::vector<int> rank_of = ranks_by_weight(weights, static_cast<int>(loads.size()));
     for (std::size_t i = 0; i < bodies.size(); ++i)
       give(bodies[i], static_cast<std::size_t>(rank_of[i]), weights[i]);
   }
-  /// Fills the ranks up to one level, those with most room first: a body continues in the next rank when one
-  /// is full. No part is too small.
+  /// Fills ranks up to one level, most room first: a body continues in the next rank. No part is too small.
   void divide(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
     std::size_t together = 0;
     for (const std::size_t body : bodies) together += nodes[body];
@@ -86,7 +86,6 @@ class Filling {
   }
 };
 
-/// A node and the rank that needs it.
 using RankAndNode = std::pair<int, std::uint32_t>;
 
 /// Sorted, without duplicates.

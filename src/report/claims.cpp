@@ -19,8 +19,7 @@ constexpr std::array<std::string_view, 2> device_words{"any", "GPU"}, of_words{"
 
 /// The tables whose scenes can decide a claim.
 std::vector<std::string_view> deciding_tables() {
-  std::vector<std::string_view> names;
-  for (const PublishedTableInfo& table : published_table_kinds) names.push_back(table.name);
+  auto names = mapped<std::string_view>(published_table_kinds, &PublishedTableInfo::name);
   names.push_back(table_of_garments);
   return names;
 }
@@ -65,18 +64,17 @@ void visit_claims(FieldVisitor& fields, std::vector<Claim>& claims) {
 }
 
 std::string configuration_of(const PaperLegend& legend, std::string_view backend) {
-  const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
-  return found == legend.backends.end() ? std::string() : found->configuration;
+  const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name);
+  return found ? found->configuration : "";
 }
 
 /// Whether the paper's configuration of this backend has several threads.
 bool has_threads(const PaperLegend& legend, std::string_view backend) {
-  const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
-  return found != legend.backends.end() && found->has_threads;
+  const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name);
+  return found && found->has_threads;
 }
 
-/// Whether the row ran on the hardware that the claim is about. OpenCL on this CPU is not a GPU, and one
-/// thread is not several.
+/// Whether the row ran on the claim's hardware. OpenCL on this CPU is not a GPU, one thread is not several.
 bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& legend,
                 const Provenance& provenance) {
   return row && (row->threads > 1 || !has_threads(legend, row->backend)) &&
@@ -89,8 +87,7 @@ std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
   return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low};
 }
 
-/// The ratios of a test, for each scene and integrator with both times. `ratio` takes a scene and the
-/// integrators of `fast` and `slow`.
+/// Ratios of a test, for scenes and integrators with both times. `ratio`: of a scene and two integrators.
 template <class Scenes, class Ratio>
 auto ratios_of(const ClaimTest& test, const PaperLegend& legend, const Scenes& scenes, Ratio ratio) {
   std::vector<typename decltype(ratio(scenes.front(), std::string(), std::string()))::value_type> all;
@@ -114,7 +111,6 @@ std::string range_of(double least, double most) {
   return times(least) == times(most) ? times(least) : times(least) + " to " + times(most);
 }
 
-/// The published ratios for a claim.
 std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, const PublishedTable& table) {
   const std::string fast = configuration_of(legend, test.fast), slow = configuration_of(legend, test.slow);
   const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
@@ -146,7 +142,6 @@ struct Measured {
   const Provenance& provenance;
 };
 
-/// The measured ratios of a claim.
 std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const Measured& measured) {
   const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
                            const std::string& of_slow) -> std::optional<RatioInterval> {
@@ -166,11 +161,7 @@ std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const Measured
 }
 
 RatioInterval geometric_mean_of(const std::vector<RatioInterval>& ratios) {
-  const auto mean = [&](double RatioInterval::*end) {
-    std::vector<double> values;
-    for (const RatioInterval& ratio : ratios) values.push_back(ratio.*end);
-    return geometric_mean(values);
-  };
+  const auto mean = [&](double RatioInterval::*end) { return geometric_mean(mapped<double>(ratios, end)); };
   return {mean(&RatioInterval::ratio), mean(&RatioInterval::low), mean(&RatioInterval::high)};
 }
 
@@ -208,7 +199,6 @@ JudgedClaim judge_rows(const Claim& claim, const Measured& measured, std::string
   return judged;
 }
 
-/// The shipped garments in the rows, each once.
 std::vector<PaperScene> shipped_garments(RowPointers rows) {
   std::vector<PaperScene> scenes;
   for (const ResultRow* row : rows)
@@ -246,8 +236,7 @@ std::string_view name_of(ClaimOutcome outcome) {
 
 std::vector<JudgedClaim> judge(const ReportFolder& folder, const ReportInput& input) {
   const Provenance provenance = folder.where_from();
-  std::vector<const ResultRow*> rows;
-  for (const ResultRow& row : folder.rows) rows.push_back(&row);
+  const std::vector<const ResultRow*> rows = pointers_to(folder.rows);
   std::vector<JudgedClaim> all;
   for (const PublishedTable& table : input.published) {
     const std::vector<PaperScene> scenes = table.scenes_of(folder.rows);

@@ -22,38 +22,6 @@ std::optional<double> exponent_of(std::span<const double> x, std::span<const dou
   return across / along;
 }
 
-PaperScenes::PaperScenes(std::span<const ResultRow> rows, const PaperLegend& legend,
-                         const PublishedTable& published)
-    : rows_(rows), legend_(legend), published_(published), scenes_(published.scenes_of(rows)) {}
-
-std::optional<double> PaperScenes::published_speedup(const PaperScene& scene, std::string_view integrator,
-                                                     std::string_view configuration) const {
-  return published_.speedup(integrator, configuration, scene);
-}
-
-const ResultRow* PaperScenes::row(const PaperScene& scene, std::string_view backend,
-                                  std::string_view integrator) const {
-  const auto found = std::ranges::find_if(rows_, [&](const ResultRow& row) {
-    return row.scene == scene.name && row.backend == backend && row.integrator == integrator;
-  });
-  return found == rows_.end() ? nullptr : &*found;
-}
-
-std::vector<std::string> PaperScenes::backends_of(std::string_view configuration) const {
-  std::vector<std::string> names;
-  for (const PaperLegend::Backend& backend : legend_.backends) {
-    if (backend.configuration != configuration) continue;
-    const bool has_time = std::ranges::any_of(legend_.integrators, [&](const auto& integrator) {
-      return std::ranges::any_of(scenes_, [&](const PaperScene& scene) {
-        const ResultRow* found = row(scene, backend.name, integrator.name);
-        return found && counts(*found);
-      });
-    });
-    if (has_time) names.push_back(backend.name);
-  }
-  return names;
-}
-
 namespace {
 
 std::string row_name(const ResultRow& row) {
@@ -70,9 +38,7 @@ std::string devices_of(std::span<const ResultRow> rows, const Provenance& proven
   const std::vector<const ResultRow*> pointers = pointers_to(rows);
   std::vector<std::string> labels;
   for (const ResultRow& row : rows) {
-    if (opencl_device(row).empty()) continue;
-    const std::string label = backend_label(pointers, row.backend, provenance);
-    if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
+    if (!opencl_device(row).empty()) add_once(labels, backend_label(pointers, row.backend, provenance));
   }
   return join(labels, "; ");
 }
@@ -101,6 +67,12 @@ Finding about_speedups(std::span<const ResultRow> rows) {
                           ? "no interval includes 1."
                           : subject(near_one.size(), "interval", " includes 1", " include 1") +
                                 ", so neither backend is certainly faster: " + join(near_one, "; ") + ".")};
+}
+
+/// The sign only repeats the word.
+std::string verified_mark(const ResultRow& row) {
+  if (counts(row)) return "✓ yes";
+  return row.status == "ok" ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
 }
 
 }  // namespace
@@ -132,6 +104,62 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
                                    " no time; the list below the tables says why."});
   findings.push_back(about_speedups(rows));
   return findings;
+}
+
+std::vector<std::string> noise_seen(const Provenance& provenance) {
+  return mapped<std::string>(
+      provenance.noise, [](const std::string& sentence) { return sentence.substr(0, sentence.find(": ")); });
+}
+
+std::string range_of(const ReportFolder& folder, int ResultRow::*count) {
+  int least = 0, most = 0;
+  for (const ResultRow& row : folder.rows)
+    if (row.*count > 0) {
+      least = least == 0 ? row.*count : std::min(least, row.*count);
+      most = std::max(most, row.*count);
+    }
+  return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+}
+
+std::filesystem::path short_name(const ReportFolder& folder) {
+  std::filesystem::path name = std::filesystem::path(folder.name).lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();  // it ended with a slash
+  return name.parent_path().filename() / name.filename();
+}
+
+Table times_of(RowPointers rows, const ReportFolder& folder) {
+  const std::vector<const ResultRow*> all = pointers_to(folder.rows);
+  const Provenance provenance = folder.where_from();
+  Table table{{{"scene"},
+               {"ms per step", Align::right},
+               {"backend"},
+               {"integrator"},
+               {"threads"},
+               {"95 % interval (ms)", Align::right},
+               {"speed-up", Align::right, "×"},
+               {"95 % interval", Align::right},
+               {"published (ms)", Align::right},
+               {"of the roof (%)", Align::right},
+               {"verified"}},
+              {}};
+  for (const ResultRow* row : rows) {
+    const ResultRow* serial = baseline_of(all, *row);
+    const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
+    const bool shown = counts(*row);
+    Cell published = row->paper_ms;
+    published.exact = true;
+    table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
+                          look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
+                          row->threads > 0 ? Cell(row->threads) : Cell(),
+                          shown && row->ms_per_step_low && row->ms_per_step_high
+                              ? Cell(interval_text(*row->ms_per_step_low, *row->ms_per_step_high))
+                              : Cell(),
+                          speedup ? Cell(speedup->ratio) : Cell(),
+                          speedup ? Cell(interval_text(speedup->low, speedup->high)) : Cell(), published,
+                          shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
+                          verified_mark(*row)});
+  }
+  return table;
 }
 
 }  // namespace mssim

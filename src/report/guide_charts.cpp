@@ -19,13 +19,9 @@ struct GuideLine {
   std::vector<const GuidePoint*> points;
 };
 
-double cost_of(const GuidePoint& point) {
-  return point.wall_s_per_s.value_or(std::numeric_limits<double>::infinity());
-}
-
-/// A point that did not diverge is better than one that did; otherwise the cheaper one is.
-bool is_better(const GuidePoint& point, const GuidePoint& than) {
-  return std::pair(point.diverged, cost_of(point)) < std::pair(than.diverged, cost_of(than));
+/// By how bad points are: those that diverged come last, then the more expensive ones.
+std::pair<bool, double> badness_of(const GuidePoint& point) {
+  return {point.diverged, point.wall_s_per_s.value_or(std::numeric_limits<double>::infinity())};
 }
 
 std::vector<GuideLine> lines_of(const FoundGuide& guide, const std::string& scene) {
@@ -41,7 +37,7 @@ std::vector<GuideLine> lines_of(const FoundGuide& guide, const std::string& scen
     }
     if (!point.dt_s) continue;
     const GuidePoint*& known = best[number][*point.dt_s];
-    if (known == nullptr || is_better(point, *known)) known = &point;
+    if (known == nullptr || badness_of(point) < badness_of(*known)) known = &point;
   }
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (const auto& [dt_s, point] : best[i]) lines[i].points.push_back(point);
@@ -97,7 +93,6 @@ Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::s
   return chart;
 }
 
-/// Rings around the points of the front.
 void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   Series front{.name = "on the front", .origin = Origin::reference, .mark = PointMark::ring};
   for (const GuideLine& line : lines)
@@ -107,8 +102,7 @@ void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   if (!front.x.empty()) work.series.push_back(std::move(front));
 }
 
-/// Reference lines error ~ step^p for the orders p of the chart's integrators. They start at one point low on
-/// the right, where long steps seldom have small errors.
+/// Lines error ~ step^p for the orders p of the integrators, from a point low on the right, seldom taken.
 void add_orders(Chart& steps) {
   const auto range = range_of(steps);
   if (!range) return;
@@ -149,8 +143,7 @@ std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
   std::map<std::string, std::vector<std::string>> integrators;
   for (const GuideLine& line : lines) {
     std::vector<std::string> backends;
-    for (const GuidePoint* point : line.points)
-      if (std::ranges::find(backends, point->backend) == backends.end()) backends.push_back(point->backend);
+    for (const GuidePoint* point : line.points) add_once(backends, point->backend);
     std::ranges::sort(backends);
     if (!backends.empty()) integrators[join(backends, " and ")].push_back(line.integrator);
   }
@@ -160,11 +153,6 @@ std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
   return groups;
 }
 
-/// "rk4 with 0.78 ms".
-std::string with_step(const GuidePoint& point) {
-  return fmt::format("{} with {} ms", point.integrator, three_digits(*point.dt_s * 1000));
-}
-
 /// Why an integrator has no points, from its first row.
 std::string reason_of(const FoundGuide& guide, const std::string& scene, const std::string& integrator) {
   for (const GuidePoint& point : guide.points)
@@ -172,8 +160,7 @@ std::string reason_of(const FoundGuide& guide, const std::string& scene, const s
   return integrator;
 }
 
-/// Adds what the chart of work and precision does not draw: backends, steps of diverged points, and points
-/// that are left out.
+/// Adds what the chart of work and precision omits: backends, steps of diverged points, points left out.
 void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene,
                  const std::vector<GuideLine>& lines) {
   std::vector<std::string> crosses, without;
@@ -183,7 +170,8 @@ void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene
   for (const GuideLine& line : lines) {
     if (line.points.empty()) without.push_back(reason_of(guide, scene, line.integrator));
     for (const GuidePoint* point : line.points) {
-      if (point->diverged) crosses.push_back(with_step(*point));
+      if (point->diverged)
+        crosses.push_back(fmt::format("{} with {} ms", line.integrator, three_digits(*point->dt_s * 1000)));
       if (point->on_front) ++drawn_on_front;
     }
   }

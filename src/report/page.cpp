@@ -31,8 +31,7 @@ struct HtmlBlock {
   std::string operator()(const Table& table) const { return html_of(table); }
 };
 
-/// Style of a report: light and dark, narrow and wide, on paper (A4). Wide tables scroll on a screen, and
-/// have smaller text on paper.
+/// Style of a report: light and dark, narrow and wide, on paper (A4). Wide tables scroll.
 constexpr std::string_view page_style = R"(
 :root { color-scheme: light dark; --text: #1b1f24; --back: #ffffff; --dim: #57606a; --line: #d0d7de; --fill: #f3f5f7;
   --no: #a40e26; }
@@ -112,9 +111,8 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
   Table rows{{{"is_warning"}, {"sentence"}}, {}};
   for (const Finding& finding : row_findings(folder.rows, folder.where_from()))
     rows.rows.push_back({finding.is_warning, finding.sentence});
-  std::vector<std::string> problems;
-  for (const std::string& problem : folder.problems) problems.push_back(json_string(problem));
-  return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" + join(problems, ", ") +
+  return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" +
+         join(mapped<std::string>(folder.problems, json_string), ", ") +
          "],\n\"claims\": " + to_text(claims, ListingFormat::json) +
          ", \"findings\": " + to_text(rows, ListingFormat::json) +
          ", \"timings\": " + to_text(timings_table(folder.rows), ListingFormat::json) +
@@ -123,10 +121,9 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
 }
 
 std::string embedded_data(const ReportInput& input) {
-  std::vector<std::string> folders;
-  for (const ReportFolder& folder : input.folders) folders.push_back(json_of(folder, input));
-  std::vector<std::string> history;
-  for (const HistoryEntry& entry : input.history) history.push_back(history_line(entry));
+  const auto folders =
+      mapped<std::string>(input.folders, [&](const ReportFolder& folder) { return json_of(folder, input); });
+  const auto history = mapped<std::string>(input.history, history_line);
   return fmt::format("{{\"made_by\": {}, \"folders\": [\n{}\n]{}}}\n", json_string(input.made_by),
                      join(folders, ",\n"),
                      history.empty() ? "" : fmt::format(", \"history\": [\n{}\n]", join(history, ",\n")));

@@ -14,13 +14,8 @@ namespace {
 
 /// Names in a sentence, each as code.
 std::string names_in(const std::vector<std::string>& names) {
-  std::vector<std::string> codes;
-  for (const std::string& name : names) codes.push_back(latex_prose("`" + name + "`"));
-  return listed(codes);
-}
-
-void add_once(std::vector<std::string>& names, const std::string& name) {
-  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  return listed(
+      mapped<std::string>(names, [](const std::string& name) { return latex_prose("`" + name + "`"); }));
 }
 
 /// All rows, a table for each scene.

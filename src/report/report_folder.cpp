@@ -187,8 +187,7 @@ std::optional<FoundGuide> read_guide(const fs::path& folder, std::vector<std::st
 
 std::vector<std::string> FoundGuide::scenes() const {
   std::vector<std::string> names;
-  for (const GuidePoint& point : points)
-    if (std::ranges::find(names, point.scene) == names.end()) names.push_back(point.scene);
+  for (const GuidePoint& point : points) add_once(names, point.scene);
   return names;
 }
 

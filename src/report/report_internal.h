@@ -14,33 +14,8 @@ namespace mssim {
 
 /// The parts of a report page: claims, findings, charts, and HTML.
 
-/// The exponent p of y ~ x^p by least squares on logarithmic axes; none for fewer than two different x. All
-/// values must be positive.
+/// The exponent p of y ~ x^p, by least squares on logarithmic axes, of positive values; none for one x.
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
-
-/// A published table and the measured rows of its scenes.
-class PaperScenes {
- public:
-  /// The arguments must outlive this.
-  PaperScenes(std::span<const ResultRow> rows, const PaperLegend& legend, const PublishedTable& published);
-
-  const std::vector<PaperScene>& scenes() const { return scenes_; }  ///< by size
-  const PaperLegend& legend() const { return legend_; }
-  std::span<const ResultRow> rows() const { return rows_; }
-  /// Speed-up over one thread; none if either time is missing.
-  std::optional<double> published_speedup(const PaperScene& scene, std::string_view integrator,
-                                          std::string_view configuration) const;
-  /// Null if there is none.
-  const ResultRow* row(const PaperScene& scene, std::string_view backend, std::string_view integrator) const;
-  /// The backends of a configuration that have a time.
-  std::vector<std::string> backends_of(std::string_view configuration) const;
-
- private:
-  std::span<const ResultRow> rows_;
-  const PaperLegend& legend_;
-  const PublishedTable& published_;
-  std::vector<PaperScene> scenes_;
-};
 
 /// Outcome of a claim, judged by rows.
 enum class ClaimOutcome : std::uint8_t {
@@ -69,13 +44,11 @@ struct Finding {
   std::string sentence;
 };
 
-/// Findings about devices, rows that are not verified or have no time, and speed-ups whose interval
-/// includes 1. None without rows.
+/// Findings about devices, rows not verified or without time, and speed-ups whose interval includes 1.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
 
 /// Name of a backend on an OpenCL device ("" for none): "opencl on the CPU", "opencl, DEVICE". `family`
-/// decides its look in charts: OpenCL on a GPU shares that of the published GPU, OpenCL on the CPU has its
-/// own.
+/// decides its look in charts: OpenCL on a GPU shares the published GPU's, on the CPU it has its own.
 struct BackendLook {
   std::string name, family;
 };
@@ -111,19 +84,18 @@ inline constexpr std::string_view how_to_read_times =
 /// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);
 
-/// Charts. `id` is the prefix of their ids, so that those of several folders differ. Charts without values
-/// are left out. Each names its processor, if known.
+/// Charts; those without values are left out. `id`: prefix of ids. Each names its processor, if known.
 
 /// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
-std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& provenance,
+std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
+                                  const PublishedTable& published, const Provenance& provenance,
                                   const std::string& id);
 
 /// Figure 6 of Vassilev: milliseconds per iteration against vertices, of garments.
 std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                    const std::string& id);
 
-/// Time per step of the first integrator against nodes, for each kind of scene with at least two sizes, with
-/// the slope of every line.
+/// Time per step of the first integrator against nodes, per kind of scene with several sizes, with slopes.
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
                                   std::span<const PublishedTable> published, const Provenance& provenance,
                                   const std::string& id);
@@ -136,8 +108,7 @@ std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenan
 Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
                   std::span<const PublishedTable> published);
 
-/// One dot per backend on the largest scene with a roofline, with the first integrator, below the roofs that
-/// follow from the timings.
+/// A dot per backend on the largest scene with a roofline, first integrator, below roofs from the timings.
 std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                     const std::string& id);
 
@@ -147,12 +118,10 @@ std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportIn
 std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
                                       const std::string& id);
 
-/// Gives each backend the same look in every chart, whatever the other backends, unless the chart has its own
-/// families.
+/// Gives each backend the same look in every chart, unless the chart has its own families.
 std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend);
 
-/// Total energy against time, with the reference curve of the scene with whose name the curve's name begins,
-/// if any.
+/// Total energy against time, with the reference curve, if any, whose scene begins the curve's name.
 Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> references, const std::string& id);
 
 /// The charts of a scene of a guide: work and precision (Hairer, Norsett and Wanner, Solving Ordinary
@@ -163,8 +132,7 @@ std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& lege
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& id);
 
-/// For each scene and integrator of a machine's history: times per step by commit, counted from 1, with a
-/// ring where a level begins.
+/// Per scene and integrator of a machine's history: times per step by commit, from 1; a ring begins a level.
 std::vector<Chart> history_charts(const MachineHistory& machine, const std::string& id);
 
 /// The values of a chart with has_one_place(), as a table; references are left out.
@@ -172,12 +140,10 @@ Table values_of(const Chart& chart);
 /// Whether all values of a chart over whole numbers, such as nodes, are at one of them.
 bool has_one_place(const Chart& chart);
 
-/// Escapes any text (a file's name, a scene's, a message) for elements and quoted attributes. All text of a
-/// page passes through it or is written in the program.
+/// Escapes any text for elements and quoted attributes: all text that is not written in the program.
 std::string html_text(std::string_view text);
 
-/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that is
-/// not closed, or is followed by a blank, is plain text.
+/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds), closed ones.
 std::string html_prose(std::string_view text);
 
 /// A table in its own box, which scrolls if the page is narrower. The first column names the rows.

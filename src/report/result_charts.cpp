@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "bench/roofline/roofline.h"
@@ -14,14 +15,11 @@ namespace {
 
 /// A published configuration has the look of its first backend.
 Series published_series(std::string_view configuration, const PaperLegend& legend) {
-  const auto found = std::ranges::find(paper_configurations, configuration, &PaperConfiguration::name);
-  const auto backend =
-      std::ranges::find(legend.backends, configuration, &PaperLegend::Backend::configuration);
-  return {
-      .name = fmt::format("{}, {}, published",
-                          found == paper_configurations.end() ? configuration : found->caption, paper_device),
-      .origin = Origin::published,
-      .family = backend == legend.backends.end() ? "" : backend->name};
+  const auto* found = found_in(paper_configurations, configuration, &PaperConfiguration::name);
+  const auto* backend = found_in(legend.backends, configuration, &PaperLegend::Backend::configuration);
+  return {.name = fmt::format("{}, {}, published", found ? found->caption : configuration, paper_device),
+          .origin = Origin::published,
+          .family = backend ? backend->name : ""};
 }
 
 Series measured_series(const BackendLook& look) {
@@ -72,14 +70,14 @@ SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
     if (kind_of(row) == kind && row.backend == backend && row.integrator == integrator && counts(row))
       lines.rows.push_back(&row);
   std::ranges::stable_sort(lines.rows, {}, [](const ResultRow* row) { return row->nodes; });
-  const auto of_backend = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
-  if (of_backend != legend.backends.end()) lines.configuration = of_backend->configuration;
-  const auto method = std::ranges::find(legend.integrators, integrator, &PaperLegend::Integrator::name);
+  if (const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name))
+    lines.configuration = found->configuration;
+  const auto* method = found_in(legend.integrators, integrator, &PaperLegend::Integrator::name);
   lines.measured = measured_series(look_of(rows, backend, provenance));
   lines.published = published_series(lines.configuration, legend);
   for (const ResultRow* row : lines.rows) {
     add_time(lines.measured, *row);
-    if (method == legend.integrators.end() || !row->scene_as_shipped) continue;
+    if (!method || !row->scene_as_shipped) continue;
     for (const PublishedTable& table : published)
       if (const auto ms =
               table.ms(method->paper_name, lines.configuration, row->nodes, row->springs_published))
@@ -98,8 +96,7 @@ Series with_slope(Series series, std::optional<double> slope) {
 /// The different values of a member, in order of appearance.
 std::vector<std::string> distinct(std::span<const ResultRow> rows, std::string ResultRow::*value) {
   std::vector<std::string> values;
-  for (const ResultRow& row : rows)
-    if (std::ranges::find(values, row.*value) == values.end()) values.push_back(row.*value);
+  for (const ResultRow& row : rows) add_once(values, row.*value);
   return values;
 }
 
@@ -160,8 +157,8 @@ BackendLook look_of(std::span<const ResultRow> rows, std::string_view backend, c
 }
 
 bool is_for_gpus(std::string_view backend, const PaperLegend& legend) {
-  const auto found = std::ranges::find(legend.backends, backend, &PaperLegend::Backend::name);
-  return found != legend.backends.end() && found->configuration.find("gpu") != std::string::npos;
+  const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name);
+  return found && found->configuration.find("gpu") != std::string::npos;
 }
 
 std::vector<std::string> families_of_backends(const PaperLegend& legend) {
@@ -183,13 +180,13 @@ std::string where_measured(const Provenance& provenance, bool with_threads) {
          (with_threads ? ", " + pluralize(provenance.threads, "thread") : "");
 }
 
-std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& provenance,
+std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
+                                  const PublishedTable& published, const Provenance& provenance,
                                   const std::string& id) {
   std::vector<Chart> charts;
-  const std::vector<std::string> one_thread = scenes.backends_of(one_thread_configuration);
-  if (std::ranges::none_of(one_thread, is_baseline)) return charts;
-  const std::vector<const ResultRow*> all = pointers_to(scenes.rows());
-  for (const PaperLegend::Integrator& integrator : scenes.legend().integrators) {
+  const std::vector<PaperScene> scenes = published.scenes_of(rows);
+  const std::vector<const ResultRow*> all = pointers_to(rows);
+  for (const PaperLegend::Integrator& integrator : legend.integrators) {
     if (integrator.name != integrator.paper_name) continue;
     Chart chart =
         chart_of(id + "-speed-up-" + integrator.name, integrator.name + ": speed-up over one thread",
@@ -197,16 +194,16 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const Provenance& p
     bool is_measured = false;
     for (const PaperConfiguration& configuration : paper_configurations) {
       if (configuration.name == one_thread_configuration) continue;
-      const std::vector<std::string> backends = scenes.backends_of(configuration.name);
-      Series published = published_series(configuration.name, scenes.legend());
-      for (const PaperScene& scene : scenes.scenes())
-        if (const auto speedup = scenes.published_speedup(scene, integrator.paper_name, configuration.name))
-          add_point(published, scene.nodes, *speedup);
-      if (!published.x.empty()) chart.series.push_back(std::move(published));
-      for (const std::string& backend : backends) {
-        Series measured = measured_series(look_of(scenes.rows(), backend, provenance));
-        for (const PaperScene& scene : scenes.scenes()) {
-          const ResultRow* row = scenes.row(scene, backend, integrator.name);
+      Series line = published_series(configuration.name, legend);
+      for (const PaperScene& scene : scenes)
+        if (const auto speedup = published.speedup(integrator.paper_name, configuration.name, scene))
+          add_point(line, scene.nodes, *speedup);
+      if (!line.x.empty()) chart.series.push_back(std::move(line));
+      for (const PaperLegend::Backend& backend : legend.backends) {
+        if (backend.configuration != configuration.name) continue;
+        Series measured = measured_series(look_of(rows, backend.name, provenance));
+        for (const PaperScene& scene : scenes) {
+          const ResultRow* row = find_row(all, scene.name, backend.name, integrator.name);
           const auto speedup = times_as_fast(row, row != nullptr ? baseline_of(all, *row) : nullptr);
           if (!speedup) continue;
           add_point(measured, scene.nodes, speedup->ratio);
@@ -404,6 +401,33 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
                             .x = best->time_s,
                             .y = best->total_j});
   return chart;
+}
+
+std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id) {
+  std::vector<Chart> charts;
+  for (const PublishedTable& published : input.published)
+    std::ranges::move(speedup_charts(folder.rows, input.legend, published, folder.where_from(),
+                                     id + "-" + std::string(published.info().name)),
+                      std::back_inserter(charts));
+  if (auto figure6 = figure6_chart(folder.rows, folder.where_from(), id))
+    charts.push_back(std::move(*figure6));
+  return charts;
+}
+
+std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
+                                      const std::string& id) {
+  std::vector<Chart> charts =
+      scaling_charts(folder.rows, input.legend, input.published, folder.where_from(), id);
+  if (folder.provenance)
+    std::ranges::move(thread_charts(folder.rows, *folder.provenance, id), std::back_inserter(charts));
+  return charts;
+}
+
+std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
+  for (Chart& chart : charts)
+    if (chart.families.empty()) chart.families = families_of_backends(legend);
+  return charts;
 }
 
 }  // namespace mssim

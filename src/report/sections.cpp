@@ -12,10 +12,17 @@
 namespace mssim {
 namespace {
 
+/// Empty if `html` is.
+std::string paragraph(const std::string& html, std::string_view attributes = "") {
+  return html.empty() ? html : fmt::format("<p{}>{}</p>\n", attributes, html);
+}
+
+constexpr std::string_view of_problems = " class=\"problems\"";
+
 /// Joins the results of `content`, which takes a folder and a prefix of ids, under the folder's name if there
-/// are several; `without` if all are empty.
+/// are several; the paragraph `without` if all are empty.
 template <class Content>
-std::string of_each_folder(const ReportInput& input, const std::string& without, Content content) {
+std::string of_each_folder(const ReportInput& input, Content content, const std::string& without = "") {
   std::string text;
   for (std::size_t i = 0; i < input.folders.size(); ++i) {
     const ReportFolder& folder = input.folders[i];
@@ -24,35 +31,27 @@ std::string of_each_folder(const ReportInput& input, const std::string& without,
     if (input.folders.size() > 1) text += "<h3>" + html_text(folder.name) + "</h3>\n";
     text += part;
   }
-  return text.empty() ? without : text;
+  return text.empty() ? paragraph(without) : text;
 }
 
 /// A warning above the times; empty if mssim found no noise.
 std::string noise_note(const ReportFolder& folder) {
   const std::vector<std::string> noise = noise_seen(folder.where_from());
-  return noise.empty() ? ""
-                       : fmt::format("<p class=\"problems\">When this run started: {}.</p>\n",
-                                     html_text(join(noise, "; ")));
+  return noise.empty()
+             ? ""
+             : paragraph("When this run started: " + html_text(join(noise, "; ")) + ".", of_problems);
 }
 
 // Machine and provenance
 
-std::string caches_of(const Machine& machine) {
-  std::vector<std::string> caches;
-  for (const Cache& cache : machine.caches)
-    caches.push_back(
-        fmt::format("L{} {} {} × {} KiB", cache.level, cache.type, cache.count, grouped(cache.bytes / 1024)));
-  return join(caches, ", ");
+std::string words_of(const Cache& cache) {
+  return fmt::format("L{} {} {} × {} KiB", cache.level, cache.type, cache.count, grouped(cache.bytes / 1024));
 }
 
-/// The names of devices without their platforms; PoCL's include theirs.
-std::vector<std::string> devices_of(const Provenance& provenance) {
-  std::vector<std::string> devices;
-  for (const std::string& device : provenance.opencl_devices) {
-    const std::size_t name = device.find(": ");
-    devices.push_back(device_name(name == std::string::npos ? device : device.substr(name + 2)));
-  }
-  return devices;
+/// The device's name without its platform; PoCL's include theirs.
+std::string name_without_platform(const std::string& device) {
+  const std::size_t name = device.find(": ");
+  return device_name(name == std::string::npos ? device : device.substr(name + 2));
 }
 
 /// Missing or damaged parts; empty if there are none.
@@ -78,14 +77,15 @@ std::string machine_section(const ReportInput& input) {
                {"logical CPUs", machine.logical_cpus},
                {"threads", provenance.threads},
                {"memory", three_digits(static_cast<double>(machine.memory_bytes) / (1U << 30U)) + " GiB"},
-               {"OpenCL devices", join(devices_of(provenance), "; ")},
+               {"OpenCL devices",
+                join(mapped<std::string>(provenance.opencl_devices, name_without_platform), "; ")},
                {"system", machine.operating_system},
                {"compiler", provenance.build.compiler + ", " + provenance.build.build_type},
                {"mssim", made_by(provenance)},
                {"rounds", range_of(folder, &ResultRow::rounds)}});
   }
   for (Column& column : table.columns) column.align = Align::left;
-  return table.rows.empty() ? "<p>The machine of the folders is unknown.</p>\n" : html_of(table);
+  return table.rows.empty() ? paragraph("The machine of the folders is unknown.") : html_of(table);
 }
 
 std::string list_of(const Provenance& provenance) {
@@ -104,7 +104,7 @@ std::string list_of(const Provenance& provenance) {
   line("commit", provenance.build.commit + (provenance.build.dirty ? ", with uncommitted changes" : ""));
   line("program", provenance.program_fnv1a_64 ? Cell(to_hex(*provenance.program_fnv1a_64)) : Cell());
   line("compiler flags", provenance.build.flags);
-  line("caches", or_nothing(caches_of(machine)));
+  line("caches", or_nothing(join(mapped<std::string>(machine.caches, words_of), ", ")));
   line("frequency", three_digits(machine.cpu_mhz / 1000) + " GHz");
   line("governor", machine.governor ? Cell(*machine.governor) : Cell());
   line("turbo", machine.turbo ? Cell(*machine.turbo) : Cell());
@@ -125,10 +125,11 @@ std::string list_of(const Provenance& provenance) {
 
 /// The data needed to judge the numbers and to repeat the measurement.
 std::string provenance_section(const ReportInput& input) {
-  return of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) {
+  return of_each_folder(input, [](const ReportFolder& folder, const std::string&) {
     return folder.provenance ? list_of(*folder.provenance)
-                             : "<p>provenance.json is missing or damaged: the origin of these numbers is "
-                               "unknown.</p>\n";
+                             : paragraph(
+                                   "provenance.json is missing or damaged: the origin of these numbers is "
+                                   "unknown.");
   });
 }
 
@@ -144,12 +145,12 @@ std::string list_of(const std::vector<Finding>& findings) {
 }
 
 std::string table_of(const std::vector<JudgedClaim>& claims) {
-  if (claims.empty()) return "<p>No row has a scene of the papers.</p>\n";
+  if (claims.empty()) return paragraph("No row has a scene of the papers.");
   const auto number = [&](ClaimOutcome outcome) {
     return std::ranges::count(claims, outcome, &JudgedClaim::outcome);
   };
-  std::string text = fmt::format(
-      "<p>{} of the papers: {} held, {} not held, {} undecided, {} not testable here.</p>\n",
+  const std::string text = fmt::format(
+      "{} of the papers: {} held, {} not held, {} undecided, {} not testable here.",
       pluralize(claims.size(), "claim"), number(ClaimOutcome::held), number(ClaimOutcome::not_held),
       number(ClaimOutcome::undecided), number(ClaimOutcome::not_testable));
   Table table{{{"what the paper says"}, {"where"}, {"published"}, {"measured"}, {"outcome"}}, {}};
@@ -157,11 +158,10 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
     table.rows.push_back({judged.claim->says, judged.claim->paper + ": " + judged.claim->place,
                           judged.published.empty() ? Cell() : Cell(judged.published), judged.measured,
                           name_of(judged.outcome)});
-  return text + html_of(table);
+  return paragraph(text) + html_of(table);
 }
 
-/// The outcomes of all folders: a line for each claim that any of them decides or leaves undecided, a column
-/// for each folder.
+/// Outcomes of all folders: a line for each claim that any of them can test, a column for each folder.
 std::string outcomes_of(const ReportInput& input) {
   Table table{{{"what the paper says"}, {"where"}}, {}};
   std::map<const Claim*, std::vector<Cell>> outcomes;
@@ -189,16 +189,16 @@ std::string outcomes_of(const ReportInput& input) {
     line.resize(table.columns.size());
   }
   std::string text =
-      table.rows.empty() ? "" : html_of(table) + "<p>A dash means: not testable with that folder.</p>\n";
+      table.rows.empty() ? "" : html_of(table) + paragraph("A dash means: not testable with that folder.");
   if (!untested.empty())
-    text += fmt::format("<p>{} cannot be tested with any of the folders.</p>\n",
-                        pluralize(untested.size(), table.rows.empty() ? "claim" : "further claim"));
+    text += paragraph(pluralize(untested.size(), table.rows.empty() ? "claim" : "further claim") +
+                      " cannot be tested with any of the folders.");
   return text;
 }
 
 std::string verdict_section(const ReportInput& input) {
-  const std::string ratios = of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
-    if (folder.rows.empty()) return std::string("<p>There are no rows to judge.</p>\n");
+  const std::string ratios = of_each_folder(input, [&](const ReportFolder& folder, const std::string&) {
+    if (folder.rows.empty()) return paragraph("There are no rows to judge.");
     return table_of(judge(folder, input)) + list_of(row_findings(folder.rows, folder.where_from()));
   });
   return fmt::format(
@@ -221,40 +221,30 @@ std::vector<ResultRow> with_samples(const ReportFolder& folder) {
   return rows;
 }
 
-/// The changes from the first of two folders to the second, as in `mssim compare`, or why they cannot be
-/// compared; empty unless there are two folders.
+/// The changes between two folders, as in `mssim compare`, or why none are known; else empty.
 std::string changes_section(const ReportInput& input) {
   if (input.folders.size() != 2) return {};
   const ReportFolder &base = input.folders[0], &next = input.folders[1];
-  std::string text = "<p>BASE is " + html_text(base.name) + ", NEW is " + html_text(next.name) + ".</p>\n";
+  std::string text = paragraph("BASE is " + html_text(base.name) + ", NEW is " + html_text(next.name) + ".");
   std::vector<std::string> unlike{"provenance.json of a folder is missing or damaged"};
   if (base.provenance && next.provenance) unlike = differences(*base.provenance, *next.provenance);
   std::ranges::move(differences(base.rows, next.rows), std::back_inserter(unlike));
   if (!unlike.empty())
-    return text + "<p>The two runs are not comparable: " + html_text(join(unlike, "; ")) +
-           ".</p>\n<p><code>mssim compare --force</code> compares them anyway.</p>\n";
+    return text + paragraph("The two runs are not comparable: " + html_text(join(unlike, "; ")) + ".") +
+           paragraph("<code>mssim compare --force</code> compares them anyway.");
   const RunComparison comparison = compare(with_samples(base), with_samples(next), input.threshold);
-  if (comparison.rows.empty()) return text + "<p>They have no measured combination in common.</p>\n";
+  if (comparison.rows.empty()) return text + paragraph("They have no measured combination in common.");
   text += html_of(comparison_page(comparison), 3);
-  const auto name = [&](const char* what, const std::vector<std::string>& combinations) {
-    if (!combinations.empty())
-      text += fmt::format("<p>{}: {}.</p>\n", what, html_text(join(combinations, "; ")));
-  };
-  name("Only BASE has", comparison.only_base);
-  name("Only NEW has", comparison.only_new);
-  name("Without a verified time in BASE", comparison.untimed);
+  for (const auto& [what, combinations] :
+       {std::pair("Only BASE has", &comparison.only_base), std::pair("Only NEW has", &comparison.only_new),
+        std::pair("Without a verified time in BASE", &comparison.untimed)})
+    if (!combinations->empty())
+      text += paragraph(fmt::format("{}: {}.", what, html_text(join(*combinations, "; "))));
   return text;
 }
 
 // Tables
 
-/// The sign only repeats the word.
-std::string verified_mark(const ResultRow& row) {
-  if (counts(row)) return "✓ yes";
-  return row.status == "ok" ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
-}
-
-/// The rows of the largest scene of each kind.
 std::vector<const ResultRow*> headline_rows(RowPointers rows) {
   std::map<ContentKind, const ResultRow*> largest;
   for (const ResultRow* row : rows) {
@@ -271,24 +261,25 @@ std::vector<const ResultRow*> headline_rows(RowPointers rows) {
 }
 
 std::string headline_section(const ReportInput& input) {
-  return "<p>Rows of the largest scene of each kind. " + html_prose(how_to_read_times) + "</p>\n" +
-         of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) -> std::string {
-           if (folder.rows.empty()) return "<p>There are no rows.</p>\n";
-           const std::vector<const ResultRow*> all = pointers_to(folder.rows);
-           return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n", noise_note(folder),
-                              html_of(times_of(headline_rows(all), folder)), pluralize(all.size(), "row"),
-                              html_of(times_of(all, folder)));
-         });
+  const auto times = [](const ReportFolder& folder, const std::string&) {
+    if (folder.rows.empty()) return paragraph("There are no rows.");
+    const std::vector<const ResultRow*> all = pointers_to(folder.rows);
+    return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n", noise_note(folder),
+                       html_of(times_of(headline_rows(all), folder)), pluralize(all.size(), "row"),
+                       html_of(times_of(all, folder)));
+  };
+  return paragraph("Rows of the largest scene of each kind. " + html_prose(how_to_read_times)) +
+         of_each_folder(input, times);
 }
 
 /// The tables of the papers, published and measured.
 std::string published_section(const ReportInput& input) {
-  return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
+  return of_each_folder(input, [&](const ReportFolder& folder, const std::string&) {
     std::string text;
     if (input.tables)
       for (const ResultTable& table : input.tables(folder.rows, folder.where_from()))
         text += html_of(table.page, 4);
-    return text.empty() ? "<p>No row of this folder belongs in a published table.</p>\n" : text;
+    return text.empty() ? paragraph("No row of this folder belongs in a published table.") : text;
   });
 }
 
@@ -300,10 +291,8 @@ std::string in_figures(const std::string& figures) {
 
 /// A chart with has_one_place() as a table, with its title, subtitle and notes.
 std::string table_of(const Chart& chart, const std::string& notes) {
-  const std::string subtitle =
-      chart.subtitle.empty() ? "" : fmt::format("<p>{}</p>\n", html_text(chart.subtitle));
-  return fmt::format("<h4>{}</h4>\n{}{}{}", html_text(chart.title), subtitle, html_of(values_of(chart)),
-                     notes.empty() ? "" : fmt::format("<p>{}</p>\n", notes));
+  return fmt::format("<h4>{}</h4>\n{}{}{}", html_text(chart.title), paragraph(html_text(chart.subtitle)),
+                     html_of(values_of(chart)), paragraph(notes));
 }
 
 /// Charts with their notes, or why there is none; tables of charts with one place come first.
@@ -334,39 +323,42 @@ std::string pictures_of(const std::vector<FoundPicture>& pictures) {
 }
 
 std::string speedup_section(const ReportInput& input) {
-  return "<p>Published lines are dashed and have open points; measured ones have intervals. Charts of "
-         "speed-ups have logarithmic axes, Figure 6 of Vassilev has linear ones. That paper shows its times "
-         "as curves without numbers.</p>\n" +
-         of_each_folder(
-             input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
-             [&](const ReportFolder& folder, const std::string& id) {
-               return figures_of(with_looks_of_backends(all_speedup_charts(folder, input, id), input.legend));
-             });
+  const auto figures = [&](const ReportFolder& folder, const std::string& id) {
+    return figures_of(with_looks_of_backends(all_speedup_charts(folder, input, id), input.legend));
+  };
+  return paragraph(
+             "Published lines are dashed and have open points; measured ones have intervals. Charts of "
+             "speed-ups have logarithmic axes, Figure 6 of Vassilev has linear ones. That paper shows its "
+             "times "
+             "as curves without numbers.") +
+         of_each_folder(input, figures, "No folder has a scene of the papers with a speed-up.");
 }
 
 std::string scaling_section(const ReportInput& input) {
-  return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes. It "
-         "is 1 if a node costs the same at every size. Speed-ups over threads compare a backend with itself "
-         "on the fewest threads.</p>\n" +
-         of_each_folder(input,
-                        "<p>No folder has two sizes of a kind of scene, or two numbers of threads.</p>\n",
-                        [&](const ReportFolder& folder, const std::string& id) {
-                          const Table slopes = slope_table(folder.rows, input.legend, input.published);
-                          return figures_of(with_looks_of_backends(all_scaling_charts(folder, input, id),
-                                                                   input.legend)) +
-                                 (slopes.rows.empty() ? "" : html_of(slopes));
-                        });
+  const auto figures = [&](const ReportFolder& folder, const std::string& id) {
+    const Table slopes = slope_table(folder.rows, input.legend, input.published);
+    return figures_of(with_looks_of_backends(all_scaling_charts(folder, input, id), input.legend)) +
+           (slopes.rows.empty() ? "" : html_of(slopes));
+  };
+  return paragraph(
+             "A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes. "
+             "It "
+             "is 1 if a node costs the same at every size. Speed-ups over threads compare a backend with "
+             "itself "
+             "on the fewest threads.") +
+         of_each_folder(input, figures,
+                        "No folder has two sizes of a kind of scene, or two numbers of threads.");
 }
 
 std::string roofline_section(const ReportInput& input) {
-  return "<p>Operations and bytes are the least that a step needs. Roofs are the machine's peaks, measured "
-         "in the same process; other programs that run at that time lower them.</p>\n" +
-         of_each_folder(input, "<p>No folder has rows with a roofline; garments have none.</p>\n",
-                        [&](const ReportFolder& folder, const std::string& id) {
-                          const auto chart = roofline_chart(folder.rows, folder.where_from(), id);
-                          return chart ? figures_of(with_looks_of_backends({*chart}, input.legend))
-                                       : std::string();
-                        });
+  const auto figure = [&](const ReportFolder& folder, const std::string& id) {
+    const auto chart = roofline_chart(folder.rows, folder.where_from(), id);
+    return chart ? figures_of(with_looks_of_backends({*chart}, input.legend)) : std::string();
+  };
+  return paragraph(
+             "Operations and bytes are the least that a step needs. Roofs are the machine's peaks, measured "
+             "in the same process; other programs that run at that time lower them.") +
+         of_each_folder(input, figure, "No folder has rows with a roofline; garments have none.");
 }
 
 std::string energies_of(const std::vector<FoundCurve>& curves, const std::vector<FoundCurve>& references,
@@ -377,41 +369,34 @@ std::string energies_of(const std::vector<FoundCurve>& curves, const std::vector
     charts.push_back(energy_chart(curve, references, fmt::format("{}-energy-{}", id, charts.size())));
     if (charts.back().series.size() == 1) without.push_back(curve.name);
   }
-  return figures_of(charts) + (without.empty() ? ""
-                                               : fmt::format("<p>Without a reference curve: {}.</p>\n",
-                                                             html_text(join(without, ", "))));
+  return figures_of(charts) +
+         (without.empty() ? ""
+                          : paragraph("Without a reference curve: " + html_text(join(without, ", ")) + "."));
 }
 
 std::string energy_section(const ReportInput& input) {
-  const std::string simulated = input.curves.empty()
-                                    ? ""
-                                    : "<p>Simulated for this page, with a reference of rk4 in double "
-                                      "precision.</p>\n" +
-                                          energies_of(input.curves, input.references, "simulated");
-  return simulated +
-         of_each_folder(input,
-                        simulated.empty()
-                            ? "<p>No folder has an energy curve. <code>mssim run --scene cloth2500 "
-                              "--energy-curve FOLDER/cloth2500.csv</code> writes one into a folder.</p>\n"
-                            : "",
-                        [&](const ReportFolder& folder, const std::string& id) {
-                          return energies_of(folder.curves, input.references, id);
-                        });
+  const auto charts = [&](const ReportFolder& folder, const std::string& id) {
+    return energies_of(folder.curves, input.references, id);
+  };
+  if (input.curves.empty())
+    return of_each_folder(input, charts,
+                          "No folder has an energy curve. <code>mssim run --scene cloth2500 "
+                          "--energy-curve FOLDER/cloth2500.csv</code> writes one into a folder.");
+  return paragraph("Simulated for this page, with a reference of rk4 in double precision.") +
+         energies_of(input.curves, input.references, "simulated") + of_each_folder(input, charts);
 }
 
 std::string picture_section(const ReportInput& input) {
-  const std::string drawn =
-      input.pictures.empty()
-          ? ""
-          : "<p>A scene of each kind, simulated for this page by <code>openmp</code>.</p>\n" +
-                pictures_of(input.pictures);
-  return drawn +
-         of_each_folder(
-             input,
-             drawn.empty() ? "<p>No folder has a picture. <code>mssim render</code> draws one; put it "
-                             "into a folder as a PNG file.</p>\n"
-                           : "",
-             [](const ReportFolder& folder, const std::string&) { return pictures_of(folder.pictures); });
+  const auto pictures = [](const ReportFolder& folder, const std::string&) {
+    return pictures_of(folder.pictures);
+  };
+  if (input.pictures.empty())
+    return of_each_folder(
+        input, pictures,
+        "No folder has a picture. <code>mssim render</code> draws one; put it into a folder as "
+        "a PNG file.");
+  return paragraph("A scene of each kind, simulated for this page by <code>openmp</code>.") +
+         pictures_of(input.pictures) + of_each_folder(input, pictures);
 }
 
 // History
@@ -425,17 +410,17 @@ std::string history_section(const ReportInput& input) {
                         html_of(history_table(machine, input.threshold)),
                         figures_of(with_looks_of_backends(
                             history_charts(machine, fmt::format("history-{}", ++number)), input.legend)));
-  return text.empty() ? text
-                      : fmt::format(
-                            "<p>A level ends where the times change. A series without a change has "
-                            "a false one with a probability of at most {} %.</p>\n{}",
-                            decimal(100 * change_error), text);
+  if (text.empty()) return text;
+  return paragraph(
+             fmt::format("A level ends where the times change. A series without a change has a false one "
+                         "with a probability of at most {} %.",
+                         decimal(100 * change_error))) +
+         text;
 }
 
 // Guides
 
-/// Splits the page of a guide before each heading of this level; the first part is what comes before, without
-/// a heading.
+/// Splits a guide's page before each heading of this level; the first part comes before, without a heading.
 std::vector<Document> parts_of(const Document& page, int level) {
   std::vector<Document> parts(1);
   for (const auto& block : page) {
@@ -499,7 +484,7 @@ std::string guide_of(const FoundGuide& guide, const Provenance& provenance, cons
 /// The folders of guides, scene by scene. Empty if there are none.
 std::string guide_section(const ReportInput& input) {
   const int level = input.folders.size() < 2 ? 3 : 4;
-  return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string& id) {
+  return of_each_folder(input, [&](const ReportFolder& folder, const std::string& id) {
     if (!folder.guide) return std::string();
     return (folder.rows.empty() ? noise_note(folder) : "") +
            guide_of(*folder.guide, folder.where_from(), input.legend, id, level);
@@ -524,93 +509,6 @@ constexpr auto sections = std::to_array<PageSection>({
 });
 
 }  // namespace
-
-std::vector<std::string> noise_seen(const Provenance& provenance) {
-  std::vector<std::string> noise;
-  for (const std::string& sentence : provenance.noise)
-    noise.push_back(sentence.substr(0, sentence.find(": ")));
-  return noise;
-}
-
-std::string range_of(const ReportFolder& folder, int ResultRow::*count) {
-  int least = 0, most = 0;
-  for (const ResultRow& row : folder.rows)
-    if (row.*count > 0) {
-      least = least == 0 ? row.*count : std::min(least, row.*count);
-      most = std::max(most, row.*count);
-    }
-  return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
-}
-
-std::filesystem::path short_name(const ReportFolder& folder) {
-  std::filesystem::path name = std::filesystem::path(folder.name).lexically_normal();
-  if (!name.has_filename()) name = name.parent_path();  // it ended with a slash
-  return name.parent_path().filename() / name.filename();
-}
-
-Table times_of(RowPointers rows, const ReportFolder& folder) {
-  const std::vector<const ResultRow*> all = pointers_to(folder.rows);
-  const Provenance provenance = folder.where_from();
-  Table table{{{"scene"},
-               {"ms per step", Align::right},
-               {"backend"},
-               {"integrator"},
-               {"threads"},
-               {"95 % interval (ms)", Align::right},
-               {"speed-up", Align::right, "×"},
-               {"95 % interval", Align::right},
-               {"published (ms)", Align::right},
-               {"of the roof (%)", Align::right},
-               {"verified"}},
-              {}};
-  for (const ResultRow* row : rows) {
-    const ResultRow* serial = baseline_of(all, *row);
-    const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
-    const bool shown = counts(*row);
-    Cell published = row->paper_ms;
-    published.exact = true;
-    table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
-                          look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
-                          row->threads > 0 ? Cell(row->threads) : Cell(),
-                          shown && row->ms_per_step_low && row->ms_per_step_high
-                              ? Cell(interval_text(*row->ms_per_step_low, *row->ms_per_step_high))
-                              : Cell(),
-                          speedup ? Cell(speedup->ratio) : Cell(),
-                          speedup ? Cell(interval_text(speedup->low, speedup->high)) : Cell(), published,
-                          shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
-                          verified_mark(*row)});
-  }
-  return table;
-}
-
-std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportInput& input,
-                                      const std::string& id) {
-  std::vector<Chart> charts;
-  for (const PublishedTable& published : input.published) {
-    const PaperScenes scenes(folder.rows, input.legend, published);
-    std::ranges::move(
-        speedup_charts(scenes, folder.where_from(), id + "-" + std::string(published.info().name)),
-        std::back_inserter(charts));
-  }
-  if (auto figure6 = figure6_chart(folder.rows, folder.where_from(), id))
-    charts.push_back(std::move(*figure6));
-  return charts;
-}
-
-std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
-                                      const std::string& id) {
-  std::vector<Chart> charts =
-      scaling_charts(folder.rows, input.legend, input.published, folder.where_from(), id);
-  if (folder.provenance)
-    std::ranges::move(thread_charts(folder.rows, *folder.provenance, id), std::back_inserter(charts));
-  return charts;
-}
-
-std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
-  for (Chart& chart : charts)
-    if (chart.families.empty()) chart.families = families_of_backends(legend);
-  return charts;
-}
 
 std::span<const PageSection> report_sections() { return sections; }
 

@@ -46,7 +46,7 @@ const Series& series(const Chart& chart, const std::string& name) {
 TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
   const std::vector<ResultRow> rows = two_cloths();
   const PublishedTable table1(published_table_kinds[0]);
-  const auto charts = speedup_charts(PaperScenes(rows, legend, table1), made_up_provenance(), "f1-table1");
+  const auto charts = speedup_charts(rows, legend, table1, made_up_provenance(), "f1-table1");
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_EQ(charts[0].id, "f1-table1-speed-up-semi-euler");
   EXPECT_EQ(charts[0].subtitle, "Measured on A Processor, 2 threads");
@@ -61,7 +61,7 @@ TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
   EXPECT_TRUE(published.low.empty());
   EXPECT_EQ(measured.y, (std::vector<double>{5, 5}));
   EXPECT_EQ(measured.low, measured.y);
-  EXPECT_TRUE(speedup_charts(PaperScenes({}, legend, table1), {}, "f1").empty());
+  EXPECT_TRUE(speedup_charts({}, legend, table1, {}, "f1").empty());
 }
 
 TEST(SpeedupCharts, OpenclOnTheProcessorLooksLikeNoGpu) {
@@ -70,7 +70,7 @@ TEST(SpeedupCharts, OpenclOnTheProcessorLooksLikeNoGpu) {
   const auto chart_on = [&](const std::string& device) {
     for (ResultRow& row : rows)
       if (row.backend == "opencl") row.device = device;
-    return speedup_charts(PaperScenes(rows, legend, table1), made_up_provenance(), "f1").at(0);
+    return speedup_charts(rows, legend, table1, made_up_provenance(), "f1").at(0);
   };
   const Chart on_cpu = chart_on("pthread-skylake-avx512-A Processor"), on_gpu = chart_on("A GPU");
   EXPECT_NE(series(on_cpu, "opencl on the CPU, measured").family,
@@ -98,7 +98,7 @@ TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
   const std::vector<ResultRow> rows = two_cloths();
   const PublishedTable table1(published_table_kinds[0]);
   const auto chart_of = [&](std::size_t count) {
-    return speedup_charts(PaperScenes(std::span(rows).first(count), legend, table1), {}, "f1").at(0);
+    return speedup_charts(std::span(rows).first(count), legend, table1, {}, "f1").at(0);
   };
   EXPECT_FALSE(has_one_place(chart_of(6)));
   const Chart chart = chart_of(3);

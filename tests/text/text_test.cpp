@@ -174,5 +174,15 @@ TEST(Escaped, IsWhatJsonTakes) {
   EXPECT_EQ(escaped(escaped(every)), escaped(every));
 }
 
+TEST(Lists, AreMappedSearchedAndHoldAValueOnce) {
+  std::vector<OtherName> names{{"a", "A"}, {"b", "B"}};
+  EXPECT_EQ(mapped<std::string>(names, &OtherName::meant), (std::vector<std::string>{"A", "B"}));
+  EXPECT_EQ(found_in(names, "b", &OtherName::typed), &names[1]);
+  EXPECT_EQ(found_in(names, "B", &OtherName::typed), nullptr);
+  std::vector<int> numbers{1};
+  for (const int number : {1, 2, 2}) add_once(numbers, number);
+  EXPECT_EQ(numbers, (std::vector<int>{1, 2}));
+}
+
 }  // namespace
 }  // namespace mssim

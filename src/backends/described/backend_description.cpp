@@ -98,10 +98,9 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   read_fields(file, text, [&](FieldVisitor& fields) { visit(fields, description); });
   if (description.command.front().empty())
     refuse(file, "/command/0", "is empty: give the name of a program, or a path with a slash");
-  std::vector<std::string_view> known_integrators;
-  for (const Integrator* integrator : all_integrators) known_integrators.push_back(integrator->name);
   require_known(file, "/scenes", description.scenes, {cloth, bodies});
-  require_known(file, "/integrators", description.integrators, known_integrators);
+  require_known(file, "/integrators", description.integrators,
+                mapped<std::string_view>(all_integrators, &Integrator::name));
   BackendProgram program;
   program.name = file.stem().string();
   program.description = description.text;

@@ -43,8 +43,7 @@ std::string slices_program_text(std::size_t slice_nodes, int lanes, std::initial
 /// never copied; if the device supports it, it is fine-grained shared virtual memory, and changing hands
 /// needs no command in the queue: a step of hybrid on bodies38233 takes 0.8 of the time. On a device with its
 /// own memory the array is there, and the driver copies it when the host maps or unmaps it. In copied memory
-/// there are two arrays, one on the device and one on the host; mapping and unmapping are the explicit
-/// transfers between them.
+/// there are two arrays, one on the device and one on the host; mapping and unmapping transfer explicitly.
 template <class T>
 class OpenclBuffer {
  public:
@@ -67,8 +66,7 @@ class OpenclBuffer {
       aligned(memory_.get());
       if (alignment == huge_page) wish_for_huge_pages(memory_.get(), bytes);
     }
-    // A buffer made from shared virtual memory is that memory (The OpenCL Specification, 3.0,
-    // clCreateBuffer).
+    // A buffer made from shared virtual memory is that memory (OpenCL 3.0, clCreateBuffer).
     if (memory_ && exchange_ != Exchange::copies) {
       buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory_.get());
     } else {
@@ -130,8 +128,7 @@ class OpenclBuffer {
     return {static_cast<T*>(clSVMAlloc(context(), flags, bytes, 0)),
             [context](T* memory) { clSVMFree(context(), memory); }};
   }
-  /// The driver's memory, if vectors can be loaded from it: not every driver gives the alignment that OpenCL
-  /// requires.
+  /// The driver's memory, if vectors can be loaded from it: not every driver aligns as OpenCL requires.
   static T* aligned(void* memory) {
     constexpr std::uintptr_t vector_bytes = 64;
     if (reinterpret_cast<std::uintptr_t>(memory) % vector_bytes != 0)
@@ -182,8 +179,7 @@ struct Launch {
   WorkItems items;
 };
 
-/// A device as used by one backend: arrays that host and device use in turn, programs, and a queue of
-/// launches in order. All functions may throw cl::Error.
+/// A device as one backend uses it: arrays, programs, and a queue of launches. All may throw cl::Error.
 class DeviceQueue {
  public:
   DeviceQueue(const OpenclDevice& device, DeviceMemory memory)
@@ -210,8 +206,7 @@ class DeviceQueue {
     return buffer;
   }
 
-  /// The built program. Square roots and divisions are correctly rounded if the device supports it. Throws
-  /// Unavailable with the compiler's first error.
+  /// The built program; roots and divisions are exact if supported. Throws Unavailable with the first error.
   cl::Program build(const std::string& text) const;
 
   void launch(const Launch& launch) const {
@@ -239,8 +234,7 @@ class DeviceQueue {
   bool runs_on_host() const { return device_.type == OpenclDeviceType::cpu; }
 
  private:
-  /// Launches between two waits for an empty queue: waits are rare enough to cost nothing, and a driver never
-  /// has more unfinished commands than this.
+  /// Launches between two waits for an empty queue, rare enough to cost nothing: a limit for drivers.
   static constexpr std::size_t longest_queue = 256;
 
   OpenclDevice device_;
@@ -249,8 +243,7 @@ class DeviceQueue {
   cl::CommandQueue commands_;
 };
 
-/// Takes some steps and then returns to `start`: drivers finish compiling at a kernel's first launch with a
-/// range.
+/// Takes some steps and returns to `start`: drivers finish compiling at a kernel's first launch.
 template <class Stepped>
 void warm_up(Stepped& backend, const State& start, int steps) {
   const CompileTimer timer;

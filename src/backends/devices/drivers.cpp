@@ -53,8 +53,7 @@ std::string registration_of(const RegisteredDriver& driver) {
 Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
                     const std::vector<std::string>& environment) {
   constexpr unsigned cpu_s = 60, elapsed_s = 120;
-  std::vector<std::string> libraries;
-  for (const RegisteredDriver& driver : drivers) libraries.push_back(driver.shared_library);
+  const auto libraries = mapped<std::string>(drivers, &RegisteredDriver::shared_library);
   const ChildResult asked =
       run({helper_program("ask-opencl"), libraries, environment, ".", cpu_s, elapsed_s});
   Answer answer{failed_end(asked, "queried for devices"), {}};
@@ -73,8 +72,7 @@ Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
   return answer;
 }
 
-/// Queries each driver separately; registers the surviving ones in `folder`, and returns how the others
-/// ended.
+/// Queries each driver separately; registers those that survive in `folder`, and returns how others ended.
 std::vector<std::string> keep_survivors(const std::vector<RegisteredDriver>& drivers,
                                         const std::filesystem::path& folder) {
   std::vector<std::string> troubles;
@@ -142,7 +140,6 @@ OpenclDevice described(cl_device_id id, const std::string& platform, int number)
           .id = id};
 }
 
-/// Adds the devices of a platform to the offer.
 void take_devices(const cl::Platform& platform, const std::string& pocl_failure, OpenclOffer& offer) {
   const std::string name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
   const auto driver = [&] { return fmt::format("the OpenCL driver \"{}\"", name); };

@@ -32,8 +32,7 @@ struct Communication {
   double packing = 0;
   double bytes = 0;     ///< sent per step by the process that sends most
   double messages = 0;  ///< sent per step by that process
-  /// Half of the round-trip time of a message of a few bytes to a neighbour, s, over the slowest link;
-  /// nothing if there is no neighbour.
+  /// Half of a small message's round-trip time to a neighbour, s, over the slowest link; nothing without one.
   std::optional<double> latency_s;
   std::optional<double> bytes_per_second;  ///< of large messages to a neighbour, over the slowest link
 
@@ -98,8 +97,7 @@ inline double require_uniform_mass(const System& system) {
 /// Whether the system is stepped with Algorithm 1 (garment/stepping/).
 inline bool is_garment(const System& system) { return std::holds_alternative<Garment>(system.topology); }
 
-/// A running simulation. All calls block until their work is done, so a caller may read the clock around
-/// them.
+/// A running simulation. All calls block until their work is done, so they can be timed.
 class Backend {
  public:
   Backend() = default;
@@ -109,8 +107,7 @@ class Backend {
 
   /// Sets a state of the system's size; pinned nodes must be at their start, at rest.
   virtual void set_state(const State& state) = 0;
-  /// Takes `count` steps of the dt given at construction. Does not check for finite numbers: callers do,
-  /// outside timed regions.
+  /// Takes `count` steps of the backend's dt. Callers look for numbers that are not finite.
   virtual void step(int count) = 0;
   /// The current state, in the scene's node order.
   virtual State state() const = 0;
@@ -119,11 +116,9 @@ class Backend {
   /// Cores of this machine that compute a step; for a discrete device, 1 (the host thread that waits). More
   /// than ExecutionOptions::threads only if a driver cannot be limited.
   virtual int threads() const = 0;
-  /// Whole steps per pass over the state in memory, if stages overlap; 0 if every stage makes its own pass.
-  /// The memory traffic of a step is derived from it.
+  /// Whole steps per pass over the state in memory; 0 if every stage makes a pass. Gives the memory traffic.
   virtual int steps_per_pass() const { return 0; }
-  /// Springs whose ends and rest lengths a step reads from memory, if fewer than the system's: identical
-  /// bodies can share theirs.
+  /// Springs whose ends and rest lengths a step reads, if fewer than the system's: alike bodies share them.
   virtual std::optional<std::uint64_t> stored_springs() const { return std::nullopt; }
   /// Do the steps run on this machine's CPU and memory, with whose peaks the roofline compares?
   virtual bool runs_on_host() const { return true; }
@@ -133,13 +128,11 @@ class Backend {
   virtual std::string reason_not_to_time() const { return {}; }
   /// Why it uses more CPUs than requested, if it does.
   virtual std::string reason_for_excess() const { return "the driver of " + device() + " cannot divide it"; }
-  /// Costs of communication since the last call; nothing if there is only one process or a program does not
-  /// report them.
+  /// Costs of communication since the last call; nothing with one process or if a program reports none.
   virtual std::optional<Communication> communication() { return std::nullopt; }
   /// Called before an idle period. The backend must not consume CPU time until its next call.
   virtual void rest() {}
-  /// Ends the backend's program, if it has one, and returns its last output. Only end() may be called
-  /// afterwards.
+  /// Ends the backend's program, if any, and returns its last output. Only end() may be called afterwards.
   virtual std::string end() { return {}; }
   /// CPU time so far of the process that takes the steps, s.
   virtual double processor_seconds() const {
@@ -189,13 +182,11 @@ class WindowBackend : public Backend {
 };
 
 /// Moves positions back along the velocities, from those that an integrator `seconds` ahead uses to those of
-/// the state. A node that this would move below the floor (its height in m), because it has just touched it,
-/// is put on the floor.
+/// the state. A node that has just touched the floor (its height in m) and would move below it is put on it.
 void move_back(State& state, double seconds, double floor);
 
 /// Adapts `backend`, whose stages see positions integrator.ahead of a step ahead of the state's: moves states
-/// along their velocities on the way in, and back on the way out. `system` must outlive it. An integrator
-/// that is not ahead leaves the backend unchanged.
+/// along their velocities on the way in, and back on the way out. `system` must outlive it. Else returns it.
 std::unique_ptr<Backend> step_ahead(std::unique_ptr<Backend> backend, const System& system,
                                     const Integrator& integrator, double dt_s);
 

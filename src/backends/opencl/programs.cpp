@@ -49,12 +49,6 @@ std::string pair_parameters(const StoredStage& stage) {
   return text;
 }
 
-std::string pair_names_of(const StoredStage& stage) {
-  std::string text;
-  for (const Pair pair : stage_arguments(stage)) text += name_of(pair) + ", ";
-  return text;
-}
-
 /// The call that reads or writes the slot's memory; kernels/*_stage.cl define these functions.
 std::string access(const char* what, Slot slot, Pair arrays, const std::string& value = "") {
   return fmt::format("{}_part({}{}, {}, tile, shape)", what, value, name_of(arrays), index(slot) % 2);
@@ -124,7 +118,9 @@ std::string gather_springs_text() {
 
 /// "update_N(pairs, tile, node, ", to which the forces are added.
 std::string update_call(const StoredStage& stage) {
-  return fmt::format("update_{}({}tile, node, ", stage.number, pair_names_of(stage));
+  std::string text = fmt::format("update_{}(", stage.number);
+  for (const Pair pair : stage_arguments(stage)) text += name_of(pair) + ", ";
+  return text + "tile, node, ";
 }
 
 std::string nodes_kernel_text(const StoredStage& stage) {
@@ -265,7 +261,6 @@ std::string kernel_text(const StoredStage& stage, const MeshText& mesh) {
   return text.str();
 }
 
-/// The common text followed by a kernel for each stage.
 std::string with_kernels(std::string text, const Integrator& integrator, const MeshText& mesh) {
   for (std::size_t number = 0; number < integrator.stage_count; ++number) {
     const StoredStage stage{integrator, number, Storage::separate};
@@ -324,8 +319,7 @@ std::string mesh_program_text(const Integrator& integrator, int lanes) {
 }
 
 std::size_t alike_slice_lanes(int lanes) {
-  // If a work-item owns one node, slices of as many bodies as vectors on CPUs have lanes leave few lanes
-  // empty.
+  // If a work-item owns one node, slices of as many bodies as CPU vectors have lanes leave few lanes empty.
   return lanes > 1 ? static_cast<std::size_t>(lanes) : 16;
 }
 

@@ -10,8 +10,7 @@
 namespace mssim {
 namespace {
 
-/// Cost of a chunk, in entries of slices or in springs of all lanes, unless that makes too many chunks: some
-/// microseconds.
+/// Cost of a chunk, some microseconds, in entries or springs of all lanes, unless that makes too many chunks.
 constexpr std::size_t chunk_cost = 1024;
 
 /// Minimum number of chunks per thread: awake threads can then take over small parts of a sleeping thread's
@@ -36,17 +35,11 @@ std::vector<IndexRange> balanced_chunks(const std::vector<std::uint32_t>& first_
   return chunks;
 }
 
-SlicedGraph graph_of_whole(const System& system, std::size_t lanes) {
-  require_nameable_records(system, record_floats);
-  return {system, lanes};
-}
-
 /// Cost of a node besides its springs, in springs.
 constexpr std::size_t node_cost = 2;
 
 /// Springs per spin of a waiting thread: a spin takes 35 ns on an Intel Xeon, a vector of springs 5. A thread
-/// that slept while another one did its share must wake up before the other thread has finished both shares;
-/// otherwise that one would keep doing both.
+/// that slept must wake up before another has finished both shares, which it would otherwise keep.
 constexpr std::size_t springs_a_spin = 4;
 
 /// Limit of spinning: about a tenth of a millisecond.
@@ -161,7 +154,9 @@ void BodySteps::make_pairs_where_stepped(std::size_t floats,
 
 SlicedBodies::SlicedBodies(const System& system, const Integrator& method, double dt_s,
                            std::size_t slice_lanes, std::size_t thread_count)
-    : SlicedBodies(system, graph_of_whole(system, slice_lanes), method, dt_s, thread_count) {}
+    : SlicedBodies(system,
+                   (require_nameable_records(system, record_floats), SlicedGraph(system, slice_lanes)),
+                   method, dt_s, thread_count) {}
 
 SlicedBodies::SlicedBodies(const System& system, SlicedGraph graph, const Integrator& method, double dt_s,
                            std::size_t thread_count)

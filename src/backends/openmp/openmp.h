@@ -19,17 +19,14 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
 
 /// The instruction sets for which its vector code is compiled and which this CPU supports, by Highway's
 /// names, the best first. The order of every sum is the scene's (a column's nodes from the top, a body's
-/// neighbours by their number), independent of lanes. So, of those with exact roots (has_exact_roots), all
-/// that fuse multiply-adds (AVX2, NEON) are bitwise identical, and so are all that round twice (SSE4, plain
-/// floats).
+/// neighbours by their number), independent of lanes. So, with exact roots (has_exact_roots), all that fuse
+/// multiply-adds (AVX2, NEON) are bitwise identical, as are all that round twice (SSE4, plain floats).
 std::vector<std::string_view> openmp_instruction_sets();
 
-/// Whether that instruction set's code computes roots exactly (Roots::exact) instead of from the CPU's
-/// estimate.
+/// Whether that instruction set's code has exact roots (Roots::exact), not from the CPU's estimate.
 bool has_exact_roots(std::string_view instruction_set);
 
-/// make_openmp with the vector code for one of those instruction sets, however wide. Throws
-/// std::invalid_argument if it is not among them.
+/// make_openmp for one of those instruction sets, however wide. Throws std::invalid_argument for another.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options, std::string_view instruction_set);
 

@@ -38,7 +38,6 @@ const CLI::App& command_of(const CLI::App& app) {
   return parsed.empty() ? app : *parsed.back();
 }
 
-/// The command as a user types it.
 std::string typed_name(const CLI::App& command) {
   return command.get_parent() ? "mssim " + command.get_name() : "mssim";
 }

@@ -53,8 +53,7 @@ class Half {
   double covered_ = 0;
 };
 
-/// The gap between the legs at this height; none if the section does not divide into two halves of about
-/// equal width.
+/// The gap between the legs at this height; none without a division into two halves of about equal width.
 std::optional<LegGap> leg_gap(const Surface& body, double height) {
   constexpr double least_gap = 1e-3;  // of the section's width: more than gaps by rounding
   // Width over that of the wider half; hands and objects next to the body are narrower.
@@ -82,8 +81,7 @@ std::optional<LegGap> leg_gap(const Surface& body, double height) {
 
 using Corners = std::array<Vec3d, 3>;
 
-/// Calls `visit` with each corner of a triangle in the plane of constant `coordinate` = `value`, and with
-/// each point in which an edge passes through that plane.
+/// Calls `visit` with a triangle's corners in `coordinate` = `value`, and points where edges cross it.
 template <class Visit>
 void cut(const Corners& corners, double Vec3d::*coordinate, double value, const Visit& visit) {
   const auto [low, high] =
@@ -103,11 +101,6 @@ void cut(const Corners& corners, double Vec3d::*coordinate, double value, const 
 Corners corners_of(const Surface& surface, std::size_t triangle) {
   const auto& [a, b, c] = surface.triangles[triangle];
   return {surface.points[a], surface.points[b], surface.points[c]};
-}
-
-TrunkAndLegs checked_body(const Surface& surface, const std::string& name) {
-  validate_surface(surface, name);
-  return trunk_and_legs(surface);
 }
 
 /// The range in which a landmark is searched, for adults and children, and its place on the reference body,
@@ -169,7 +162,7 @@ double between_legs(const std::vector<LegGap>& gaps) {
 
 BodyProfile::BodyProfile(const Surface& surface, std::string name)
     : name_(std::move(name)),
-      body_(checked_body(surface, name_)),
+      body_((validate_surface(surface, name_), mssim::trunk_and_legs(surface))),
       slices_(body_.surface),
       middle_(heights_in_the_middle()),
       crotch_(find_crotch()) {}

@@ -10,6 +10,7 @@
 
 #include "geometry/geometry.h"
 #include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -192,8 +193,7 @@ class Tube {
 
 double between(double from, double to, double fraction) { return from + (to - from) * fraction; }
 
-/// Sections of the torso and of the leg at x > 0. Values that the measures do not give are in proportion to
-/// the reference body's.
+/// Sections of the torso and the leg at x > 0. Values without a measure are in proportion to the reference.
 class Figure {
  public:
   explicit Figure(const BodyMeasures& measures) : m_(measures) {
@@ -203,8 +203,7 @@ class Figure {
   }
 
   std::vector<EllipseSection> torso() const {
-    std::vector<EllipseSection> sections;
-    for (const SeatPart& part : seat) sections.push_back(seat_section(part));
+    auto sections = mapped<EllipseSection>(seat, [&](const SeatPart& part) { return seat_section(part); });
 
     const double mid_girth = between(m_.waist.girth, m_.hip.girth, 0.58);
     const double mid_height = between(m_.hip.height, m_.waist.height, 0.5);
@@ -271,8 +270,7 @@ class Figure {
     double fraction;      ///< of the way from the crotch up to the hip
     double width, depth;  ///< fractions of the hip's
   };
-  /// Wide near the crotch, so that the outline has no dent between thighs and hip; deep only higher up, so
-  /// that belly and seat do not hang over the thighs.
+  /// Wide near the crotch, without a dent above the thighs; deep only higher up: nothing hangs over them.
   static constexpr std::array<SeatPart, 6> seat{{{0, 0.45, 0.30},
                                                  {0.05, 0.70, 0.43},
                                                  {0.12, 0.83, 0.55},
@@ -328,7 +326,6 @@ class Figure {
   double thigh_axis_ = 0;  ///< x of the leg's middle at the thigh's height
 };
 
-/// The sections mirrored in x.
 std::vector<EllipseSection> mirrored(std::vector<EllipseSection> sections) {
   for (EllipseSection& section : sections) {
     std::swap(section.x_min, section.x_max);

@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "garment/layers/cloth_contacts.h"
 #include "laws/host_laws.h"
 #include "statistics/statistics.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -80,8 +80,7 @@ void measure_side_distance(const CloseCloth& close, const std::vector<Vec3d>& po
   fit.side_distance_height = points[static_cast<std::size_t>(farthest - distances.begin())].y;
 }
 
-/// Whether the elongation of a spring of the 12-neighbour stencil counts: it spans a single cell. Bending
-/// springs, two cells long, may change length by bending.
+/// Whether the spring's elongation counts: it spans one cell. Bending springs, two cells long, may bend.
 bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
   const GarmentPanel& panel = garment.panel_of(spring.first);
   const std::uint32_t first = spring.first - panel.first_node, second = spring.second - panel.first_node;
@@ -191,7 +190,6 @@ constexpr Diagnosis pierced{"the body comes through", "a larger skin_m or more n
 constexpr Diagnosis stretched{"the cloth is stretched",
                               "a wider garment (hip_ease_m, waist_ease_m) or stiffer cloth"};
 
-/// Units of a number.
 struct Unit {
   double per_unit;          ///< factor to the unit at the end of the number's name
   std::string_view spoken;  ///< unit in a sentence, with a leading space
@@ -287,9 +285,7 @@ bool has_sign(const FitNumber& number) { return !number.too_small.happened.empty
 
 /// The bound as text, in a unit of which the number's own has `per_unit`.
 std::string shown_bound(const FitNumber& number, const FitBounds& bounds, double per_unit) {
-  std::ostringstream text;
-  text << (has_sign(number) ? "±" : "") << bounds.*number.bound * per_unit;
-  return text.str();
+  return fmt::format("{}{:g}", has_sign(number) ? "±" : "", bounds.*number.bound * per_unit);
 }
 
 }  // namespace
@@ -401,10 +397,9 @@ std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, c
     if (number.bound == nullptr || !value || is_within(number, *value, bounds)) continue;
     const auto& [happened, remedy] = has_sign(number) && *value < 0 ? number.too_small : number.too_large;
     const Unit& unit = number.unit;
-    std::ostringstream text;
-    text << happened << ": " << number.what << " is " << *value * unit.per_spoken << unit.spoken
-         << ", beyond " << shown_bound(number, bounds, unit.per_spoken) << unit.spoken << "; try " << remedy;
-    found.push_back(text.str());
+    found.push_back(fmt::format("{}: {} is {:g}{}, beyond {}{}; try {}", happened, number.what,
+                                *value * unit.per_spoken, unit.spoken,
+                                shown_bound(number, bounds, unit.per_spoken), unit.spoken, remedy));
   }
   return found;
 }

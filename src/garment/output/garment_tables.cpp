@@ -4,7 +4,6 @@
 #include <array>
 #include <functional>
 #include <set>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -37,14 +36,13 @@ std::optional<double> ms_per_iteration(const DressingRecord& dressing) {
 /// A line of a table: backend and integrator.
 using Line = std::pair<std::string, std::string>;
 
-/// The layout of the table. Its columns are scenes, by number of vertices; its lines are combinations that
-/// have dressed any scene.
+/// The table's layout: columns of scenes, by vertices; lines of combinations that have dressed any scene.
 struct Layout {
   explicit Layout(Rows all) : rows(std::move(all)) {
     for (const ResultRow* row : rows) {
       if (std::ranges::find(scenes, row->scene, &ResultRow::scene) == scenes.end()) scenes.push_back(row);
       const Line line(row->backend, row->integrator);
-      if (row->dressing && std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
+      if (row->dressing) add_once(lines, line);
     }
     std::ranges::stable_sort(scenes, {}, &ResultRow::nodes);
   }
@@ -60,9 +58,7 @@ struct Layout {
 
 /// Null for other backends. The backend's name may end in a colon and a number of threads.
 const PublishedDressing* published_dressing(std::string_view backend) {
-  const auto row =
-      std::ranges::find(published_dressings, backend.substr(0, backend.find(':')), &PublishedDressing::name);
-  return row == published_dressings.end() ? nullptr : &*row;
+  return found_in(published_dressings, backend.substr(0, backend.find(':')), &PublishedDressing::name);
 }
 
 /// Start of the first cell of a line.
@@ -79,8 +75,6 @@ Cell time_cell(RowPointers rows, const ResultRow& row) {
     cell.suffix.append(in_brackets(*row.speedup_vs_serial)).append(mark_of_speedup(rows, row));
   return cell;
 }
-
-Cell vertex_cell(RowPointers /*rows*/, const ResultRow& row) { return ns_per_node(row, row.ms_per_step); }
 
 Cell dressing_cell(RowPointers /*rows*/, const ResultRow& row) {
   if (!row.dressing) return {};
@@ -134,7 +128,8 @@ Document page_of(const Layout& layout, const Provenance& provenance) {
           "closes seams by constraints."},
       table_of(layout, provenance, "milliseconds per iteration", time_cell),
       Paragraph{"Nanoseconds per iteration and vertex, from the same samples:"},
-      table_of(layout, provenance, "nanoseconds", vertex_cell),
+      table_of(layout, provenance, "nanoseconds",
+               [](RowPointers, const ResultRow& row) -> Cell { return ns_per_node(row, row.ms_per_step); }),
       Paragraph{
           "One whole dressing: seconds and iterations from flat panels to settled jeans. `garment.csv` has "
           "the fit of each."},
@@ -317,9 +312,7 @@ std::string garment_csv(std::span<const ResultRow> rows) {
 }
 
 void read_dressings(const CsvTable& table, std::span<ResultRow> rows) {
-  std::vector<std::string_view> names;
-  for (const GarmentColumn& column : columns) names.push_back(column.name);
-  table.require_columns(names);
+  table.require_columns(mapped<std::string_view>(columns, &GarmentColumn::name));
   for (std::size_t line = 0; line < table.size(); ++line) {
     if (table.text(line, iterations_column).empty()) continue;
     for (ResultRow& row : rows) {

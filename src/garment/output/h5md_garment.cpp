@@ -12,6 +12,7 @@
 
 #include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -26,7 +27,6 @@ void write_numbers(hid_t file, const std::string& path, const std::vector<Item>&
   write_array(file, path, file_type, memory_type, std::array<hsize_t, 1>{numbers.size()}, numbers.data());
 }
 
-/// The numbers of a panel.
 constexpr std::array panel_numbers{
     std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
     std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}};
@@ -76,9 +76,7 @@ void require_fitting_garment(const Garment& garment, std::size_t nodes) {
 void write_garment(hid_t file, const Garment& garment) {
   const std::string panels = "/parameters/panels", joints = "/parameters/joints";
   create_group(file, panels);
-  std::vector<std::string_view> names;
-  for (const GarmentPanel& panel : garment.panels) names.emplace_back(panel.name);
-  write_texts(file, panels + "/name", names);
+  write_texts(file, panels + "/name", mapped<std::string_view>(garment.panels, &GarmentPanel::name));
   for (const auto& [name, member] : panel_numbers)
     write_numbers(file, panels + name, garment.panels, member, H5T_STD_U32LE, H5T_NATIVE_UINT32);
   std::vector<std::array<double, 2>> flat;

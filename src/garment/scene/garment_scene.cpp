@@ -22,12 +22,10 @@
 namespace mssim {
 namespace {
 
-/// Radius of curvature down to which cloth, around a limb for example, must not let the body through the
-/// faces between its nodes: their sagitta is h^2 / 8 r.
+/// Radius of curvature, as of a limb, down to which no face may let the body through: sagitta h^2 / 8 r.
 constexpr double least_curvature_radius_m = 0.04;
 
-/// A trouser leg starts this far outside the leg's middle. From there, its halves close around the leg and
-/// are not drawn across the other leg.
+/// A trouser leg starts this far outside the leg's middle: its halves are not drawn across the other leg.
 constexpr double beside_the_leg_m = 0.01;
 
 /// JSON pointers to a garment's pieces and jeans in its scene file.
@@ -36,10 +34,6 @@ std::string pieces_pointer(const GarmentSpec& garment) {
 }
 std::string jeans_pointer(const GarmentSpec& garment) {
   return garment.pieces ? "/garment/outfit/jeans" : "/garment/jeans";
-}
-/// Distance of the maps from the body, m, for cloth whose cells are about `cell` wide.
-double map_offset(const GarmentSpec& garment, double cell) {
-  return garment.skin_m + cell * cell / (8 * least_curvature_radius_m);
 }
 
 /// The largest over the layers of the width of a square cell of average area, m.
@@ -107,8 +101,7 @@ OfHeight remembered(OfHeight function) {
   };
 }
 
-/// The measures of a body that patterns need, stored by height: mirrored panels, and a second cut with
-/// another offset, ask for the same heights again.
+/// A body's measures for patterns, stored by height: mirrored panels and a second cut ask for them again.
 struct AskedMeasures {
   const BodyProfile& profile;
   OfHeight girth = remembered([&of = profile](double y) { return of.hull_girth(y); });
@@ -166,7 +159,7 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, d
   if (garment.pieces) append_pieces(*garment.pieces, garment.cloth, pattern);
   GarmentBuild build = cut_and_placed(spec, pattern, body, jeans);
   const double cell = widest_mean_cell(pattern, build);
-  return {std::move(build), map_offset(garment, cell)};
+  return {std::move(build), garment.skin_m + cell * cell / (8 * least_curvature_radius_m)};
 }
 
 constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
@@ -255,8 +248,7 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
   fields.one_of({"correction", "Section that describes the correction of over-elongated springs."}, sections);
 }
 
-/// The maps of the body for each layer. If layers touch, an outer one's lie further out by the thickness of
-/// those beneath.
+/// Maps of the body for each layer. If layers touch, outer ones lie further out by the thickness beneath.
 std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
                                                              const Surface& body, double offset) {
   std::uint32_t outermost = 0;
@@ -389,8 +381,7 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 /// pattern does not fit together.
 ///
 /// The built scene has the panels at rest around the body, and the maps of the body that they collide with.
-/// Its note names the parts of the body that they ignore. Deterministic. Building it throws SceneError if the
-/// garment starts below the floor.
+/// Its note names ignored parts of the body. Throws SceneError if the garment starts below the floor.
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));

@@ -177,8 +177,7 @@ struct OpenclPanels {
   std::vector<cl_int> joint_nodes;    ///< held nodes first
 };
 
-/// panel_stencil for the kernels, without contractions, which would round differently in kernels of different
-/// shapes.
+/// panel_stencil for the kernels, without contractions, whose rounding would differ between kernels.
 std::string stencil_text() {
   std::string rows, columns;
   for (const GridSpring& spring : panel_stencil) {

@@ -50,6 +50,12 @@ class Place {
     return Place(file_, *member, pointer_ + '/' + key);
   }
 
+  /// None if there is no such member, or it is null: unknown.
+  std::optional<Place> known(const std::string& key) const {
+    const auto member = find(key);
+    return member && !member->value_.is_null() ? member : std::nullopt;
+  }
+
   std::string text() const {
     require(value_.is_string(), "a text");
     return value_.get<std::string>();
@@ -133,8 +139,7 @@ Machine read_machine(const Place& document) {
   const Place cpu = document["cpu"];
   Machine machine;
   machine.cpu_model = cpu["model"].text();
-  if (const auto generation = cpu.find("generation"); generation && !generation->is_null())
-    machine.cpu_generation = generation->text();
+  if (const auto generation = cpu.known("generation")) machine.cpu_generation = generation->text();
   machine.logical_cpus = cpu["logical_cpus"].count<int>();
   machine.cpu_mhz = cpu["mhz"].number();
   machine.caches = cpu["caches"].list(read_cache);
@@ -143,13 +148,12 @@ Machine read_machine(const Place& document) {
   machine.memory_bytes = document["memory_bytes"].count<std::uint64_t>();
   machine.operating_system = document["operating_system"].text();
   machine.kernel = document["kernel"].text();
-  if (const auto quota = cpu.find("cpu_quota"); quota && !quota->is_null())
-    machine.cpu_quota = quota->number();
-  if (const auto limit = document.find("memory_limit_bytes"); limit && !limit->is_null())
+  if (const auto quota = cpu.known("cpu_quota")) machine.cpu_quota = quota->number();
+  if (const auto limit = document.known("memory_limit_bytes"))
     machine.memory_limit_bytes = limit->count<std::uint64_t>();
-  if (const auto smt = cpu.find("smt"); smt && !smt->is_null()) machine.smt = smt->truth();
+  if (const auto smt = cpu.known("smt")) machine.smt = smt->truth();
   if (const auto nodes = cpu.find("numa_nodes")) machine.numa_nodes = nodes->count<int>();
-  if (const auto turbo = cpu.find("turbo"); turbo && !turbo->is_null()) machine.turbo = turbo->truth();
+  if (const auto turbo = cpu.known("turbo")) machine.turbo = turbo->truth();
   return machine;
 }
 
@@ -193,10 +197,8 @@ Provenance read_document(const Place& document) {
       [](const std::string& name, const Place& value) { return std::pair(name, value.text()); });
   provenance.opencl_devices = document["opencl_devices"].list(text_of);
   if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
-  if (const auto program = document.find("program_fnv1a_64"); program && !program->is_null())
-    provenance.program_fnv1a_64 = program->hash();
-  if (const auto memory = document.find("device_memory"); memory && !memory->is_null())
-    provenance.device_memory = memory->text();
+  if (const auto program = document.known("program_fnv1a_64")) provenance.program_fnv1a_64 = program->hash();
+  if (const auto memory = document.known("device_memory")) provenance.device_memory = memory->text();
   provenance.scenes = document["scenes_fnv1a_64"].members([](const std::string& name, const Place& value) {
     return SceneHash{name, value.hash()};
   });

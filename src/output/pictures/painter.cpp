@@ -25,8 +25,7 @@ Vec3d normal_of(const Triangle& triangle, const std::vector<Vec3d>& points) {
   return size > 0 ? (1 / size) * normal : Vec3d{};
 }
 
-/// Sets of corners [3 triangle + corner] that share a point: corners at a node that are connected across
-/// edges that bend little.
+/// Sets of corners [3 triangle + corner] of one point: a node's, connected across edges that bend little.
 DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::vector<Vec3d>& start) {
   const double least_cosine = std::cos(40 * std::numbers::pi / 180);
   DisjointSets corners(3 * triangles.size());
@@ -75,7 +74,6 @@ Light inside_of(const Light& colour) {
   return kept * colour + (1 - kept) * Light{0.55F, 0.55F, 0.55F};
 }
 
-/// The colour of each part of a skin.
 std::vector<Rgb> part_colours(const NodeShape& shape, const Skin& skin, ColourBy colour) {
   const bool by_layer = shape.in_panels && colour != ColourBy::panel;
   const auto& categories = category_colours();
@@ -95,11 +93,6 @@ double usual_most(std::vector<double> strain) {
   const auto place = strain.begin() + static_cast<std::ptrdiff_t>(strain.size() * 49 / 50);
   std::ranges::nth_element(strain, place);
   return *place;
-}
-
-std::string picture_name(std::size_t number) {
-  constexpr std::size_t digits = 6;  // so that listings are in order
-  return fmt::format("frame-{:0{}}.png", number, digits);
 }
 
 }  // namespace
@@ -225,8 +218,9 @@ PictureFolder::PictureFolder(std::filesystem::path folder, TraceContent content,
 void PictureFolder::draw(const std::vector<Vec3d>& positions) {
   if (!painter_) painter_.emplace(content_, positions, options_);
   painter_->make_room_for(positions);
-  write_file_atomically(folder_ / picture_name(pictures_), png_of(painter_->picture_of(positions)));
-  ++pictures_;
+  // So many digits that listings are in order.
+  write_file_atomically(folder_ / fmt::format("frame-{:06}.png", pictures_++),
+                        png_of(painter_->picture_of(positions)));
 }
 
 }  // namespace mssim

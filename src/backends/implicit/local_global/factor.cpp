@@ -39,8 +39,7 @@ Matrix whole_matrix(const StepMatrix& matrix) {
   return whole;
 }
 
-/// The number of entries in the Cholesky factor of a matrix, given its upper triangle: row by row along the
-/// elimination tree (Liu 1990), without storing any.
+/// Entries of the Cholesky factor of an upper triangle, by rows along the elimination tree (Liu 1990).
 std::size_t count_entries(const Matrix& upper) {
   constexpr Index none = -1;
   const auto rows = static_cast<std::size_t>(upper.rows());
@@ -108,8 +107,7 @@ class Dissector {
   }
 
  private:
-  /// Appends the parts of a region: its components before their separator. Returns the last part of each
-  /// component without couplings to the rest of the region.
+  /// Appends a region's parts: components before separators. Returns the last of each separate one.
   std::vector<std::uint32_t> dissect(Rows region, Dissection& into) {
     if (region.empty()) return {};
     if (region.size() <= smallest_) return {append(region, into)};

@@ -1,5 +1,4 @@
-// The threads of a step, each running the methods of newton_method.h, and the equation's functions for a
-// chunk of nodes.
+// The threads of a step, which run newton_method.h, and the equation's functions for a chunk of nodes.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -119,15 +118,14 @@ HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, IndexRange chun
   return sum.total();
 }
 
-/// p = z + factor p.
+/// result = factor a + b, for fields of which `result` may be one.
 template <class Nodes>
-HWY_NOINLINE void turn_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, float factor) {
+HWY_NOINLINE void combine_chunk(const Nodes& nodes, IndexRange chunk, float* result, float factor,
+                                const float* a, const float* b) {
   const FloatTag d;
-  float* const p = equation.p.data();
-  const float* const z = equation.z.data();
   const auto f = hn::Set(d, factor);
-  for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
-    hn::Store(hn::MulAdd(f, hn::Load(d, p + i), hn::Load(d, z + i)), d, p + i);
+  for_each_float(nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    hn::Store(hn::MulAdd(f, hn::Load(d, a + i), hn::Load(d, b + i)), d, result + i);
   });
 }
 
@@ -199,18 +197,6 @@ HWY_NOINLINE double advance_chunk(VectorEquation<Nodes>& equation, IndexRange ch
   return sum.total();
 }
 
-/// w += factor s.
-template <class Nodes>
-HWY_NOINLINE void add_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, float factor) {
-  const FloatTag d;
-  float* const w = equation.w.data();
-  const float* const s = equation.s.data();
-  const auto f = hn::Set(d, factor);
-  for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
-    hn::Store(hn::MulAdd(f, hn::Load(d, s + i), hn::Load(d, w + i)), d, w + i);
-  });
-}
-
 /// a . M b over mass, for fields a and b that are zero at fixed nodes.
 template <class Nodes>
 HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, IndexRange chunk, const float* a,
@@ -279,8 +265,7 @@ class TeamEquation {
     return sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return start_chunk(shared_, chunk); });
   }
   double turn(double factor) {
-    for_own_chunks([&](IndexRange chunk)
-                       HWY_ATTR { turn_chunk(shared_, chunk, static_cast<float>(factor)); });
+    combine(shared_.p, factor, shared_.p, shared_.z);
     barrier_.wait();
     return sum_over_chunks([&](IndexRange chunk) HWY_ATTR {
       return shared_.keeps_slopes() ? multiply_chunk(shared_, chunk) : multiply_chunk_anew(shared_, chunk);
@@ -290,9 +275,7 @@ class TeamEquation {
     return sum_over_chunks(
         [&](IndexRange chunk) HWY_ATTR { return advance_chunk(shared_, chunk, static_cast<float>(factor)); });
   }
-  void add(double factor) {
-    for_own_chunks([&](IndexRange chunk) HWY_ATTR { add_chunk(shared_, chunk, static_cast<float>(factor)); });
-  }
+  void add(double factor) { combine(shared_.w, factor, shared_.s, shared_.w); }
   double along_solution() { return product(shared_.e.data(), shared_.s.data()); }
   double motion() { return product(shared_.w.data(), shared_.w.data()); }
   double change() {
@@ -308,6 +291,12 @@ class TeamEquation {
     for (std::size_t chunk = begin_; chunk < end_; ++chunk) act(shared_.nodes.chunks[chunk]);
   }
 
+  void combine(AlignedArray& result, double factor, const AlignedArray& a, const AlignedArray& b) {
+    for_own_chunks([&](IndexRange chunk) HWY_ATTR {
+      combine_chunk(shared_.nodes, chunk, result.data(), static_cast<float>(factor), a.data(), b.data());
+    });
+  }
+
   double product(const float* a, const float* b) {
     return sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return product_chunk(shared_, chunk, a, b); });
   }
@@ -315,8 +304,7 @@ class TeamEquation {
   /// The sum of act(chunk) over all chunks of all threads, when all have called it.
   template <class Act>
   double sum_over_chunks(Act&& act) {
-    // A thread still adding this sum may overlap with one that writes the next sum's parts, but not the one
-    // after.
+    // A thread still adding this sum may overlap with one that writes the next sum's parts, but no later one.
     std::vector<double>& sums = shared_.sums[sums_++ % 2];
     for (std::size_t chunk = begin_; chunk < end_; ++chunk) sums[chunk] = act(shared_.nodes.chunks[chunk]);
     barrier_.wait();
