@@ -1,17 +1,10 @@
 // What every backend must make of a tetrahedral body: laws of mechanics that need no reference.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <string_view>
-#include <tuple>
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -20,11 +13,7 @@ constexpr double body_dt_s = 5e-5;
 
 /// A block whose springs are at rest, and which is at rest itself.
 System relaxed_block(double height_m) {
-  System system = solid_block(3, 3, 3, height_m);
-  for (Spring& spring : system.springs) {
-    const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
-    spring.rest_length = static_cast<float>(std::sqrt(dot(d, d)));
-  }
+  System system = relaxed(solid_block(3, 3, 3, height_m));
   system.start.velocity.assign(system.nodes(), Vec3d{});
   return system;
 }

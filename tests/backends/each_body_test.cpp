@@ -1,20 +1,12 @@
 // A backend for each body of a scene, behind one.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
 
 constexpr double dt_s = 1e-5;
 
@@ -140,8 +132,7 @@ TEST(Threads, ThatARowSaysAndThatAreTooManyHereMakeItUnavailable) {
     make_backend(info, two_solid_blocks(), *find_integrator("rk4"), dt_s, {.threads = 1});
     ADD_FAILURE() << "it is made";
   } catch (const Unavailable& reason) {
-    EXPECT_THAT(reason.what(), testing::AllOf(testing::HasSubstr("100000 threads"),
-                                              testing::ContainsRegex("at most [0-9]+")));
+    EXPECT_THAT(reason.what(), AllOf(HasSubstr("100000 threads"), testing::ContainsRegex("at most [0-9]+")));
   }
 }
 

@@ -5,10 +5,6 @@
 //
 // A change that is not meant to change results leaves these hashes as they are. After one that is, put here
 // what the failing test prints, and say in the commit why the results differ.
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <string>
 
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/list_backends.h"
@@ -19,6 +15,7 @@
 #include "scene/scene_kinds.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,24 +1,16 @@
-#include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <set>
-#include <stdexcept>
 
 #include "charts/layout.h"
 #include "platform/files.h"
 #include "platform/process.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 Chart small_chart(ChartForm form) {
   Chart chart;

@@ -1,21 +1,10 @@
 #include "charts/layout.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <limits>
-#include <set>
-#include <stdexcept>
-#include <utility>
-
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();

@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
 # What a user of tetrahedral bodies meets at the command line: scenes, meshes of his own, TetGen missing, broken, of another
 # make, or interrupted.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 export XDG_CACHE_HOME=$work/cache TMPDIR=$work/temporary
 mkdir "$TMPDIR" "$work/no-programs"
@@ -12,13 +9,8 @@ mkdir "$TMPDIR" "$work/no-programs"
 # succeed_silently ARGUMENTS...: and says nothing on stderr but what it wrote
 succeed_silently() {
   ends 0 "$@"
-  ! grep -v '^mssim: wrote ' "$work/err" || fail "mssim $* says $(cat "$work/err")"
-}
-
-# result COLUMN: that column of the one row that `mssim run` printed (no field after it may hold a blank)
-result() {
-  awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) from_end = NF - i; next }
-    { print $(NF - from_end) }' "$work/out"
+  local line
+  while read -r line; do [[ $line == "mssim: wrote "* ]] || fail "mssim $* says $line"; done <"$work/err"  # in no-programs, too
 }
 
 # tetgen_that SCRIPT: a folder with a program named tetgen that is this shell script
@@ -50,10 +42,8 @@ grep -q 'torus-small, .* and bodies38233 .*install Debian.s package tetgen' "$wo
 grep -q '^cloth350k,cloth,350000,' "$work/out" || fail "cloths are not counted without TetGen"
 for arguments in 'run --scene torus-small --trace never.h5' 'bench --suite table2 --out never' \
   'bench --scene cloth2500,box-small --out never'; do
-  status=0
   # shellcheck disable=SC2086 # words of their own
-  (cd "$work" && PATH=$work/no-programs "$mssim" $arguments >out 2>err) || status=$?
-  [ "$status" -eq 3 ] || fail "$arguments without TetGen exits with $status"
+  PATH=$work/no-programs ends 3 $arguments
   [ ! -s "$work/out" ] || fail "$arguments without TetGen writes to stdout"
   grep -q 'install Debian.s package tetgen' "$work/err" || fail "$arguments without TetGen: $(cat "$work/err")"
 done
@@ -74,8 +64,8 @@ grep -q '^bodies38233,bodies,38233,253110,759330,' "$work/out" || fail "bodies38
 
 # A body falls: what is lost and what is left balance, and the trace holds its tetrahedra.
 succeed_silently run --scene torus-small --backend serial --duration 0.3 --losses --trace "$work/fall.h5"
-result energy_imbalance | awk '!($1 < 1e-4 && $1 > -1e-4) { bad = 1 } END { exit bad }' || fail "energy: $(cat "$work/out")"
-result friction_loss_j | awk '!($1 > 0) { bad = 1 } END { exit bad }' || fail "no friction: $(cat "$work/out")"
+value energy_imbalance | awk '!($1 < 1e-4 && $1 > -1e-4) { bad = 1 } END { exit bad }' || fail "energy: $(cat "$work/out")"
+value friction_loss_j | awk '!($1 > 0) { bad = 1 } END { exit bad }' || fail "no friction: $(cat "$work/out")"
 [ -s "$work/fall.xdmf" ] || fail "no .xdmf"
 if command -v h5dump >/dev/null; then
   h5dump -n "$work/fall.h5" >"$work/names"
@@ -85,7 +75,7 @@ if command -v h5dump >/dev/null; then
 fi
 
 # The structure of the bodies.
-"$mssim" bench --suite table2 --out "$work/table2" >"$work/out" 2>&1 || fail "table2 exits with $?"
+ends 0 bench --suite table2 --out "$work/table2"
 [ "$(awk -F, '$NF == "true"' "$work/table2/table2.csv" | wc -l)" -eq 9 ] || fail "table2.csv: $(cat "$work/table2/table2.csv")"
 
 # A surface of the user's own; other files in tests/mesh.
@@ -107,7 +97,7 @@ f 2 6 8 4
 END
 surface cube-obj.json cube.obj
 succeed_silently run --scene "$work/cube-obj.json" --duration 0.001 --backend serial
-result elastic_j >"$work/elastic"
+value elastic_j >"$work/elastic"
 awk '!($1 > 0) { exit 1 }' "$work/elastic" || fail "no elastic energy"
 
 # From another folder, with blanks and quotes in every name, and as the shape of another scene.

@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # Where OpenMP binds its threads, which a noise warning advises, other threads (PoCL's, those of threads-mutex) and the
-# processes that mssim starts still have all the process's CPUs, and the provenance names them all. $1: mssim, $2: the source folder
+# processes that mssim starts still have all the process's CPUs, and the provenance names them all.
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
 # The tests set it to be quick on few processors. Without it, as users have it, mssim starts anew to set how long threads spin.

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # Results in the formats that other tools read: Google Benchmark's compare.py and github-action-benchmark.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 bench=(bench --scene cloth2500 --backend serial,opencl --integrator semi-euler,rk4 --threads 1 --rounds 3)
 "$mssim" "${bench[@]}" --format github --out a >github.json 2>err || fail "a bench exits with $?: $(cat err)"

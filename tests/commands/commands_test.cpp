@@ -1,10 +1,5 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "commands/arguments/arguments.h"
 #include "commands/command.h"
@@ -15,13 +10,11 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/obj_text.h"
 #include "tests/support/open_count.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 using Frames = std::vector<std::size_t>;
 
@@ -161,31 +154,6 @@ class SceneReadingTest : public TemporaryFolderTest {
   }
 };
 
-TEST_F(SceneReadingTest, IsDoneOnceByABench) {
-  const std::string out = (folder() / "out").string();
-  EXPECT_EQ(openings({"bench", "--backend", "serial", "--integrator", "semi-euler", "--rounds", "1",
-                      "--threads", "1", "--trace", "--out", out, "--scene"}),
-            1);
-  EXPECT_EQ(openings({"bench", "--backend", "serial", "--integrator", "semi-euler", "--rounds", "1",
-                      "--threads", "1", "--verified", out, "--scene"}),
-            1);
-}
-
-TEST_F(SceneReadingTest, IsDoneOnceByADryRun) {
-  EXPECT_EQ(openings({"bench", "--dry-run", "--time-budget", "1000", "--scene"}), 1);
-}
-
-TEST_F(SceneReadingTest, IsDoneOnceByARun) {
-  EXPECT_EQ(openings({"run", "--backend", "serial", "--duration", "0.001", "--fps", "1000", "--trace",
-                      (folder() / "trace.h5").string(), "--scene"}),
-            1);
-}
-
-TEST_F(SceneReadingTest, IsDoneOnceByACheck) {
-  EXPECT_EQ(openings({"check"}), 1);
-  EXPECT_EQ(openings({"check"}, "jeans1k"), 1);
-}
-
 /// Commands, each of which builds the scene that stands behind it.
 std::vector<std::vector<std::string>> commands(const std::filesystem::path& folder) {
   return {{"bench", "--backend", "openmp", "--integrator", "semi-euler", "--rounds", "1", "--threads", "1",
@@ -193,6 +161,19 @@ std::vector<std::vector<std::string>> commands(const std::filesystem::path& fold
           {"bench", "--dry-run", "--scene"},
           {"run", "--backend", "openmp", "--fps", "1", "--trace", (folder / "trace.h5").string(), "--scene"},
           {"check"}};
+}
+
+TEST_F(SceneReadingTest, IsDoneOnce) {
+  for (const std::vector<std::string>& command : commands(folder()))
+    EXPECT_EQ(openings(command), 1) << command.front();
+  EXPECT_EQ(openings({"check"}, "jeans1k"), 1);
+  for (const char* option : {"--out", "--verified"})
+    EXPECT_EQ(openings({"bench", "--backend", "serial", "--integrator", "semi-euler", "--rounds", "1",
+                        "--threads", "1", option, (folder() / "out").string(), "--scene"}),
+              1);
+  EXPECT_EQ(openings({"bench", "--backend", "serial", "--integrator", "semi-euler", "--rounds", "1",
+                      "--threads", "1", "--trace", "--out", (folder() / "traced").string(), "--scene"}),
+            1);
 }
 
 /// Two bodies of one shape in files, which another scene has.

@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
 # mssim compare --ab: programs that take turns. Most are scripts here, which write times as mssim does, so that what comes
 # out is known.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 export TMPDIR=$work/tmp
 mkdir "$TMPDIR"

@@ -1,9 +1,6 @@
 #!/usr/bin/env bash
 # mssim compare on result folders, made up here: verdicts, exit codes, one clear sentence for each mistake.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
 # A folder in which nothing but the samples is made up.

@@ -1,11 +1,9 @@
 #!/usr/bin/env bash
 # What shells complete and the manual page explains is what --help and the listings have. bash is run, and fish and zsh are if they are
-# installed. $1: mssim, $2: the source folder
+# installed.
 set -euo pipefail
-mssim=$1
-source=$2/src/completion
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
+completions=$2/src/completion
 export XDG_CONFIG_HOME=$work/config
 mkdir -p "$work/config/mssim/backends" "$work/pages" "$work/here/few" "$work/here/fewer-folders" "$work/here/two words"
 echo '{"command": ["true"], "description": "my own"}' >"$work/config/mssim/backends/mine.json"
@@ -16,7 +14,7 @@ touch few.json fewer.json
 completed() {
   # shellcheck disable=SC2016 # the inner shell expands them
   bash -c '. "$0" && COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) && _mssim "$1" && printf "%s\n" "${COMPREPLY[@]}"' \
-    "$source/mssim.bash" "$mssim" "$@" | sort
+    "$completions/mssim.bash" "$mssim" "$@" | sort
 }
 # are WANTED WORDS...: these lines are completed
 are() {
@@ -76,14 +74,14 @@ mssim=$work/none are "" ""
 
 # fish and zsh. (zsh completes only at a terminal; its file is parsed.)
 if command -v fish >/dev/null; then
-  PATH="${mssim%/*}:$PATH" fish --no-config -c "source $source/mssim.fish; complete -C 'mssim bench --scene bodies3858,cloth2'" | sort >../found
+  PATH="${mssim%/*}:$PATH" fish --no-config -c "source $completions/mssim.fish; complete -C 'mssim bench --scene bodies3858,cloth2'" | sort >../found
   sort <<<"${cloths//cloth/bodies3858,cloth}" | cmp - ../found || fail "fish: $(cat ../found)"
   PATH="${mssim%/*}:$PATH" fish --no-config -c "source $source/mssim.fish; complete -C 'mssim report two\\\\ w'" >../found
   grep -q "^two words" ../found || fail "fish: $(cat ../found)"
 else
   echo "not tried: fish (not installed)"
 fi
-if command -v zsh >/dev/null; then zsh -n "$source/_mssim" || fail "zsh cannot parse _mssim"; else echo "not tried: zsh (not installed)"; fi
+if command -v zsh >/dev/null; then zsh -n "$completions/_mssim" || fail "zsh cannot parse _mssim"; else echo "not tried: zsh (not installed)"; fi
 
 # The manual page: each command in a part of its own, with each of its options; and it can be set.
 ends 0 help --manual

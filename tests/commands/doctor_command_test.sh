@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
 # What mssim doctor finds here, and where something is missing. $1: mssim, $2: the source folder, $3: the emulator, if there is one
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 # field ITEM COLUMN: of the CSV in $work/out, whose fields before it hold no comma
 field() { awk -F, -v item="$1" -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } $1 == item { print $c }' out; }
@@ -65,11 +62,9 @@ else
   mkdir -p alone/bin
   cp "$mssim" alone/bin/mssim
   mssim=$work/alone/bin/mssim
-  status=0
-  "$mssim" bench --scene cloth2500 --backend serial,openmp >out 2>err || status=$?
-  [ "$status" -eq 4 ] || fail "bench without its data exits with $status"
-  grep -q '^mssim: .*alone/share/mssim' err || fail "bench does not say where its data should be: $(cat err)"
-  ends "$status" doctor
+  ends 4 bench --scene cloth2500 --backend serial,openmp
+  warns '^mssim: .*alone/share/mssim'
+  ends 4 doctor
   is 'main job' missing
   says '^ok  *threads'
 fi

@@ -1,16 +1,11 @@
 #include "commands/doctor.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
 
-using testing::HasSubstr;
 using enum Checkup::State;
 
 /// A machine of eight CPUs, of which the process may use six, for six threads that are bound.

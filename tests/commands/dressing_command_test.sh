@@ -1,10 +1,6 @@
 #!/usr/bin/env bash
 # Jeans are dressed from the command line, fit within bounds, and what does not fit is found.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-source=$2
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
 # dress STATUS ARGUMENTS...: mssim run must exit with STATUS

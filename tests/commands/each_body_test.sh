@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
-# Rows as published: NAME:each steps one body after the other, and suites have more threads than processors. $1: mssim, $2: the source
-# folder
+# Rows as published: NAME:each steps one body after the other, and suites have more threads than processors.
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 bench=(bench --scene bodies3858 --backend "serial,serial:each,threads-mutex,threads-mutex:each" --integrator semi-euler --threads 2)
 ends 0 "${bench[@]}" --rounds 3 --out one

@@ -1,15 +1,11 @@
 #!/usr/bin/env bash
 # `mssim run` says what has been taken from the energy, in its row and in a trace, and that the sum stays constant.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-source=$2
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
-# run ARGUMENTS...: the row goes to $work/out, nothing else than what is written may be said on stderr
+# run ARGUMENTS...: nothing else than what is written may be said on stderr
 run() {
-  "$mssim" run --backend serial --duration 0.06 --fps 200 "$@" >"$work/out" 2>"$work/err" || fail "mssim run $* exits with $?"
+  ends 0 run --backend serial --duration 0.06 --fps 200 "$@"
   cat "$work/out"
   ! grep -v '^mssim: wrote ' "$work/err" || fail "stderr says $(cat "$work/err")"
 }

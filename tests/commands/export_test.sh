@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # mssim export: what other programs read of it (exports.py), and what is refused. Python's modules may be missing: see readers_test.sh.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 ends 0 run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5
 ends 0 run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5

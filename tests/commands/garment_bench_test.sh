@@ -1,21 +1,12 @@
 #!/usr/bin/env bash
 # Garments are timed, dressed and verified from the command line like any scene.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-source=$2
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 # bench STATUS ARGUMENTS...: mssim bench must exit with STATUS
 bench() { ends "$1" bench "${@:2}"; }
-# column FILE NAME BACKEND: of the rows of a backend, in one line; no field before it may hold a comma
-column() {
-  awk -F, -v name="$2" -v backend="$3" '
-    NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == name) c = i; if ($i == "backend") b = i } if (!c) exit 1; next }
-    $b == backend { printf "%s ", $c }' "$1"
-}
+# column FILE NAME BACKEND: of the rows of a backend, in one line
+column() { paste -d, <(column_of "$1" backend) <(column_of "$1" "$2") | sed -n "s/^$3,//p" | tr '\n' ' '; }
 # has FILE NAME BACKEND VALUE
 has() { [ "$(column "$1" "$2" "$3")" = "$4 " ] || fail "$1: $2 of $3 is \"$(column "$1" "$2" "$3")\", not \"$4 \""; }
 

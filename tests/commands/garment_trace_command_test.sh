@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # The dressing of a garment is traced from the command line, and looking on changes nothing.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 # dress ARGUMENTS...: jeans that fit, dressed on one thread
 dress() {

@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
 # mssim guide: a small run prints a recommendation and its table, and writes a folder; what is asked for wrongly is
 # named in one sentence.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
 # A small cloth of the committed family.

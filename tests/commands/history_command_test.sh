@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # mssim history: result folders, made up here, become lines of a file; the commit of a slowdown and rows that vanish are named.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 source_run=$2/results/table1/zen5
-cd "$work"
 
 # make FOLDER BACKEND=MS...: a result folder in which only the times are made up
 make() {

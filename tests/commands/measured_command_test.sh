@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
 # What mssim bench writes, and what it says of its own time and of the machine's limits. A neighbour would spoil it: nothing
 # runs beside it.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
 # column NAME: of the results

@@ -1,14 +1,7 @@
 #!/usr/bin/env bash
 # The backend mpi on bodies: the same bits as openmp's, with bodies whole or divided among any number of ranks.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/mpi_ranks.sh
 . "$2/tests/support/mpi_ranks.sh"
-need_mpi
-cd "$work"
-export TMPDIR=$work/tmp
-mkdir -p tmp
 let_ranks_share
 
 # box CELLS POINTS X Y DOWN: a body of so many cells in each direction and inner points, there, that falls with DOWN m/s
@@ -60,18 +53,7 @@ for integrator in semi-euler rk4; do
 done
 
 # More ranks than parts.
-"$mssim" bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 9 --threads 1 --rounds 1 --out nine >/dev/null 2>&1 &&
-  fail "a small body does for nine ranks"
+ends 3 bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 9 --threads 1 --rounds 1 --out nine
 fails_with 'unsupported: 1 body cannot be cut for 9 ranks: a part of a body has at least 16 nodes, so give at most --ranks 4"' nine
 
-# Different processors: the bits of exact roots, or a refusal.
-if [ "$(uname -m)" = x86_64 ]; then
-  make_mixed_launcher mixed
-  ends 0 bench --scene ./unequal.json --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
-  SET=AVX2 ends 0 bench --scene ./unequal.json --backend mpi --integrator rk4 --ranks 3 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
-  [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"
-  SET=SSE4 "$mssim" bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out sse >/dev/null 2>&1 &&
-    fail "SSE4 beside other sets does"
-  fails_with "unsupported: rank 0 on .* and rank 1 on $(uname -n) SSE4, which round differently" sse
-fi
-exit $((failures > 0))
+mixed_processors ./unequal.json 3 ./one.json

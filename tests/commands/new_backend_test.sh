@@ -1,13 +1,8 @@
 #!/usr/bin/env bash
 # mssim new-backend: what it writes and refuses. The C++ example is compiled as is said, and is verified with every integrator.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-# shellcheck source=tests/support/own_backends.sh
 . "$2/tests/support/own_backends.sh"
-cd "$work"
 
 # said FILE LINE...: the file holds these lines
 said() {

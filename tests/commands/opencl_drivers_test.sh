@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
-# OpenCL drivers that offer nothing, end the process that asks them or in which they compile, or cannot write their cache. $1: mssim, $2: the
-# source folder
+# OpenCL drivers that offer nothing, end the process that asks them or in which they compile, or cannot write their cache.
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 fakes=$(cd "${mssim%/*}/../fake_opencl" && pwd)
-cd "$work"
 mkdir tmp
 export TMPDIR=$work/tmp
 

@@ -2,9 +2,7 @@
 # The suite of peers, with those of them that need no Python: C++, compiled here. Arguments: mssim, the source folder, and
 # perhaps an emulator.
 set -euo pipefail
-mssim=$1
-source=$2
-. "$source/tests/support/command_line.sh"
+. "$2/tests/support/command_line.sh"
 peers=$source/scripts/lib/peers
 export XDG_CONFIG_HOME=$work/config  # no descriptions of the user's
 

@@ -1,13 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "commands/arguments/arguments.h"
 #include "commands/arguments/program_parser.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
 
 /// A program `draw`, whose command `shape` has an argument of each kind, and `pair` two positional ones.
 class Prompt : public testing::Test {

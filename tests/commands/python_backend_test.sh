@@ -1,14 +1,9 @@
 #!/usr/bin/env bash
 # Backends in Python: the example of mssim new-backend is verified with every integrator, and the module does what it says
 # (python_backend.py). The modules that they need may be missing: see readers_test.sh.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-# shellcheck source=tests/support/own_backends.sh
 . "$2/tests/support/own_backends.sh"
-cd "$work"
 # The examples ask the environment for python3.
 export PATH=$2/build/readers/bin:$PATH PYTHONDONTWRITEBYTECODE=1
 python3 -c 'import numpy, h5py' 2>err || { echo "skipped: $(tail -n 1 err)" && exit 77; }

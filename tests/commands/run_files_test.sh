@@ -1,12 +1,7 @@
 #!/usr/bin/env bash
 # What mssim run writes: one writer a file, no file over another, everything that was recorded kept.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-source=$2
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 fall=(run --scene cloth2500 --threads 1)
 

@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
 # mssim table: what a paper in LaTeX needs, of committed results: the values of timings.csv, origins, escaped names, bad input; and that
 # the document can be typeset, where TeX Live is installed (scripts/test --paper).
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 results=$2/results
 

@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
-# Threads that the system does not make, and more than make sense: one sentence, the other rows go on. $1: mssim, $2: the source folder
+# Threads that the system does not make, and more than make sense: one sentence, the other rows go on.
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 # row FOLDER BACKEND: the status of its rows
 row() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next } $c["backend"] == name { print $c["status"] }' "$1/timings.csv" | sort -u; }

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
-# --threads binds a processor that is an OpenCL device, too; what cannot keep to it is marked. $1: mssim, $2: the source
-# folder
+# --threads binds a processor that is an OpenCL device, too; what cannot keep to it is marked.
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 if [ "$("$mssim" list devices --format csv | awk -F, 'NR == 2 { print ($3 == "cpu" && $6 > 1) }')" != 1 ]; then
   echo "skipped: needs a processor with several compute units as the first OpenCL device"
@@ -24,7 +20,7 @@ ends 0 "${bench[@]}" --backend serial,opencl,hybrid --out one
 ! grep -q 'speed-ups' out err one/table1.md || fail "speed-ups are said to be missing: $(cat out err)"
 ends 0 run --scene cloth2500 --backend opencl --threads 1 --duration 0.01
 [ ! -s err ] || fail "run says $(cat err)"
-[ "$(awk 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "threads") c = NF - i } NR == 2 { print $(NF - c) }' out)" -eq 1 ] ||
+[ "$(value threads)" -eq 1 ] ||
   fail "run shows no threads: $(cat out)"
 
 # A driver that cannot divide its device.

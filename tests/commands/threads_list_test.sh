@@ -1,10 +1,7 @@
 #!/usr/bin/env bash
-# --threads 1,2: a row for each number, the table of them, the same bits, and a run that goes on. $1: mssim, $2: the source folder
+# --threads 1,2: a row for each number, the table of them, the same bits, and a run that goes on.
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 bench=(bench --scene cloth2500 --backend "serial,threads-mutex,openmp" --integrator semi-euler)
 ends 0 "${bench[@]}" --threads 1,2 --rounds 2 --out list

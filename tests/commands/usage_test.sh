@@ -1,21 +1,20 @@
 #!/usr/bin/env bash
 # What is typed wrong at the command line is named in one sentence, with the nearest word that is right and the page that helps.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
 # page ARGUMENTS...: mssim must print $work/page and end well
 page() {
-  "$mssim" "$@" >"$work/page" 2>"$work/err" || fail "mssim $* exits with $?"
-  [ ! -s "$work/err" ] || fail "mssim $*: $(cat "$work/err")"
+  ends 0 "$@"
+  [ ! -s err ] || fail "mssim $*: $(cat err)"
+  mv out page
 }
 
 # Commands.
-status=0
-"$mssim" >"$work/out" 2>"$work/alone" || status=$?
-[ "$status" -eq 2 ] && [ ! -s "$work/out" ] && grep -q '^Usage: mssim COMMAND' "$work/alone" || fail "mssim alone: $status $(cat "$work/alone")"
+ends 2
+warns '^Usage: mssim COMMAND'
+[ ! -s out ] || fail "mssim alone writes to stdout: $(cat out)"
+mv err alone
 page --help
 cp "$work/page" "$work/help"
 cmp "$work/help" "$work/alone" || fail "mssim alone shows another page than --help"
@@ -79,10 +78,9 @@ expect 2 '^mssim: --precision: unknown precision "half": known are single and do
 expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all
 expect 2 '^mssim: unknown integrator "euler" (did you mean .*semi-euler.*explicit-euler' bench --scene cloth2500 --integrator euler
 expect 2 'unknown backend "gpu" (did you mean opencl?)' bench --scene cloth2500 --backend gpu
-cd "$work"
 touch mine.py
 expect 2 'unknown backend "mine.py": .*\./mine.py$' bench --scene cloth2500 --backend mine.py
 expect 2 'no scene is named "cloth350" (did you mean cloth350k?): .*mssim list scenes' bench --scene cloth350
-"$mssim" bench --suite tables --dry-run >"$work/out" 2>"$work/err" || fail "--suite tables: $(cat "$work/err")"
+ends 0 bench --suite tables --dry-run
 [ "$(grep -c '^\(cloth\|bodies\)[0-9]' "$work/out")" -eq 12 ] || fail "--suite tables is not the tables: $(cat "$work/out")"
-"$mssim" list scenes --format JSON >"$work/out" 2>&1 || fail "capital letters: $(cat "$work/out")"
+ends 0 list scenes --format JSON

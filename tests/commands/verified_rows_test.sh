@@ -1,26 +1,23 @@
 #!/usr/bin/env bash
 # mssim bench --verified: a process that only samples what an earlier one has verified, and calls nothing verified that was
 # not.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
 cp "$2/scenes/cloth2500.json" "$work/mine.json"
 asked=(bench --scene "$work/mine.json" --backend openmp --integrator semi-euler --threads 1)
-"$mssim" "${asked[@]}" --rounds 1 --out "$work/verified" >/dev/null 2>&1
+ends 0 "${asked[@]}" --rounds 1 --out "$work/verified"
 only() { column_of "$work/$1/timings.csv" "$2"; }
 error=$(only verified position_error)
 
-"$mssim" "${asked[@]}" --rounds 3 --verified "$work/verified" --out "$work/sampled" >/dev/null 2>&1
+ends 0 "${asked[@]}" --rounds 3 --verified "$work/verified" --out "$work/sampled"
 [ "$(only sampled verified)" = true ] || fail "what was verified is not"
 [ "$(only sampled position_error)" = "$error" ] || fail "the position error is another"
 [ "$(only sampled rounds)" = 3 ] || fail "there are not three samples"
 [ "$(only sampled note)" = "verified by an earlier process" ] || fail "the row does not say who has verified it"
 [ -z "$(only sampled roofline_fraction)" ] || fail "peaks are measured"
 # A row that was sampled so is as good as the one it rests on.
-"$mssim" "${asked[@]}" --rounds 1 --verified "$work/sampled/timings.csv" >/dev/null 2>&1 || fail "samples cannot be gone on with"
+ends 0 "${asked[@]}" --rounds 1 --verified "$work/sampled/timings.csv"
 
 # What is not the same is refused, and nothing is written.
 refuse() { # PATTERN OPTIONS...
@@ -56,10 +53,8 @@ refuse 'it was written by another program' "$work/doctored"
 # A row that was not verified is not sampled and not verified.
 for wrong in 's/,true,ok,/,false,ok,/' 's/,true,ok,/,false,failed: too far,/'; do
   doctored timings.csv "$wrong"
-  status=0
   rm -rf "$work/wrong"
-  "$mssim" "${asked[@]}" --verified "$work/doctored" --out "$work/wrong" >/dev/null 2>&1 || status=$?
-  [ "$status" -eq 1 ] || fail "exit status $status instead of 1 for what was not verified"
+  ends 1 "${asked[@]}" --verified "$work/doctored" --out "$work/wrong"
   [ "$(only wrong verified)" = false ] || fail "what was not verified is"
   [ -z "$(only wrong ms_per_step)" ] || fail "what was not verified is timed"
 done

@@ -1,20 +1,13 @@
 #include "geometry/geometry.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <stdexcept>
-
 #include "geometry/depth_raster.h"
 #include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
 
 TEST(MonotoneCurve, GoesThroughItsValuesAndStaysBeyondTheEnds) {
   const MonotoneCurve curve({0, 1, 3}, {5, 7, 6});

@@ -1,25 +1,12 @@
 #include "geometry/surface.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <utility>
-
 #include "garment/body/mannequin.h"
 #include "mesh/meshing.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 
 std::string surface_complaint(const Surface& surface) {
   return input_error_of([&] { validate_surface(surface, "cube"); });

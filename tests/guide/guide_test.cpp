@@ -1,23 +1,11 @@
 #include "guide/guide.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "integrators/all_integrators.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::Not;
 
 /// A point that counts. `cost`: wall seconds a simulated second.
 WorkPoint made_point(std::string_view integrator, double dt_s, double cost, double error,
@@ -109,7 +97,7 @@ TEST(BesideThePaper, SaysWhatBecomesOfTheOrder) {
   EXPECT_THAT(
       beside_the_paper(guide_of({made_point("semi-euler", 1e-3, 1, 1e-2), made_point("rk4", 1e-3, 4, 1e-4)})),
       ElementsAre(EndsWith("4.00 s with rk4, and semi-euler did not reach it: rk4 is the cheapest.")));
-  EXPECT_THAT(beside_the_paper(guide_of({made_point("semi-euler", 1e-3, 1, 1e-2)})), testing::IsEmpty());
+  EXPECT_THAT(beside_the_paper(guide_of({made_point("semi-euler", 1e-3, 1, 1e-2)})), IsEmpty());
 }
 
 TEST(BesideThePaper, SaysHowExplicitEulerStands) {
@@ -157,7 +145,7 @@ TEST(ParetoFront, LeavesOutWhatDoesNotCount) {
       front_of({diverged(made_point("rk4", 1e-3, 0.1, 1e-9)),
                 beyond_trust(made_point("rk4", 1e-3, 0.2, 1e-9)), made_point("verlet", 1e-3, 1, 1e-3)}),
       ElementsAre(2));
-  EXPECT_THAT(front_of({}), testing::IsEmpty());
+  EXPECT_THAT(front_of({}), IsEmpty());
 }
 
 TEST(ParetoFront, KeepsEqualPoints) {

@@ -1,16 +1,11 @@
 #include "guide/work_precision.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string_view>
-
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "guide/guide.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -106,8 +101,8 @@ TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
     statuses.push_back(method.status);
   }
   for (const std::size_t without_any : {0U, 1U})
-    EXPECT_THAT(statuses[without_any], testing::Not(testing::HasSubstr("smaller")));
-  EXPECT_THAT(statuses[2], testing::HasSubstr("smaller"));
+    EXPECT_THAT(statuses[without_any], Not(HasSubstr("smaller")));
+  EXPECT_THAT(statuses[2], HasSubstr("smaller"));
   EXPECT_NE(statuses[0], statuses[1]);
 }
 
@@ -218,19 +213,19 @@ TEST(TrustedState, EndsItsHorizonBeforeTheFloor) {
   const TrustedState trusted = trusted_state(system, {.longest_s = 0.05, .first_dt_s = 1e-4, .seconds = 100});
   EXPECT_GT(trusted.horizon_s, 0.010);
   EXPECT_LT(trusted.horizon_s, 0.0143);
-  EXPECT_THAT(trusted.why_there, testing::HasSubstr("floor"));
+  EXPECT_THAT(trusted.why_there, HasSubstr("floor"));
 }
 
 TEST(TrustedState, SaysThatThereIsNoHorizon) {
   const System system = build_system(sheet_spec(4, 4, 1e-6));
   EXPECT_THAT(trusted_state(system, {.longest_s = 1, .first_dt_s = 1e-4, .seconds = 100}).failure,
-              testing::HasSubstr("no horizon"));
+              HasSubstr("no horizon"));
 }
 
 TEST(TrustedState, IsNotBegunWithoutTimeForAStep) {
   const TrustedState trusted =
       trusted_state(cloth_system(9, 9), {.longest_s = 0.02, .first_dt_s = 1e-4, .seconds = 1e-9});
-  EXPECT_THAT(trusted.failure, testing::HasSubstr("no time"));
+  EXPECT_THAT(trusted.failure, HasSubstr("no time"));
   EXPECT_GT(trusted.short_of_s, 1e-9);
 }
 
@@ -242,7 +237,7 @@ TEST(TrustedState, EndsItsHorizonWhereNeighboursPart) {
   ASSERT_EQ(trusted.failure, "");
   EXPECT_LT(trusted.horizon_s, 0.01);
   EXPECT_LE(trusted.parting, allowed_parting);
-  EXPECT_THAT(trusted.why_there, testing::HasSubstr("neighbouring trajectories part"));
+  EXPECT_THAT(trusted.why_there, HasSubstr("neighbouring trajectories part"));
 }
 
 /// Points of both Newton methods with a few steps over 20 ms, and where they ended.

@@ -1,19 +1,11 @@
 // What the integrators do, measured on the double-precision reference.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
 #include "model/system.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,13 +1,7 @@
 #include "integrators/stability.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 #include "integrators/all_integrators.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

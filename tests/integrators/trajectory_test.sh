@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # A cloth moves as SciPy's solver says of forces that are written anew (trajectory.py): every integrator comes to that trajectory
 # with its order, with damping and without. SciPy may be missing: see readers_test.sh.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 # Nodes move by some millimetres, and springs are compressed as well as stretched.
 cat >damped.json <<'END'
@@ -33,5 +29,4 @@ trajectories rk4 4e-5 2e-5
 trajectories midpoint 2e-5 1e-5
 trajectories verlet 8e-6 4e-6
 for integrator in semi-euler implicit-euler newton-euler; do trajectories $integrator 1e-6 5e-7; done
-[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
 run_python "$2" integrators/trajectory.py rk4:4:4 midpoint:2:2 verlet:1:2 semi-euler:1:1 implicit-euler:1:1 newton-euler:1:1

@@ -1,8 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <array>
 
 #include "laws/host_laws.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,24 +1,16 @@
 #include "mesh/surface_file.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "geometry/geometry.h"
 #include "mesh/meshing.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/obj_text.h"
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 using Triangle = std::array<std::uint32_t, 3>;
 

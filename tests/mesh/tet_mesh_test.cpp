@@ -1,9 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <numbers>
 
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
@@ -11,6 +6,7 @@
 #include "scene/scene_file.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -22,11 +18,6 @@ std::int64_t euler_characteristic(const TetMesh& mesh) {
   return static_cast<std::int64_t>(mesh.nodes.size() + faces.size()) -
          static_cast<std::int64_t>(edges_of(mesh).size() + mesh.tetrahedra.size());
 }
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 /// Two tetrahedra that share a face.
 const std::string good_nodes = "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n";
@@ -278,11 +269,10 @@ TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
   const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {
     return input_error_of([&] { shape_mesh(shape, interior); });
   };
-  EXPECT_THAT(
-      complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),
-      testing::StartsWith("its mesh would have 6000007 points or more, for which TetGen needs more than"));
-  EXPECT_THAT(complaint(SphereShape{1, 1000}, {}), testing::HasSubstr("10000002 points or more"));
-  EXPECT_THAT(complaint(TorusShape{2, 1, 2000, 2001}, {}), testing::HasSubstr("4002000 points or more"));
+  EXPECT_THAT(complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),
+              StartsWith("its mesh would have 6000007 points or more, for which TetGen needs more than"));
+  EXPECT_THAT(complaint(SphereShape{1, 1000}, {}), HasSubstr("10000002 points or more"));
+  EXPECT_THAT(complaint(TorusShape{2, 1, 2000, 2001}, {}), HasSubstr("4002000 points or more"));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "mesh/tetgen.h"
 
-#include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,14 +8,13 @@
 
 #include "platform/process.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 
 namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
 using testing::MatchesRegex;
 
 TEST(ChildProcess, ReturnsHowItEndedAndWhatItWrote) {
@@ -30,7 +28,7 @@ TEST(ChildProcess, ReturnsHowItEndedAndWhatItWrote) {
   EXPECT_EQ(shell("kill -SEGV $$").signal, SIGSEGV);
   ended = shell("i=0; while [ $i -lt 20000 ]; do echo 0123456789; i=$((i+1)); done; echo end");
   EXPECT_EQ(ended.output.size(), 64U * 1024);
-  EXPECT_THAT(ended.output, testing::EndsWith("\nend\n"));
+  EXPECT_THAT(ended.output, EndsWith("\nend\n"));
   EXPECT_EQ(shell("while :; do :; done", 1).signal, SIGXCPU);
 }
 

@@ -1,17 +1,11 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <numbers>
-#include <set>
-#include <string>
-#include <utility>
 
 #include "geometry/surface.h"
 #include "model/node_shape.h"
 #include "model/system.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {

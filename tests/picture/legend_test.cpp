@@ -1,13 +1,7 @@
 #include "picture/legend.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 #include "tests/support/picture_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,17 +1,11 @@
 #include "picture/picture.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <webp/demux.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <stdexcept>
 
 #include "picture/lettering.h"
 #include "picture/movie.h"
 #include "tests/support/picture_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -232,9 +226,9 @@ TEST(Movie, HoldsEveryFrameAndRepeatsForEver) {
 }
 
 TEST(Movie, RunsAtItsSpeed) {
-  EXPECT_THAT(ends_at(30), testing::ElementsAre(33, 67, 100, 133)) << "no rounding adds up";
-  EXPECT_THAT(ends_at(1000), testing::ElementsAre(1, 2, 3, 4));
-  EXPECT_THAT(ends_at(0.1), testing::ElementsAre(10'000, 20'000, 30'000, 40'000));
+  EXPECT_THAT(ends_at(30), ElementsAre(33, 67, 100, 133)) << "no rounding adds up";
+  EXPECT_THAT(ends_at(1000), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(ends_at(0.1), ElementsAre(10'000, 20'000, 30'000, 40'000));
   for (const double wrong : {0.0, -1.0, 0.09, 1001.0, std::nan("")})
     EXPECT_THROW(Movie{wrong}, std::invalid_argument) << wrong;
 }

@@ -1,7 +1,5 @@
 #include "platform/files.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,13 +8,11 @@
 
 #include "tests/support/files_fixture.h"
 #include "tests/support/output_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 using testing::ThrowsMessage;
 
 class AtomicFileTest : public TemporaryFolderTest {};

@@ -1,12 +1,7 @@
 #include "platform/machine.h"
 
-#include <gtest/gtest.h>
-
-#include <optional>
-#include <tuple>
-#include <vector>
-
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

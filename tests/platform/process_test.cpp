@@ -1,11 +1,7 @@
 #include "platform/process.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -46,7 +42,7 @@ TEST_F(ChildProcesses, ThatHaveNoFolderAreNotTakenForMissingPrograms) {
   ChildProcess homeless = shell("");
   homeless.folder = folder() / "gone";
   EXPECT_THAT([&] { run(homeless); },
-              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("entering its folder")));
+              testing::ThrowsMessage<std::runtime_error>(HasSubstr("entering its folder")));
 }
 
 TEST_F(ChildProcesses, MayWriteMoreThanAPipeHolds) {
@@ -58,7 +54,7 @@ TEST_F(ChildProcesses, MayWriteMoreThanAPipeHolds) {
   for (const ChildResult& result : results) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.output.size(), 64U * 1024);
-    EXPECT_THAT(result.output, testing::EndsWith("789\nend\n"));
+    EXPECT_THAT(result.output, EndsWith("789\nend\n"));
   }
 }
 

@@ -1,34 +1,26 @@
 #include "platform/supervised_process.h"
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <sstream>
-#include <stdexcept>
 #include <system_error>
 #include <thread>
 
 #include "platform/machine.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::EndsWith;
-using testing::HasSubstr;
 
 /// Whether it becomes true soon; a machine may be busy.
 bool soon(const std::function<bool()>& becomes_true) {

@@ -1,10 +1,5 @@
-#include <gtest/gtest.h>
 
-#include <functional>
-#include <random>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
@@ -14,6 +9,7 @@
 #include "ranks/shares.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/mail.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

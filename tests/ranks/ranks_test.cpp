@@ -1,18 +1,11 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <numeric>
-#include <sstream>
-#include <string>
 
 #include "ranks/requests.h"
 #include "ranks/shares.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using ::testing::ElementsAre;
 
 using Shares = std::vector<std::vector<BodyShare>>;
 
@@ -112,7 +105,7 @@ TEST(RanksByWeight, GivesTheHeaviestFirstToTheRankWithTheLeast) {
 TEST(RanksByWeight, LeavesNoRankWithoutOneWhereThereAreEnough) {
   for (int ranks = 1; ranks <= 6; ++ranks) {
     const std::vector<int> rank_of = ranks_by_weight({100, 1, 1, 1, 1, 1}, ranks);
-    for (int rank = 0; rank < ranks; ++rank) EXPECT_THAT(rank_of, testing::Contains(rank));
+    for (int rank = 0; rank < ranks; ++rank) EXPECT_THAT(rank_of, Contains(rank));
   }
 }
 

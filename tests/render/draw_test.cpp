@@ -1,8 +1,6 @@
 #include "render/draw.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

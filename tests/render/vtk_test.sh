@@ -3,10 +3,7 @@
 # Python's modules may be missing: see readers_test.sh.
 # $1: mssim, $2: the source folder, $3: what runs programs of another machine, or nothing
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 ends 0 run --scene cloth2500 --threads 1 --duration 0.5 --fps 2 --trace cloth.h5
 ends 0 run --scene box-small --threads 1 --duration 0.4 --fps 3 --trace bodies.h5

@@ -1,25 +1,14 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <set>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "charts/layout.h"
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 /// Cloths of Table 1 with `serial`, `openmp` and `opencl`.
 std::vector<ResultRow> two_cloths() {
@@ -104,8 +93,8 @@ TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
   const Chart chart = chart_of(3);
   EXPECT_TRUE(has_one_place(chart));
   EXPECT_THAT(to_text(values_of(chart), ListingFormat::csv),
-              testing::AllOf(HasSubstr("\n2500,\"GPU, Nexus 7, published\",10.65"),
-                             HasSubstr("2500,\"opencl, measured\",5.0,5.00 to 5.00")));
+              AllOf(HasSubstr("\n2500,\"GPU, Nexus 7, published\",10.65"),
+                    HasSubstr("2500,\"opencl, measured\",5.0,5.00 to 5.00")));
   Chart changed = chart;
   changed.series.push_back({.name = "order 4", .origin = Origin::reference, .x = {2500}, .y = {1}});
   EXPECT_EQ(values_of(changed).rows.size(), values_of(chart).rows.size()) << "a reference is no value";

@@ -1,16 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <set>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "scene/fields/fields.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -92,12 +86,12 @@ TEST(Claims, OfAFileThatIsNoneNameThePlace) {
     return std::string("nothing is refused");
   };
   EXPECT_THAT(refused(R"({"claims": [{"name": "a", "paper": "Newton", "place": "1", "says": "b"}]})"),
-              testing::HasSubstr("/claims/0/paper"));
+              HasSubstr("/claims/0/paper"));
   EXPECT_THAT(refused(R"({"claims": [{"name": "a", "paper": "Vassilev", "place": "1", "say": "b"}]})"),
-              testing::HasSubstr("/claims/0/say"));
+              HasSubstr("/claims/0/say"));
   EXPECT_THAT(refused(R"({"claims": [{"name": "a", "paper": "Vassilev", "place": "1", "says": "b",
                           "test": {"scenes": "table2", "fast": "a", "slow": "b", "at_least": 1}}]})"),
-              testing::AllOf(testing::HasSubstr("/claims/0/test/scenes"), testing::HasSubstr("figure6")));
+              AllOf(HasSubstr("/claims/0/test/scenes"), HasSubstr("figure6")));
 }
 
 TEST(Claims, HoldWhereEveryIntervalLiesAboveWhatTheyNeed) {
@@ -130,7 +124,7 @@ TEST(Claims, AboutAGpuAreNotDecidedOnTheProcessor) {
   opencl.device = "pthread-" + made_up_provenance().machine.cpu_model;
   const JudgedClaim claim = judged("gpu-10-to-34", {serial, opencl});
   EXPECT_EQ(claim.outcome, ClaimOutcome::not_testable);
-  EXPECT_THAT(claim.measured, testing::HasSubstr("a GPU"));
+  EXPECT_THAT(claim.measured, HasSubstr("a GPU"));
 }
 
 TEST(Claims, AboutThreadsAreNotDecidedByOne) {
@@ -139,7 +133,7 @@ TEST(Claims, AboutThreadsAreNotDecidedByOne) {
   one.threads = 1;
   const JudgedClaim claim = judged("threads-before-cpu", {serial, one});
   EXPECT_EQ(claim.outcome, ClaimOutcome::not_testable);
-  EXPECT_THAT(claim.measured, testing::HasSubstr("several threads"));
+  EXPECT_THAT(claim.measured, HasSubstr("several threads"));
 }
 
 TEST(Claims, AboutThreadsAreDecidedByAsManyAsProcessors) {
@@ -184,8 +178,8 @@ TEST(Claims, OfAnAverageTakeTheGeometricMean) {
   };
   EXPECT_EQ(with(1.5, 3).outcome, ClaimOutcome::held) << "2.12";
   EXPECT_EQ(with(1.2, 3).outcome, ClaimOutcome::not_held) << "1.90";
-  EXPECT_THAT(with(1.5, 3).measured, testing::HasSubstr("geometric mean 2.12"));
-  EXPECT_THAT(with(1.5, 3).published, testing::HasSubstr("geometric mean 1.5"));
+  EXPECT_THAT(with(1.5, 3).measured, HasSubstr("geometric mean 2.12"));
+  EXPECT_THAT(with(1.5, 3).published, HasSubstr("geometric mean 1.5"));
 }
 
 TEST(Claims, AboutAGainCompareSpeedUps) {
@@ -205,7 +199,7 @@ TEST(Claims, AboutAGainCompareSpeedUps) {
   EXPECT_EQ(in_rounds({8, 10, 12}, {11, 12, 13}).outcome, ClaimOutcome::undecided) << "11 over 12 at least";
   // 23.954 / 1.688 over 19.475 / 1.827 at 2,500 nodes is the largest of the six, 399.049 / 22.393 over
   // 331.933 / 20.264 the least.
-  EXPECT_THAT(with(10, 15).published, testing::HasSubstr("1.09× to 1.33× (6 ratios)"));
+  EXPECT_THAT(with(10, 15).published, HasSubstr("1.09× to 1.33× (6 ratios)"));
 }
 
 TEST(Claims, OfGarmentsAreDecidedByThePublishedAlgorithmOnEachGarment) {
@@ -243,7 +237,7 @@ TEST(Claims, AreNoneWithoutAPublishedSceneAndSayWhichRowsAreMissing) {
   EXPECT_TRUE(judge(folder, of_papers()).empty());
   const JudgedClaim missing = judged("threads-before-cpu", {small("serial", 1)});
   EXPECT_EQ(missing.outcome, ClaimOutcome::not_testable);
-  EXPECT_THAT(missing.measured, testing::HasSubstr("`threads-mutex`"));
+  EXPECT_THAT(missing.measured, HasSubstr("`threads-mutex`"));
   std::vector<ResultRow> rows{small("serial", 1), small("threads-mutex", 0.1)};
   rows[1].verified = false;
   EXPECT_EQ(outcome_of("threads-before-cpu", rows), ClaimOutcome::not_testable);

@@ -1,8 +1,5 @@
 #include "report/report.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
@@ -10,14 +7,10 @@
 #include "report/report_internal.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 
 class ReportFolderTest : public TemporaryFolderTest {
  protected:
@@ -47,7 +40,7 @@ TEST_F(ReportFolderTest, SaysWhatAnEmptyFolderLacks) {
   ASSERT_EQ(found.problems.size(), 2U);
   EXPECT_THAT(found.problems[0], HasSubstr("timings.csv"));
   EXPECT_THAT(found.problems[1], HasSubstr("provenance.json"));
-  EXPECT_THAT(read_report_folder(folder() / "none").problems, testing::SizeIs(2));
+  EXPECT_THAT(read_report_folder(folder() / "none").problems, SizeIs(2));
 }
 
 TEST_F(ReportFolderTest, ShowsTheLinesThatCanBeRead) {
@@ -69,7 +62,7 @@ TEST_F(ReportFolderTest, ShowsTheLinesThatCanBeRead) {
   put("timings.csv", "garbage\n\x01\xff,\"\n");
   found = read();
   EXPECT_THAT(found.rows, IsEmpty());
-  EXPECT_THAT(found.problems, testing::Contains(HasSubstr("has no row that can be shown")));
+  EXPECT_THAT(found.problems, Contains(HasSubstr("has no row that can be shown")));
 }
 
 TEST_F(ReportFolderTest, GoesWithoutDamagedSamples) {
@@ -188,7 +181,7 @@ TEST_F(GuideFolderTest, ReadsWhatAGuideWrote) {
   EXPECT_THAT(found.problems, IsEmpty());
   EXPECT_THAT(found.rows, IsEmpty());
   ASSERT_TRUE(found.guide);
-  EXPECT_THAT(found.guide->scenes(), testing::ElementsAre("cloth"));
+  EXPECT_THAT(found.guide->scenes(), ElementsAre("cloth"));
   ASSERT_EQ(found.guide->points.size(), 4U);
   const GuidePoint &first = found.guide->points[0], &second = found.guide->points[1];
   EXPECT_TRUE(first.diverged);
@@ -226,15 +219,14 @@ TEST_F(GuideFolderTest, SaysWhatIsMissingOrDamaged) {
   ASSERT_TRUE(found.guide);
   EXPECT_EQ(found.guide->points.size(), 3U);
   EXPECT_THAT(found.guide->page, IsEmpty());
-  EXPECT_THAT(found.problems,
-              testing::ElementsAre(HasSubstr("1 row left out, 3 shown"), HasSubstr("guide-sizes.csv"),
-                                   HasSubstr("guide-sizes.csv has no row that can be shown"),
-                                   HasSubstr("what the guide recommends is not shown")));
+  EXPECT_THAT(found.problems, ElementsAre(HasSubstr("1 row left out, 3 shown"), HasSubstr("guide-sizes.csv"),
+                                          HasSubstr("guide-sizes.csv has no row that can be shown"),
+                                          HasSubstr("what the guide recommends is not shown")));
   put("guide.csv", "garbage\n\x01\xff,\"\n");
   EXPECT_THAT(read().guide->points, IsEmpty());
   std::filesystem::remove(folder() / "guide.csv");
   EXPECT_FALSE(read().guide);
-  EXPECT_THAT(read().problems, testing::Contains(HasSubstr("timings.csv")));
+  EXPECT_THAT(read().problems, Contains(HasSubstr("timings.csv")));
 }
 
 TEST_F(GuideFolderTest, IsOneOfTheFoldersThatAFolderStandsFor) {

@@ -1,13 +1,4 @@
 // Scenes of tetrahedral bodies: the committed ones are the paper's, and files of others are read or refused.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "application/bench/suites.h"
 #include "mesh/meshing.h"
@@ -19,13 +10,10 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 std::vector<SceneSpec> body_scenes() {
   std::vector<SceneSpec> scenes;
@@ -198,6 +186,13 @@ class BodiesFile : public TemporaryFolderTest {
     return "";
   }
 
+  /// The good scene with a body of another shape.
+  std::string with_shape(const std::string& kind, const std::string& object) const {
+    return with_change(with_change(good_, "\"tetgen\",", '"' + kind + "\","),
+                       R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
+                       '"' + kind + "\": " + object);
+  }
+
   const std::string good_ = R"({
   "kind": "bodies", "description": "one tetrahedron", "dt_s": 1e-4, "gravity_m_per_s2": 9.81,
   "viscous_damping_per_s": 0, "floor": {"height_m": 0, "restitution": 0.5, "friction": 0.4},
@@ -251,22 +246,16 @@ TEST_F(BodiesFile, MayStateItsSizeWhichIsComparedNotBelieved) {
 }
 
 TEST_F(BodiesFile, TakesTheShapeOfAnotherScene) {
-  const std::string other =
-      with_change(with_change(good_, "\"tetgen\",", "\"scene\","),
-                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
-                  R"("scene": {"name": "box-small"})");
-  EXPECT_EQ(counts_of(load_scene(scene(other))).nodes, counts_of(find_scene("box-small")).nodes);
+  const auto other = scene(with_shape("scene", R"({"name": "box-small"})"));
+  EXPECT_EQ(counts_of(load_scene(other)).nodes, counts_of(find_scene("box-small")).nodes);
 }
 
 TEST_F(BodiesFile, FillsASurfaceWithTetrahedra) {
   put("cube.obj",
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
       "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const std::string text =
-      with_change(with_change(good_, "\"tetgen\",", "\"surface\","),
-                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
-                  R"("surface": {"file": "cube.obj", "unit_m": 0.1, "largest_tetrahedron_m3": 2e-6})");
-  const System system = build_system(load_scene(scene(text)));
+  const System system = build_system(load_scene(scene(
+      with_shape("surface", R"({"file": "cube.obj", "unit_m": 0.1, "largest_tetrahedron_m3": 2e-6})"))));
   const auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
   EXPECT_GE(tetrahedra.size(), 500U);
   EXPECT_NEAR(volume_of({system.start.position, tetrahedra}), 1e-3, 1e-7);
@@ -330,9 +319,7 @@ TEST_F(BodiesFile, WithoutAListIsRefused) {
 
 TEST_F(BodiesFile, CannotTakeTheShapeOfAnythingElse) {
   const auto with_name = [&](const std::string& name) {
-    return scene(with_change(with_change(good_, "\"tetgen\",", "\"scene\","),
-                             R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
-                             R"("scene": {"name": ")" + name + "\"}"));
+    return scene(with_shape("scene", R"({"name": ")" + name + "\"}"));
   };
   EXPECT_THAT(error_of(with_name("cloth2500")), HasSubstr("cloth2500\" has no bodies"));
   EXPECT_THAT(error_of(with_name("bodies4737")), HasSubstr("takes its shape from another scene"));

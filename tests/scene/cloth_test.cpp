@@ -1,18 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
-#include <set>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 #include "output/tables/table.h"
 #include "scene/builders.h"
@@ -23,6 +13,7 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -190,11 +181,11 @@ TEST(BuildCloth, PinsEverySoManyColumnsAndTheLastOfOneRow) {
   SceneSpec spec = cloth_spec(3, 12);
   std::get<ClothSpec>(spec.content).pins = ClothPins{1, 5};
   const System system = build_cloth(spec);
-  EXPECT_THAT(system.pins, testing::ElementsAre(12, 17, 22, 23));
+  EXPECT_THAT(system.pins, ElementsAre(12, 17, 22, 23));
   for (const std::uint32_t pin : system.pins)
     EXPECT_EQ(system.start.position[pin], (Vec3d{(pin - 12) * 0.01, 1, 0.01}));
   std::get<ClothSpec>(spec.content).pins.reset();
-  EXPECT_THAT(build_cloth(spec).pins, testing::IsEmpty());
+  EXPECT_THAT(build_cloth(spec).pins, IsEmpty());
 }
 
 std::string refusal(const SceneSpec& spec) {

@@ -1,14 +1,11 @@
 // What users' C++ backends are written with takes the same steps as the reference, and the same floor.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <memory>
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "laws/host_laws.h"
 #include "src/starters/cpp/mssim_backend.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 #include "tests/support/textbook_force.h"
 
 namespace mssim {

@@ -1,21 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <iostream>
-#include <limits>
-#include <random>
-#include <stdexcept>
 
 #include "output/folders/result_folder.h"
 #include "statistics/statistics.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 /// `count` times around `ms`, which differ by up to 1 %.
 std::vector<double> level(double ms, std::size_t count) {

@@ -1,13 +1,8 @@
 #include "statistics/rank_tests.h"
 
-#include <gtest/gtest.h>
-
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <stdexcept>
+
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

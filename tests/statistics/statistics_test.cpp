@@ -1,13 +1,6 @@
 #include "statistics/statistics.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <random>
-#include <stdexcept>
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

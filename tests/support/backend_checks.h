@@ -1,17 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <string_view>
-#include <tuple>
 #include <type_traits>
-#include <vector>
 
 #include "backends/interface/backend.h"
 #include "bench/verification/verification.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

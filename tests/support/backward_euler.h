@@ -1,11 +1,7 @@
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "model/system.h"
+#include "tests/support/testing.h"
 #include "tests/support/textbook_force.h"
 
 namespace mssim {

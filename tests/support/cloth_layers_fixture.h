@@ -1,19 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "garment/garment.h"
 #include "garment/layers/cloth_cloth.h"
 #include "garment/layers/cloth_contacts.h"
 #include "geometry/vec3.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

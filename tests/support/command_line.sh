@@ -1,6 +1,7 @@
-# Functions of the tests at the command line. Needs $mssim; sets $work, a folder that goes away. A test that has called fail() goes on,
-# and in the end exits with 1.
-work=$(mktemp -d)
+# Functions of the tests at the command line, whose first argument is $mssim and second the $source folder. They run in $work, a folder
+# that goes away. A test that has called fail() goes on, and in the end exits with 1.
+mssim=$1 source=$2 work=$(mktemp -d)
+cd "$work"
 # finish STATUS: what every test ends with
 finish() {
   rm -rf "$work"
@@ -41,8 +42,8 @@ ends() {
 says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\": $(cat "$work/out")"; }
 warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\": $(cat "$work/err")"; }
 
-# value COLUMN: of the one row that mssim has printed, in which no field before it holds a blank
-value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR == 2 { print $c }' "$work/out"; }
+# value COLUMN: of the one row that mssim has printed, in which no field behind it holds a blank
+value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = NF - i } NR == 2 { print $(NF - c) }' "$work/out"; }
 
 # begins ARGUMENTS...: mssim runs beside the test, as $process. Shells start such programs with SIGINT ignored; env puts it back.
 begins() {

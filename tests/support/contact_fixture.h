@@ -1,12 +1,7 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <random>
-#include <utility>
-
 #include "geometry/surface.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "application/prepared_scene.h"
 #include "backends/backends.h"
 #include "garment/fitting/fitting.h"
@@ -13,6 +8,8 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/garment_system.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 
@@ -45,8 +42,7 @@ inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {},
   const auto backend = make_dressing_backend(*find_backend(backend_name), of.system,
                                              *find_integrator("semi-euler"), of.dt_s(), {2, {}});
   Dressed dressed;
-  dressed.result =
-      dress(*backend, of.system, of.dt_s(), rule, [](const State&, std::int64_t) { return true; });
+  dressed.result = dress(*backend, of.system, of.dt_s(), rule, always);
   dressed.fit = fit_of(of.system, dressed.result.state.position, fit_body(of.body));
   dressed.found = misfits(dressed.result, dressed.fit, {});
   return dressed;

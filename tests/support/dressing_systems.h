@@ -1,19 +1,22 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 #include "garment/contact/body_maps.h"
+#include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "mesh/meshing.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
+
+/// A body for fits, of which nothing is anywhere but an axis through `middle`, or through every point.
+inline FitBody nobody(std::optional<Vec3d> middle = {}) {
+  return {[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
+          [middle](const Vec3d& point) {
+            return middle ? Vec3d{middle->x, point.y, middle->z} : point;
+          }};
+}
 
 /// Two squares of 10 x 10 nodes in one plane, 30 mm apart, sewn along the edges that face each other.
 inline System two_squares() {

@@ -1,14 +1,7 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <set>
-#include <tuple>
-#include <vector>
-
 #include "backends/layouts/spring_graph.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "garment/contact/body_maps.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 
@@ -64,6 +60,9 @@ inline void sew(System& system, const std::vector<std::uint32_t>& first,
     garment.joints.push_back({first[i], second[i], second[i], 0, length / static_cast<double>(first.size()),
                               1, static_cast<std::uint32_t>(garment.seams.size() - 1)});
 }
+
+/// For `dress`: on, whatever the state is.
+inline bool always(const State& /*state*/, std::int64_t /*iterations*/) { return true; }
 
 /// The integrator that tests dress garments with.
 inline constexpr const Integrator& semi_euler = *find_integrator("semi-euler");

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <condition_variable>
-#include <cstddef>
 #include <deque>
 #include <mutex>
-#include <vector>
+
+#include "tests/support/testing.h"
 
 namespace mssim {
 

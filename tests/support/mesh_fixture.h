@@ -1,15 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
 #include <stdlib.h>
-
-#include <filesystem>
-#include <functional>
-#include <string>
 
 #include "mesh/meshing.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 
 namespace mssim {

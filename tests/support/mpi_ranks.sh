@@ -1,17 +1,16 @@
-# Functions of the tests of the backend mpi, with those that all tests of the command line have. `mssim` is the program.
+# Functions of the tests of the backend mpi, with those that all tests of the command line have. Skips the test where mssim has been built
+# without MPI, or nothing starts its ranks.
 # shellcheck shell=bash
-: "${mssim:?}"
 support=$(dirname -- "${BASH_SOURCE[0]}")
 # shellcheck source=tests/support/command_line.sh
 . "$support/command_line.sh"
 # shellcheck source=scripts/lib/mpi.sh
 . "$support/../../scripts/lib/mpi.sh"
 
-# need_mpi: skips the test where mssim has been built without MPI, or nothing starts its ranks
-need_mpi() {
-  [ -x "${mssim%/*}/../libexec/mssim/mssim-mpi" ] || { echo "mssim was built without MPI"; exit 77; }
-  command -v mpirun >/dev/null || { echo "there is no mpirun"; exit 77; }
-}
+[ -x "${mssim%/*}/../libexec/mssim/mssim-mpi" ] || { echo "mssim was built without MPI"; exit 77; }
+command -v mpirun >/dev/null || { echo "there is no mpirun"; exit 77; }
+export TMPDIR=$work/tmp
+mkdir tmp
 
 # ranks_here: the processes of all ranks that this test has started, which have folders in $work
 ranks_here() {
@@ -57,10 +56,17 @@ fails_with() {
   grep ',mpi,' "$2/timings.csv" | grep -q -- "$1" || fail "the row of mpi does not say \"$1\": $(grep ',mpi,' "$2/timings.csv")"
 }
 
-# make_mixed_launcher FILE: makes a launcher whose ranks but the first one have the instruction set of the variable SET
-make_mixed_launcher() {
+# mixed_processors SCENE RANKS REFUSED: ranks on processors of different instruction sets have the bits of exact roots, or are refused
+mixed_processors() {
+  [ "$(uname -m)" = x86_64 ] || return 0
+  # The ranks but the first one have the instruction set of the variable SET.
   # shellcheck disable=SC2016 # they are the inner shell's
   printf '#!/bin/sh\nn=$2\nshift 2\nexec mpirun -n "$n" sh -c %s sh "$@"\n' \
-    "'[ \"\$OMPI_COMM_WORLD_RANK\" = 0 ] || export MSSIM_INSTRUCTION_SET=\$SET; exec \"\$@\"'" >"$1"
-  chmod +x "$1"
+    "'[ \"\$OMPI_COMM_WORLD_RANK\" = 0 ] || export MSSIM_INSTRUCTION_SET=\$SET; exec \"\$@\"'" >mixed
+  chmod +x mixed
+  ends 0 bench --scene "$1" --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
+  SET=AVX2 ends 0 bench --scene "$1" --backend mpi --integrator rk4 --ranks "$2" --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
+  [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"
+  SET=SSE4 ends 3 bench --scene "$3" --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out sse
+  fails_with "unsupported: rank 0 on .* and rank 1 on $(uname -n) SSE4, which round differently" sse
 }

@@ -3,13 +3,10 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstddef>
 #include <cstring>
-#include <filesystem>
-#include <stdexcept>
 
 #include "platform/process.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -1,15 +1,10 @@
 #pragma once
 
-#include <array>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "backends/devices/device.h"
 #include "backends/devices/drivers.h"
 #include "backends/hybrid/hybrid.h"
 #include "backends/opencl/opencl.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -3,13 +3,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <exception>
-#include <functional>
-#include <string>
 
 #include "model/system.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -1,14 +1,9 @@
 #pragma once
 
-#include <gtest/gtest.h>
 #include <png.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <optional>
-#include <string>
-
 #include "picture/picture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

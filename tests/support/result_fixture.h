@@ -1,15 +1,10 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -1,20 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "bench/verification/verification.h"
 #include "geometry/vec3.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
 #include "scene/scene_kinds.h"
 #include "scene/spec/scene_spec.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 
@@ -66,6 +58,30 @@ inline System lone_cloth(std::uint32_t rows, std::uint32_t columns) {
 inline System undamped(System system) {
   for (SpringMaterial& material : system.materials) material.damping = 0;
   system.viscous_damping = 0;
+  return system;
+}
+
+/// The same, held at these nodes, which do not move.
+inline System pinned(System system, std::vector<std::uint32_t> pins) {
+  system.pins = std::move(pins);
+  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
+  return system;
+}
+
+/// The same, held at some nodes all over it, the last one too.
+inline System pinned_all_over(const System& system) {
+  const auto nodes = static_cast<std::uint32_t>(system.nodes());
+  std::vector<std::uint32_t> pins;
+  for (std::uint32_t node = 2; node + 1 < nodes; node += 17) pins.push_back(node);
+  if (nodes > 1) pins.push_back(nodes - 1);
+  return pinned(system, std::move(pins));
+}
+
+/// The same with springs at rest where it starts.
+inline System relaxed(System system) {
+  for (Spring& spring : system.springs)
+    spring.rest_length = static_cast<float>(
+        length(system.start.position[spring.second] - system.start.position[spring.first]));
   return system;
 }
 
@@ -175,8 +191,7 @@ inline System alike_bodies(const System& body, std::size_t count) {
     const auto number = static_cast<double>(i);
     System other = body;
     for (Vec3d& v : other.start.velocity) v += Vec3d{0.03 * number, -0.06 * number, 0.1};
-    for (const std::uint32_t pin : other.pins) other.start.velocity[pin] = {};
-    append_body(system, other, {0.3 * number, 0.01 * number, 0});
+    append_body(system, pinned(other, body.pins), {0.3 * number, 0.01 * number, 0});
   }
   return system;
 }

@@ -1,15 +1,11 @@
 #pragma once
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
 #include <iterator>
-#include <string>
-#include <vector>
 
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "tests/support/output_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -1,9 +1,8 @@
 #include "text/text.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -2,16 +2,7 @@
 // integrator.
 #include "backends/accumulation/accumulation_methods.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
 #include <initializer_list>
-#include <memory>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 #include "backends/accumulation/gather_vectors.h"
 #include "backends/backends.h"
@@ -19,6 +10,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

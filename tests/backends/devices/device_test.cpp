@@ -1,21 +1,12 @@
 #include "backends/devices/device.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "backends/backends.h"
 #include "backends/devices/driver_environment.h"
@@ -26,12 +17,10 @@
 #include "tests/support/garment_system.h"
 #include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 /// Two processors and a card.
 std::vector<OpenclDevice> some_devices() {

@@ -1,20 +1,13 @@
 // The host's part of hybrid, with forces that no device has computed.
 #include "backends/hybrid/integrate_nodes.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
 #include <bit>
-#include <cmath>
-#include <cstddef>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "backends/layouts/node_arrays.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -97,10 +90,7 @@ TEST_P(EachNodeKernel, GivesInPartsWhatTheBestOneGivesAtOnceInEveryStageOfEveryI
 }
 
 System pinned_bodies() {
-  System block = solid_block(3, 4, 3);
-  block.pins = {0, 17};
-  for (const std::uint32_t pin : block.pins) block.start.velocity[pin] = {};
-  System system = alike_bodies(block, 21);
+  System system = alike_bodies(pinned(solid_block(3, 4, 3), {0, 17}), 21);
   system.floor.height = -10;
   return system;
 }

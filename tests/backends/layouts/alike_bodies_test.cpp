@@ -1,17 +1,11 @@
 #include "backends/layouts/alike_bodies.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <bit>
-#include <functional>
 #include <map>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 #include "backends/layouts/packed_springs.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

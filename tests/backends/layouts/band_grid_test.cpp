@@ -1,13 +1,6 @@
 #include "backends/layouts/band_grid.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <set>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "backends/openmp/openmp.h"
 #include "backends/vectors/step_kernels.h"
@@ -17,6 +10,7 @@
 #include "scene/scene_kinds.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/mail.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

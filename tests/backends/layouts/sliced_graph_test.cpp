@@ -1,15 +1,5 @@
 #include "backends/layouts/sliced_graph.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <random>
-#include <vector>
-
 #include "backends/interface/backend.h"
 #include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
@@ -18,11 +8,10 @@
 #include "tests/support/expect_coloured.h"
 #include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
 
 class SlicedGraphOfLanes : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Widths, SlicedGraphOfLanes, testing::Values(1, 4, 8, 16, 64));
@@ -168,9 +157,9 @@ TEST(ReverseCuthillMckee, TellsWhereNoSpringGoesOn) {
   // Nodes 0 to 3, of which a spring reaches over two others, 4 alone, and 5 and 6.
   const std::vector<Spring> springs{{0, 3, 1, 0}, {1, 0, 1, 0}, {1, 2, 1, 0}, {6, 5, 1, 0}};
   std::vector<std::uint32_t> place{0, 1, 2, 3, 4, 5, 6};
-  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(4, 5, 7));
+  EXPECT_THAT(component_ends(springs, place), ElementsAre(4, 5, 7));
   std::ranges::reverse(place);
-  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(2, 3, 7));
+  EXPECT_THAT(component_ends(springs, place), ElementsAre(2, 3, 7));
 }
 
 /// Expects colours that are not empty, and neither too few nor too many.

@@ -1,15 +1,6 @@
 // Launches that take several steps through all stages, against launches of one step and of one stage; and
 // how many steps a launch is made to take.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <tuple>
-#include <utility>
 #include <variant>
 
 #include "backends/backends.h"
@@ -25,6 +16,7 @@
 #include "tests/support/garment_system.h"
 #include "tests/support/opencl_variants.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -32,18 +24,13 @@ namespace {
 /// A moving cloth, pinned at some nodes all over it, the last one too, that meets the floor along a wave.
 System pinned_cloth_on_a_floor(std::uint32_t rows, std::uint32_t columns) {
   System system = cloth_system(rows, columns);
-  const auto nodes = static_cast<std::uint32_t>(system.nodes());
   system.floor = {.height = 0.5, .restitution = 0.3, .friction = 0.4};
-  for (std::uint32_t node = 0; node < nodes; ++node) {
+  for (std::uint32_t node = 0; node < system.nodes(); ++node) {
     system.start.position[node].y = 0.5 + 2e-3 * std::sin(0.3 * node);
     system.start.velocity[node] = {0.1 * std::cos(node), 0.2 * std::sin(0.3 * node), 0.1};
   }
-  system.pins.clear();
-  for (std::uint32_t node = 2; node + 1 < nodes; node += 17) system.pins.push_back(node);
-  if (nodes > 1) system.pins.push_back(nodes - 1);
-  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
   round_to_single(system.start);
-  return system;
+  return pinned_all_over(system);
 }
 
 /// On a device with that many compute units.
@@ -149,8 +136,7 @@ constexpr int few_steps = 3;  // odd: the state ends up in the other pair
 
 /// Pinned here and there, and partly below the floor.
 System held_above_a_floor(System system) {
-  system.pins = {0, static_cast<std::uint32_t>(system.nodes() - 1)};
-  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
+  system = pinned(system, {0, static_cast<std::uint32_t>(system.nodes() - 1)});
   const auto [lowest, highest] =
       std::ranges::minmax(system.start.position, {}, [](const Vec3d& x) { return x.y; });
   system.floor.height = (lowest.y + highest.y) / 2;

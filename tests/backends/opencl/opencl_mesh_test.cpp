@@ -1,13 +1,4 @@
 // Tetrahedral bodies on the OpenCL backends, in every width, against the double-precision reference.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
@@ -15,12 +6,10 @@
 #include "tests/support/backend_checks.h"
 #include "tests/support/opencl_variants.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 class EachWidthAndIntegrator : public testing::TestWithParam<std::tuple<bool, int, Integrator>> {
  protected:
@@ -50,10 +39,7 @@ TEST_P(EachWidthAndIntegrator, AgreesWithTheReferenceOnBodiesOfAnySize) {
 }
 
 TEST_P(EachWidthAndIntegrator, HoldsPinsExactlyAndMovesTheirNeighboursLikeTheReference) {
-  System block = solid_block(5, 4, 6);
-  const auto last = static_cast<std::uint32_t>(block.nodes() - 1);
-  block.pins = {0, 1, 17, 50, last};
-  for (const std::uint32_t pin : block.pins) block.start.velocity[pin] = {};
+  const System block = pinned(solid_block(5, 4, 6), {0, 1, 17, 50, 119});  // the first and the last, too
   for (const System& system : {block, alike_bodies(block, 9)}) {
     const auto simulation = make(system);
     EXPECT_TRUE(agrees(*simulation, system, integrator(), backend_dt_of(integrator())));

@@ -1,26 +1,15 @@
 #include "backends/opencl/opencl.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/opencl_variants.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 /// A cloth at rest in the plane y = height, spacing 2 cm.
 System flat_cloth(std::uint32_t rows, std::uint32_t columns, double height) {
@@ -44,17 +33,13 @@ System flat_cloth(std::uint32_t rows, std::uint32_t columns, double height) {
 System rippled_cloth(std::uint32_t rows, std::uint32_t columns) {
   System system = flat_cloth(rows, columns, 0.5);
   system.viscous_damping = 0.3;
-  const auto nodes = static_cast<std::uint32_t>(system.nodes());
-  for (std::uint32_t node = 0; node < nodes; ++node) {
+  for (std::uint32_t node = 0; node < system.nodes(); ++node) {
     system.start.position[node] +=
         {1e-3 * std::sin(node), 4e-3 * std::cos(0.7 * node), 1e-3 * std::sin(2.0 * node)};
     system.start.velocity[node] = {0.1 * std::cos(node), 0.2 * std::sin(0.3 * node), 0.1};
   }
-  for (std::uint32_t node = 2; node + 1 < nodes; node += 17) system.pins.push_back(node);
-  if (nodes > 1) system.pins.push_back(nodes - 1);
-  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
   round_to_single(system.start);
-  return system;
+  return pinned_all_over(system);
 }
 
 std::vector<OpenclVariant> variants() {

@@ -1,19 +1,14 @@
 #include "backends/openmp/openmp.h"
 
-#include <gtest/gtest.h>
 #include <omp.h>
 #include <sys/resource.h>
-
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "backends/openmp/bodies.h"
 #include "backends/spring_list/list_backends.h"
 #include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,29 +1,21 @@
 #include "backends/process/conversation.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <functional>
-#include <string>
-#include <string_view>
 #include <thread>
 
 #include "backends/interface/backend.h"
 #include "platform/process.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
-using testing::StartsWith;
 
 using Cause = ConversationFailure::Cause;
 
@@ -67,23 +59,26 @@ class ConversationTest : public TemporaryFolderTest {
     ours();
   }
 
-  /// Why asking a program for a step fails.
-  ConversationFailure failure_of_step(const std::function<void(const Caller&)>& program,
-                                      double time_limit_s = 20) {
-    ConversationFailure found(Cause::silence, "it did not fail");
-    talk(
-        program,
-        [&] {
-          try {
-            conversation_.ask("step 10\n", "step 10");
-            conversation_.answer();
-          } catch (const ConversationFailure& failure) {
-            found = failure;
-            conversation_.say_last("end\n");  // lets the thread end
-          }
-        },
-        time_limit_s);
-    return found;
+  /// Expects that asking a program for a step fails for that cause with this in the sentence.
+  void expect_failure(Cause cause, const std::string& text, const std::function<void(const Caller&)>& program,
+                      double time_limit_s = 20) {
+    const auto ask = [&] {
+      try {
+        conversation_.ask("step 10\n", "step 10");
+        conversation_.answer();
+        ADD_FAILURE() << "it did not fail";
+      } catch (const ConversationFailure& failure) {
+        EXPECT_EQ(failure.cause, cause);
+        EXPECT_THAT(failure.what(), HasSubstr(text));
+        conversation_.say_last("end\n");  // lets the thread end
+      }
+    };
+    talk(program, ask, time_limit_s);
+  }
+  /// Takes the request and says nothing until the end.
+  static void stay_silent(const Caller& program) {
+    program.line();
+    program.line();
   }
 
   Conversation conversation_{folder()};
@@ -107,28 +102,19 @@ TEST_F(ConversationTest, CarriesLinesBothWays) {
 }
 
 TEST_F(ConversationTest, TellsOfSilence) {
-  const ConversationFailure failure = failure_of_step(
-      [](const Caller& program) {
-        program.line();
-        program.line();
-      },
-      0.2);
-  EXPECT_EQ(failure.cause, Cause::silence);
-  EXPECT_STREQ(failure.what(), "did not answer \"step 10\" within 0.2 s");
+  expect_failure(Cause::silence, "did not answer \"step 10\" within 0.2 s", stay_silent, 0.2);
 }
 
 TEST_F(ConversationTest, TakesAnAnswerThatComesByteByByteForSilenceOnceItsTimeIsOver) {
-  const ConversationFailure failure = failure_of_step(
-      [](const Caller& program) {
-        program.line();
-        // More often than a wait looks at the clock, and far longer than the limit.
-        for (int i = 0; i < 60; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
-          program.send(".");
-        program.send("\n");
-        program.line();
-      },
-      0.2);
-  EXPECT_EQ(failure.cause, Cause::silence);
+  const auto byte_by_byte = [](const Caller& program) {
+    program.line();
+    // More often than a wait looks at the clock, and far longer than the limit.
+    for (int i = 0; i < 60; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+      program.send(".");
+    program.send("\n");
+    program.line();
+  };
+  expect_failure(Cause::silence, "did not answer", byte_by_byte, 0.2);
 }
 
 TEST_F(ConversationTest, ListensAtAShortNameWhereTheFolderHasALongOne) {
@@ -154,19 +140,17 @@ TEST_F(ConversationTest, TellsOfAProgramThatNeverConnects) {
 }
 
 TEST_F(ConversationTest, TellsOfAClosedConnection) {
-  const ConversationFailure failure = failure_of_step([](const Caller& program) { program.line(); });
-  EXPECT_EQ(failure.cause, Cause::closed);
-  EXPECT_STREQ(failure.what(), "before it answered \"step 10\"");
+  expect_failure(Cause::closed, "before it answered \"step 10\"",
+                 [](const Caller& program) { program.line(); });
 }
 
 TEST_F(ConversationTest, RefusesLinesWithoutEnd) {
-  const ConversationFailure failure = failure_of_step([](const Caller& program) {
-    program.line();
-    program.send(std::string(4096, 'x'));
-    program.line();
-  });
-  EXPECT_EQ(failure.cause, Cause::answer);
-  EXPECT_THAT(failure.what(), HasSubstr("answered \"step 10\" with a line of more than 4096 bytes"));
+  expect_failure(Cause::answer, "answered \"step 10\" with a line of more than 4096 bytes",
+                 [](const Caller& program) {
+                   program.line();
+                   program.send(std::string(4096, 'x'));
+                   program.line();
+                 });
 }
 
 TEST_F(ConversationTest, TakesTheLongestLine) {
@@ -204,13 +188,11 @@ TEST_F(ConversationTest, RefusesWhatWasNotAskedFor) {
 }
 
 TEST_F(ConversationTest, RefusesASecondConnection) {
-  const ConversationFailure failure = failure_of_step([&](const Caller& program) {
-    const Caller second(conversation_.socket());
-    program.line();
-    program.line();
-  });
-  EXPECT_EQ(failure.cause, Cause::answer);
-  EXPECT_STREQ(failure.what(), "connected a second time before it answered \"step 10\"");
+  expect_failure(Cause::answer, "connected a second time before it answered \"step 10\"",
+                 [&](const Caller& program) {
+                   const Caller second(conversation_.socket());
+                   stay_silent(program);
+                 });
 }
 
 TEST_F(ConversationTest, EndsAWaitWhenTheUserEndsMssim) {

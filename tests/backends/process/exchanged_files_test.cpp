@@ -1,14 +1,6 @@
 #include "backends/process/exchanged_files.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "backends/process/process_backend.h"
 #include "hdf5/hdf5.h"
@@ -17,11 +9,10 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
 
 TEST(MethodText, NamesStagesAndTerms) {
   EXPECT_EQ(method_text(*find_integrator("midpoint")),

@@ -1,19 +1,13 @@
 #include "backends/process/process_backend.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "platform/files.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,18 +1,14 @@
-#include <gtest/gtest.h>
 #include <sched.h>
 
 #include <atomic>
 #include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "backends/threads/chunk_tickets.h"
 #include "backends/threads/spin_barrier.h"
 #include "backends/threads/spin_wait.h"
 #include "backends/threads/team_gain.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,14 +1,4 @@
 // openmp's vector code for every instruction set that this processor has: from four lanes to sixteen.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/accumulation/gather_vectors.h"
@@ -20,6 +10,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

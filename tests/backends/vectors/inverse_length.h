@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "backends/vectors/instruction_sets.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 

@@ -3,17 +3,13 @@
 #define HWY_TARGET_INCLUDE "tests/backends/vectors/inverse_length_test.cpp"
 #include "tests/backends/vectors/inverse_length.h"
 
-#include <gtest/gtest.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <vector>
 
 #include "backends/vectors/lanes-inl.h"
+#include "tests/support/testing.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

@@ -1,24 +1,15 @@
 #include "garment/body/body_profile.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "garment/body/mannequin.h"
 #include "garment/pattern/jeans.h"
 #include "mesh/meshing.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 /// An upright elliptic cylinder with flat ends, its axis at x.
 Surface cylinder(double x, double half_width, double half_depth, double low, double high) {

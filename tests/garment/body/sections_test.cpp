@@ -1,11 +1,4 @@
 // The closed lines in which a horizontal plane meets a surface, and whether they overlap.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <numeric>
 
 #include "garment/body/body_profile.h"
 #include "garment/body/mannequin.h"
@@ -13,6 +6,7 @@
 #include "mesh/meshing.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,19 +1,13 @@
-#include <gmock/gmock.h>
 
-#include <tuple>
 
 #include "garment/body/mannequin.h"
 #include "garment/body/stance.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 
 /// The points of `body`, which stands as patterns need it, as a file of this stance has them.
 Surface laid_out(Surface body, const BodyStance& stance) {

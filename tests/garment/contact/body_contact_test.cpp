@@ -1,16 +1,10 @@
 // kernels/body_contact.h: what a body does to a point of cloth, by its text in C++ and as OpenCL C.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "backends/devices/device_queue.h"
 #include "laws/host_laws.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/opencl_variants.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

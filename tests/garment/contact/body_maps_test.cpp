@@ -1,16 +1,7 @@
 // How points stand to a body, as its maps have it.
 #include "garment/contact/body_maps.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
 
 #include "garment/contact/solid.h"
 #include "geometry/surface.h"
@@ -18,11 +9,10 @@
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr double micrometre = 1e-6;  ///< to which the shapes' points are rounded
 constexpr double pixel = 0.0025;

@@ -1,23 +1,13 @@
 #include "garment/contact/solid.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "garment/body/mannequin.h"
 #include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::StartsWith;
 
 Surface moved(Surface surface, const Vec3d& by) {
   for (Vec3d& point : surface.points) point += by;

@@ -1,12 +1,5 @@
 // Jeans that are dressed fit, and for each bound of a fit there is a case that only this bound, or it first,
 // finds out.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <functional>
-#include <memory>
-#include <vector>
 
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
@@ -14,15 +7,10 @@
 #include "tests/support/dressed_jeans.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 
 constexpr SettlingRule two_seconds{.longest_s = 2};
 
@@ -47,31 +35,35 @@ TEST(DressedJeans, FitWithinAllBounds) {
   EXPECT_GT(jeans.fit.side_distance.value(), 0.003) << "the skin alone";
 }
 
-TEST(DressedJeans, WithoutForceAreNotSewn) {
-  const Dressed jeans = dressed_after(
-      [](DressingCase& on) {
-        on.garment().dressing.seam_force = 0;
-        on.garment().dressing.longest_seaming_s = 100;
-      },
-      {.longest_s = 0.3});
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("the seams did not close")));
-}
+/// What only one bound of a fit finds out, or it first.
+struct Misdressed {
+  const char* sentence;  ///< holds this
+  std::function<void(DressingCase& on)> change;
+  double longest_s = 2;
+  bool sewn = true;
+};
 
-TEST(DressedJeans, WhoseSewnSeamsDoNotCloseGape) {
-  const Dressed jeans = dressed_after([](DressingCase& on) { on.garment().dressing.closing_share = 0; });
-  EXPECT_TRUE(jeans.result.seamed_at);
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("the largest gap of a seam is ")));
-}
-
-TEST(DressedJeans, LookedAtTooEarlyAreNotAtRest) {
-  const Dressed jeans = dressed_after([](DressingCase&) {}, {.longest_s = 0.3});
-  EXPECT_TRUE(jeans.result.seamed_at);
-  EXPECT_THAT(jeans.found, Contains(StartsWith("the garment did not come to rest; try ")));
-}
-
-TEST(DressedJeans, SinkIntoABodyWhoseMapsLieInside) {
-  const Dressed jeans = dressed_after([](DressingCase& on) { let_maps_lie(on, -0.004); });
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("the deepest node inside the body is ")));
+TEST(DressedJeans, AreFoundOutByTheBoundThatTheyBreak) {
+  const Misdressed all[]{
+      {"the seams did not close",
+       [](DressingCase& on) {
+         on.garment().dressing.seam_force = 0;
+         on.garment().dressing.longest_seaming_s = 100;
+       },
+       0.3, false},
+      {"the largest gap of a seam is ", [](DressingCase& on) { on.garment().dressing.closing_share = 0; }},
+      {"the garment did not come to rest; try ", [](DressingCase&) {}, 0.3},
+      {"the deepest node inside the body is ", [](DressingCase& on) { let_maps_lie(on, -0.004); }},
+      {"rows that do not go once around their limb", [](DressingCase& on) {
+         for (Vec3d& node : on.system.start.position) node.z += 0.3;
+         round_to_single(on.system.start);
+       }}};
+  for (const Misdressed& one : all) {
+    SCOPED_TRACE(one.sentence);
+    const Dressed jeans = dressed_after(one.change, {.longest_s = one.longest_s});
+    EXPECT_EQ(jeans.result.seamed_at.has_value(), one.sewn);
+    EXPECT_THAT(jeans.found, Contains(HasSubstr(one.sentence)));
+  }
 }
 
 TEST(DressedJeans, LetTheBodyThroughFacesBetweenCleanNodes) {
@@ -122,15 +114,6 @@ TEST(DressedJeans, ThatAreWideAtTheHipStandOffAtTheSides) {
   EXPECT_LT(jeans.fit.side_distance_height.value(), 0.86);
 }
 
-TEST(DressedJeans, SewnBeforeTheBodyDoNotGoAroundIt) {
-  const Dressed jeans = dressed_after([](DressingCase& on) {
-    for (Vec3d& node : on.system.start.position) node.z += 0.3;
-    round_to_single(on.system.start);
-  });
-  EXPECT_TRUE(jeans.result.seamed_at);
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("rows that do not go once around their limb")));
-}
-
 // Looking at a dressing on its way: which frames come, and that they change nothing.
 
 /// Two squares that are sewn, side by side, and hung by a corner.
@@ -150,8 +133,6 @@ std::vector<std::unique_ptr<DressingBackend>> backends(const System& system, int
 }
 
 void expect_same(const State& one, const State& other) { EXPECT_TRUE(same_state(one, other)); }
-
-bool always(const State& /*state*/, std::int64_t /*iterations*/) { return true; }
 
 TEST(DressingFrames, StepsGiveTheSameBitsHoweverTheyAreCut) {
   const System system = hung_squares();

@@ -1,33 +1,13 @@
 // How a garment fits, on garments whose fit is known.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "garment/fitting/fitting.h"
-#include "tests/support/garment_system.h"
+#include "tests/support/dressing_systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
-
-FitBody nobody_around(const Vec3d& middle) {
-  return {[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
-          [middle](const Vec3d& point) {
-            return Vec3d{middle.x, point.y, middle.z};
-          }};
-}
 
 /// A tube of two half ones of 5 x 9 nodes, sewn to each other at both sides; its radius is 0.1 m. The pattern
 /// has every node at the height where it is.
@@ -53,16 +33,16 @@ System tube() {
 
 TEST(Fit, CountsRowsThatDoNotGoOnceAroundTheirLimb) {
   const System system = tube();
-  const Fit around = fit_of(system, system.start.position, nobody_around({0, 0, 0.05}));
+  const Fit around = fit_of(system, system.start.position, nobody(Vec3d{0, 0, 0.05}));
   EXPECT_EQ(around.rows, 5U);
   EXPECT_EQ(around.rows_astray, 0U);
   EXPECT_LT(around.largest_gap, 1e-15);
-  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({0.2, 0, 0})).rows_astray, 5U);
+  EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{0.2, 0, 0})).rows_astray, 5U);
   // One row is drawn aside.
   std::vector<Vec3d> position = system.start.position;
   for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
     for (std::uint32_t column = 0; column < panel.columns; ++column) position[panel.node(2, column)].x += 0.3;
-  EXPECT_EQ(fit_of(system, position, nobody_around({0, 0, 0})).rows_astray, 1U);
+  EXPECT_EQ(fit_of(system, position, nobody(Vec3d{})).rows_astray, 1U);
 }
 
 TEST(Fit, TellsHowFarUpperEdgesAndMeetingSeamsHangFromThePattern) {
@@ -74,7 +54,7 @@ TEST(Fit, TellsHowFarUpperEdgesAndMeetingSeamsHangFromThePattern) {
   std::vector<Vec3d> position = system.start.position;
   for (Vec3d& node : position) node.y += 0.005;
   position[garment.panels[0].node(0, 0)].y -= 0.025;
-  const Fit fit = fit_of(system, position, nobody_around({}));
+  const Fit fit = fit_of(system, position, nobody(Vec3d{}));
   EXPECT_NEAR(fit.upper_edge_rise, 0.005, 1e-12);
   EXPECT_NEAR(fit.meeting_rise.value(), -0.02, 1e-12);
 }
@@ -82,7 +62,7 @@ TEST(Fit, TellsHowFarUpperEdgesAndMeetingSeamsHangFromThePattern) {
 TEST(Fit, TellsHowFarCloseClothIsFromTheBodyAndAtWhichHeight) {
   System system = tube();
   // A cylinder of 0.09 m in the tube of 0.1 m.
-  FitBody body = nobody_around({});
+  FitBody body = nobody(Vec3d{});
   body.distances = [](std::span<const Vec3d> points, double lowest, double highest) {
     EXPECT_EQ(lowest, 0.04);
     EXPECT_EQ(highest, 0.13);
@@ -165,7 +145,7 @@ TEST(Fit, TakesPercentilesOfElongations) {
   for (std::uint32_t row = 0; row < 2; ++row)
     for (std::uint32_t column = 1; column <= 400; ++column)
       position[401 * row + column].x = position[401 * row + column - 1].x + 0.01 * (1 + 0.0001 * column);
-  const Fit fit = fit_of(system, position, nobody_around({}));
+  const Fit fit = fit_of(system, position, nobody(Vec3d{}));
   EXPECT_NEAR(fit.elongation_50, 0.01, 1e-4);
   EXPECT_NEAR(fit.elongation_99, 0.0390, 1e-6);
   EXPECT_NEAR(fit.elongation_999, 0.0399, 1e-6);
@@ -176,22 +156,22 @@ TEST(Fit, TakesTheLayerWhoseUpperEdgesAreFarthestOff) {
   System system = garment_of({{2, 3, 0.1, {0, 0, 0}}, {2, 3, 0.1, {0, 0, 0.1}}});
   std::vector<Vec3d> position = system.start.position;
   for (std::size_t node = 0; node < 12; ++node) position[node].y += node < 6 ? 0.005 : -0.012;
-  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.0035, 1e-6);
+  EXPECT_NEAR(fit_of(system, position, nobody(Vec3d{})).upper_edge_rise, -0.0035, 1e-6);
   std::get<Garment>(system.topology).panels[1].layer = 1;
-  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.012, 1e-6);
+  EXPECT_NEAR(fit_of(system, position, nobody(Vec3d{})).upper_edge_rise, -0.012, 1e-6);
   std::get<Garment>(system.topology).panels[0].layer = 2;
-  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.012, 1e-6);
+  EXPECT_NEAR(fit_of(system, position, nobody(Vec3d{})).upper_edge_rise, -0.012, 1e-6);
 }
 
 TEST(Fit, CountsWhereLayersCross) {
   // A square metre at z = 0 and a sheet in the plane x = 0.6 from (y, z) = (0.3, -1) to (2.3, 1): the sheet's
   // lower side runs through the square, and the square's upper side and diagonal through the sheet.
   System system = garment_of({{2, 2, 1, {0, 0, 0}}, {2, 2, 2, {0.6, 0.3, -1}, {0, 0, 1}}});
-  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 0U) << "in one layer";
+  EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{})).crossings, 0U) << "in one layer";
   std::get<Garment>(system.topology).panels[1].layer = 1;
-  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 3U);
+  EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{})).crossings, 3U);
   for (std::size_t node = 4; node < 8; ++node) system.start.position[node].x += 0.5;
-  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 0U) << "beside it";
+  EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{})).crossings, 0U) << "beside it";
 }
 
 TEST(Fit, SamplesBothTrianglesOfEveryCell) {
@@ -239,7 +219,7 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
   result.settled = true;
   Fit fit;
   fit.rows = 3;
-  EXPECT_THAT(misfits(result, fit, {}), testing::IsEmpty());
+  EXPECT_THAT(misfits(result, fit, {}), IsEmpty());
   fit = {.largest_gap = 0.0011,
          .nodes_inside = 1,
          .deepest_node = 0.0012,

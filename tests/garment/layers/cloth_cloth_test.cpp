@@ -1,25 +1,14 @@
 #include "garment/layers/cloth_cloth.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <stdexcept>
-#include <string>
-
 #include "model/system.h"
 #include "tests/support/cloth_layers_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
 
 using testing::Each;
-using testing::HasSubstr;
 
 constexpr float held = std::numeric_limits<float>::infinity();
 constexpr double dt = 1e-3;  // s

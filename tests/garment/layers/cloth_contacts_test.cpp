@@ -1,22 +1,13 @@
 #include "garment/layers/cloth_contacts.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
-#include <random>
-#include <string>
 
 #include "geometry/triangle_tree.h"
 #include "tests/support/cloth_layers_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
 
 TEST(NearestPoint, IsFoundOnTheInsideTheSidesAndTheCorners) {
   const Vec3<float> a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};

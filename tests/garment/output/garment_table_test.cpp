@@ -1,21 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
-#include <vector>
 
 #include "garment/output/garment_tables.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 ResultRow dressed_row(const std::string& scene, std::uint64_t nodes, const std::string& backend, double ms,
                       std::optional<double> speedup) {

@@ -1,21 +1,11 @@
 #include "garment/pattern/garment_build.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <set>
-
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 struct Springs {
   std::vector<Spring> springs;

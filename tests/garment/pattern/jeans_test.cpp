@@ -1,22 +1,11 @@
 #include "garment/pattern/jeans.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "model/system.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 /// A body to try jeans on, in formulas: an upright trunk of elliptic sections from the crotch up and two legs
 /// of elliptic sections below, which part by a centimetre at the crotch.

@@ -1,19 +1,12 @@
-#include <gmock/gmock.h>
 
-#include <array>
-#include <cmath>
-#include <limits>
 
 #include "garment/pattern/garment_build.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 /// The parabola y = x^2 from 0 to 1 as a cubic Bezier segment.
 Curve parabola() {
@@ -114,17 +107,16 @@ TEST(PanelMesh, RowsEndWhereTheyAreTold) {
   expect_node(mesh, 1, 0, 0, 0.25);
   expect_node(mesh, 5 - 1, 3, 1, 0.6 + 2.0 / 3 * 0.4);
   expect_node(mesh, 0, 1, 1.0 / 3, 0);
-  EXPECT_THAT(mesh.arcs_on(PanelEdge::left),
-              testing::ElementsAre(0, 0.25, 0.5, testing::DoubleEq(0.5 + 0.5 / 3),
-                                   testing::DoubleEq(0.5 + 1.0 / 3), 1));
+  EXPECT_THAT(mesh.arcs_on(PanelEdge::left), ElementsAre(0, 0.25, 0.5, testing::DoubleEq(0.5 + 0.5 / 3),
+                                                         testing::DoubleEq(0.5 + 1.0 / 3), 1));
 }
 
 TEST(PanelMesh, AnEdgesNodesStandInTheOrderOfItsBoundary) {
   const PanelMesh mesh = mesh_panel(rectangle_piece("p", 1, 1), {3, 4});
-  EXPECT_THAT(mesh.edge_nodes(PanelEdge::bottom), testing::ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(mesh.edge_nodes(PanelEdge::top), testing::ElementsAre(8, 9, 10, 11));
-  EXPECT_THAT(mesh.edge_nodes(PanelEdge::left), testing::ElementsAre(0, 4, 8));
-  EXPECT_THAT(mesh.edge_nodes(PanelEdge::right), testing::ElementsAre(3, 7, 11));
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::bottom), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::top), ElementsAre(8, 9, 10, 11));
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::left), ElementsAre(0, 4, 8));
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::right), ElementsAre(3, 7, 11));
 }
 
 TEST(PanelMesh, CornersMustMeetToATenthOfAMillimetre) {

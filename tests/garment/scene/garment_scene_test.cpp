@@ -2,12 +2,6 @@
 // backend.
 #include "garment/scene/garment_scene.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <string>
-
 #include "application/prepared_scene.h"
 #include "commands/command.h"
 #include "scene/fields/fields.h"
@@ -18,13 +12,10 @@
 #include "tests/support/obj_text.h"
 #include "tests/support/open_count.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 class DressedPerson : public TemporaryFolderTest {
  protected:

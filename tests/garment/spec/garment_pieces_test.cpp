@@ -1,9 +1,5 @@
 // Garments of pieces that a scene file draws.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <numeric>
-#include <string>
 #include <variant>
 
 #include "garment/contact/body_maps.h"
@@ -13,15 +9,10 @@
 #include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 /// Two rectangles of 6 x 5 nodes, 0.4 m wide and 0.25 m high, before and behind the hips of the reference
 /// body, sewn along their sides. The back one is an outer layer of a cloth of its own.
@@ -147,7 +138,7 @@ TEST(GarmentPieces, TouchOnlyWhereLayersAreAskedFor) {
   EXPECT_EQ(garment.touching->friction, 0.2);
   EXPECT_EQ(garment.touching->push_speed, 0.7);
   EXPECT_EQ(garment.touching->sweeps, 3U);
-  EXPECT_THAT(layer_pairs(garment), testing::IsEmpty()) << "sewn panels would repel each other";
+  EXPECT_THAT(layer_pairs(garment), IsEmpty()) << "sewn panels would repel each other";
   // In front of the belly the outer layer meets the body 4 mm before the inner one.
   ASSERT_EQ(garment.body_maps.size(), 2U);
   const auto distance = [&](std::size_t layer) {

@@ -1,10 +1,5 @@
 // What one step of Algorithm 1 does, on systems whose answer is known.
-#include <gtest/gtest.h>
 #include <omp.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "backends/backends.h"
 #include "garment/contact/solid.h"
@@ -17,12 +12,10 @@
 #include "tests/support/dressed_jeans.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-const FitBody nobody{[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
-                     [](const Vec3d& point) { return point; }};
 
 TEST(Dresses, SaysWhichBackendsTakeAGarment) {
   const System system = two_squares();
@@ -43,12 +36,11 @@ TEST(Dressing, ClosesTheSeamOfTwoSquaresInFreeSpace) {
   const System system = two_squares();
   const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
   EXPECT_EQ(backend->progress().open_joints, 10U);
-  const DressingResult result =
-      dress(*backend, system, dressing_dt_s, {}, [](const State&, std::int64_t) { return true; });
+  const DressingResult result = dress(*backend, system, dressing_dt_s, {}, always);
   ASSERT_TRUE(result.seamed_at);
   EXPECT_TRUE(result.settled);
   EXPECT_EQ(backend->progress().open_joints, 0U);
-  const Fit fit = fit_of(system, result.state.position, nobody);
+  const Fit fit = fit_of(system, result.state.position, nobody());
   EXPECT_LT(fit.largest_gap, 1e-4);
   EXPECT_LT(fit.elongation_max, 0.01);
   // The squares pull each other: what is not damped away moves nobody's centre.
@@ -147,9 +139,8 @@ TEST(Dressing, SewsAJointToAPointOfAnEdge) {
         {column, garment.panels[1].node(0, 0), garment.panels[1].node(0, 1), column * 0.5, 0.02 / 3, 1, 0});
   system.viscous_damping = 16;
   const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
-  const DressingResult result =
-      dress(*backend, system, dressing_dt_s, {}, [](const State&, std::int64_t) { return true; });
-  EXPECT_LT(fit_of(system, result.state.position, nobody).largest_gap, 1e-4);
+  const DressingResult result = dress(*backend, system, dressing_dt_s, {}, always);
+  EXPECT_LT(fit_of(system, result.state.position, nobody()).largest_gap, 1e-4);
 }
 
 /// A sheet hung by its upper edge, of a soft cloth, its lowest row sixty times as heavy as the others.
@@ -170,10 +161,9 @@ double largest_elongation(VelocityCorrection correction) {
   const System system = heavy_hem(correction);
   const double step_s = 2e-4;
   const auto backend = make_serial_dressing(system, semi_euler, step_s);
-  const DressingResult result =
-      dress(*backend, system, step_s, {}, [](const State&, std::int64_t) { return true; });
+  const DressingResult result = dress(*backend, system, step_s, {}, always);
   EXPECT_TRUE(result.settled);
-  return fit_of(system, result.state.position, nobody).elongation_max;
+  return fit_of(system, result.state.position, nobody()).elongation_max;
 }
 
 TEST(Dressing, LeavesOfAHeavyHemsElongationWhatTheCorrectionAllows) {
@@ -232,7 +222,7 @@ State state_of_any_number_of_threads(const System& system, double dt_s, int step
 TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
   const System system = stretched_sheets();
   const State state = state_of_any_number_of_threads(system, dressing_dt_s, 2000);
-  EXPECT_GT(fit_of(system, state.position, nobody).elongation_max, 0.05) << "nothing is corrected";
+  EXPECT_GT(fit_of(system, state.position, nobody()).elongation_max, 0.05) << "nothing is corrected";
 }
 
 TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
@@ -303,7 +293,7 @@ System sheet_above_sphere(double offset) {
 
 DressingResult dropped(const System& system) {
   const auto backend = make_serial_dressing(system, semi_euler, sheet_dt_s);
-  return dress(*backend, system, sheet_dt_s, {}, [](const State&, std::int64_t) { return true; });
+  return dress(*backend, system, sheet_dt_s, {}, always);
 }
 
 Fit fit_on_sphere(const System& system, const State& state) {

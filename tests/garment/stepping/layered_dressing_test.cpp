@@ -1,9 +1,4 @@
 // Garments of several layers in a step of Algorithm 1.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <vector>
 
 #include "garment/contact/body_maps.h"
 #include "garment/layers/cloth_contacts.h"
@@ -12,6 +7,7 @@
 #include "mesh/meshing.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/garment_system.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

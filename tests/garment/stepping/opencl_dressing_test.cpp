@@ -1,12 +1,6 @@
 // Algorithm 1 on an OpenCL device: the reference but for rounding, whatever shares the work.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <initializer_list>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
@@ -15,6 +9,7 @@
 #include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/opencl_variants.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

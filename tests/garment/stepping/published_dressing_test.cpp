@@ -1,14 +1,7 @@
 // Algorithm 1 as printed: each loop beside mssim's own form of it, where the two agree.
 #include "garment/stepping/published_dressing.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
 #include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "backends/backends.h"
 #include "garment/fitting/fitting.h"
@@ -19,6 +12,7 @@
 #include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -103,13 +97,10 @@ TEST(PublishedDressing, TakesFromTheEndsOfALongSpringWhatLengthensIt) {
 TEST(PublishedDressing, ClosesASeamAndHoldsItByASpring) {
   const System system = two_squares();
   const auto backend = maker_of(published_dressings.front())(system, semi_euler, dressing_dt_s, {});
-  const DressingResult result =
-      dress(*backend, system, dressing_dt_s, {}, [](const State&, std::int64_t) { return true; });
+  const DressingResult result = dress(*backend, system, dressing_dt_s, {}, always);
   ASSERT_TRUE(result.seamed_at);
   EXPECT_TRUE(result.settled);
-  const FitBody nobody{[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
-                       [](const Vec3d& point) { return point; }};
-  EXPECT_LT(fit_of(system, result.state.position, nobody).largest_gap, 1e-4);
+  EXPECT_LT(fit_of(system, result.state.position, nobody()).largest_gap, 1e-4);
 }
 
 TEST(PublishedDressing, HasTheSameBitsInRegistersAndInThreads) {

@@ -1,20 +1,15 @@
 #include "output/folders/provenance_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
 
 using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 /// A provenance in which no value is the default.
 Provenance full_provenance() {
@@ -56,7 +51,7 @@ class ProvenanceFile : public TemporaryFolderTest {
       read_provenance(file);
     } catch (const ProvenanceError& error) {
       const std::string sentence = error.what();
-      EXPECT_THAT(sentence, AllOf(testing::StartsWith(file.string() + ": "), Not(HasSubstr("\n"))));
+      EXPECT_THAT(sentence, AllOf(StartsWith(file.string() + ": "), Not(HasSubstr("\n"))));
       return sentence.substr(file.string().size() + 2);
     }
     ADD_FAILURE() << "was read: " << text;
@@ -154,23 +149,17 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
 
 TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   json document = json_of(full_provenance());
-  for (const char* later : {"turbo", "smt", "numa_nodes"}) document["cpu"].erase(later);
-  document["cpu"].erase("generation");
-  document.erase("format_version");
-  document.erase("noise");
-  document.erase("earlier_starts_utc");
-  document.erase("program_fnv1a_64");
-  document.erase("device_memory");
-  document.erase("backend_programs");
+  for (const char* later : {"turbo", "smt", "numa_nodes", "generation"}) document["cpu"].erase(later);
+  for (const char* later : {"format_version", "noise", "earlier_starts_utc", "program_fnv1a_64",
+                            "device_memory", "backend_programs"})
+    document.erase(later);
   const Provenance old = read_provenance(put("old.json", document.dump()));
   EXPECT_EQ(old.machine.turbo, std::nullopt);
   EXPECT_EQ(old.machine.smt, std::nullopt);
   EXPECT_EQ(old.machine.numa_nodes, 0);
   EXPECT_EQ(old.machine.cpu_generation, "");
   EXPECT_EQ(old.program_fnv1a_64, std::nullopt);
-  EXPECT_TRUE(old.noise.empty());
-  EXPECT_TRUE(old.earlier_starts_utc.empty());
-  EXPECT_TRUE(old.backend_programs.empty());
+  EXPECT_TRUE(old.noise.empty() && old.earlier_starts_utc.empty() && old.backend_programs.empty());
   EXPECT_EQ(old.started_utc, full_provenance().started_utc);
 }
 

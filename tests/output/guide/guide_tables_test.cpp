@@ -1,22 +1,14 @@
 #include "output/guide/guide_tables.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "integrators/all_integrators.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
 
 /// Where the results lie that docs/guide.md speaks of. New ones only need to be put there: the tests print
 /// the tables that the page should have then.

@@ -1,16 +1,6 @@
 #include "output/pictures/painter.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <map>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "geometry/surface.h"
 #include "output/traces/trace_reader.h"
@@ -19,6 +9,7 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/picture_fixture.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

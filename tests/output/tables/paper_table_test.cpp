@@ -1,19 +1,12 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
 
 #include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 ResultTable paper_table_of(const std::vector<ResultRow>& rows,
                            const Provenance& provenance = made_up_provenance()) {
@@ -108,11 +101,9 @@ TEST(PaperTable, HasVariantsBelowOnePublishedLine) {
   EXPECT_THAT(text, HasSubstr("Lines with `:each`"));
 }
 
-TEST(PaperTable, SaysWhereBothKindsOfTimesAreFrom) {
-  const std::string text = page_of(table_rows());
+TEST(PaperTable, SaysWherePublishedTimesAreFrom) {
   for (const char* fact : {"2016", "Nexus 7", "ten threads", "mobile GPU"})
-    EXPECT_THAT(text, HasSubstr(fact));
-  for (const char* fact : {"A Processor", "0123456789ab", "2026-01-31"}) EXPECT_THAT(text, HasSubstr(fact));
+    EXPECT_THAT(page_of(table_rows()), HasSubstr(fact));
 }
 
 TEST(PaperTable, TellsTheInstructionSetOfTheProcessorFromDevices) {

@@ -1,25 +1,18 @@
 #include "output/tables/results.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
 
-using testing::AllOf;
 using testing::ContainsRegex;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 TEST(BenchmarkJson, HasTheSchemaOfGoogleBenchmark) {
   const auto json = nlohmann::json::parse(
@@ -80,10 +73,10 @@ TEST_F(CombinationTimes, AreRefusedWhereOneIsMissingOrNoTime) {
   const auto refusal = [&](const std::string& text) {
     return sentence_of<CsvError>([&] { read_combination_times(put("timings.csv", text)); });
   };
-  EXPECT_THAT(refusal("scene,backend\n"), testing::HasSubstr("there is no column integrator"));
-  EXPECT_THAT(refusal(header + "a,b,c,0,true,ok\n"), testing::HasSubstr("\"0\" is not a time above zero"));
-  EXPECT_THAT(refusal(header + "a,b,c,nan,true,ok\n"), testing::HasSubstr("\"nan\" is not a number"));
-  EXPECT_THAT(refusal(header + "a,b,c,,true,ok\n"), testing::HasSubstr("ms_per_step"));
+  EXPECT_THAT(refusal("scene,backend\n"), HasSubstr("there is no column integrator"));
+  EXPECT_THAT(refusal(header + "a,b,c,0,true,ok\n"), HasSubstr("\"0\" is not a time above zero"));
+  EXPECT_THAT(refusal(header + "a,b,c,nan,true,ok\n"), HasSubstr("\"nan\" is not a number"));
+  EXPECT_THAT(refusal(header + "a,b,c,,true,ok\n"), HasSubstr("ms_per_step"));
   EXPECT_EQ(refusal(header + "a,b,c,,false,failed: x\n"), "");
 }
 

@@ -1,9 +1,8 @@
 #include "output/tables/table.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -146,12 +145,9 @@ TEST(Latex, PutsOriginsIntoTheCaptionOfEachTable) {
                       Heading{2, "Notes"},
                       Paragraph{"A note."},
                       table};
-  EXPECT_EQ(latex(page, "times", "5 rounds."), R"(How to read it.
-
-\begin{table}[!htbp]
-\centering\small
-\caption{Times. First one. Measured on X. 5 rounds.}
-\label{tab:times-1}
+  const auto table_of = [](const std::string& section, const std::string& number) {
+    return "\\begin{table}[!htbp]\n\\centering\\small\n\\caption{Times. " + section +
+           ". Measured on X. 5 rounds.}\n\\label{tab:times-" + number + R"(}
 \resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%
 \begin{tabular}{lr}
 \toprule
@@ -162,28 +158,12 @@ a\_b & \unit{\milli\second} \\
 \end{tabular}}
 \end{table}
 
-\begin{itemize}
-\item an item
-\end{itemize}
-
-\paragraph{Notes}
-A note.
-
-\begin{table}[!htbp]
-\centering\small
-\caption{Times. Notes. Measured on X. 5 rounds.}
-\label{tab:times-2}
-\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%
-\begin{tabular}{lr}
-\toprule
-a\_b & \unit{\milli\second} \\
-\midrule
-{[}c] & \num{1} \\
-\bottomrule
-\end{tabular}}
-\end{table}
-
-)");
+)";
+  };
+  EXPECT_EQ(latex(page, "times", "5 rounds."),
+            "How to read it.\n\n" + table_of("First one", "1") +
+                "\\begin{itemize}\n\\item an item\n\\end{itemize}\n\n\\paragraph{Notes}\nA note.\n\n" +
+                table_of("Notes", "2"));
 }
 
 TEST(MarkdownReader, ReadsWhatTheWriterWrote) {

@@ -1,23 +1,15 @@
 #include "output/traces/energy_curve.h"
 
-#include <gmock/gmock.h>
-
-#include <array>
 #include <csignal>
 #include <cstdlib>
-#include <limits>
-#include <stdexcept>
 
 #include "output/traces/h5md_trace.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/output_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 class EnergyCurveTest : public TemporaryFolderTest {
  protected:

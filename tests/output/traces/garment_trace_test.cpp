@@ -1,21 +1,16 @@
 // Traces of garments: panels, joints, and the body that they are dressed on.
 #include <sys/resource.h>
 
-#include <cmath>
 #include <csignal>
-#include <functional>
 
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
+#include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 class GarmentTrace : public Trace {
  protected:

@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # Other programs open traces, and see what is in them: h5py, MDAnalysis, VTK and meshio (readers.py). A module that Python does not
 # have is named, and then the test counts as skipped. docs/traces.md says what each reader cannot do.
-# $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
-# shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 ends 0 run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5 --energy-curve cloth.csv
 ends 0 run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5 --energy-curve double.csv

@@ -1,20 +1,15 @@
 // Traces that are damaged, or say what cannot be: one sentence each, and never a crash.
 #include <zlib.h>
 
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "hdf5/hdf5.h"
 #include "output/traces/trace_reader.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
 
 /// Reads all of a trace. What is wrong with it, or nothing.
 std::string problem_of(const std::filesystem::path& trace) {

@@ -1,26 +1,19 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <array>
 #include <csignal>
-#include <string>
-#include <utility>
 
 #include "output/traces/energy_curve.h"
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"
 
 namespace mssim {
 namespace {
 
-using testing::AllOf;
 using testing::AnyOf;
 using testing::Eq;
-using testing::HasSubstr;
-using testing::Not;
 using testing::ThrowsMessage;
 
 /// All bytes of a string, or an array of strings, in an attribute; checks that their length is fixed.
@@ -290,12 +283,11 @@ TEST(TraceName, EndsInH5) {
 
 TEST(TraceName, HasNothingThatReadersOfTheXdmfFileMisread) {
   for (const std::string name : {"a:b.h5", "a|b.h5", "a\\b.h5"})
-    EXPECT_THAT(name_problem(name),
-                testing::HasSubstr("readers of the XDMF file misread: give a name without"));
+    EXPECT_THAT(name_problem(name), HasSubstr("readers of the XDMF file misread: give a name without"));
   for (const std::string name : {"a\nb.h5", "a\x1b.h5", "caf\xe9.h5"})
-    EXPECT_THAT(name_problem(name), testing::HasSubstr("has characters that are not printable"));
+    EXPECT_THAT(name_problem(name), HasSubstr("has characters that are not printable"));
   for (const std::string name : {" t.h5", "t .h5"})
-    EXPECT_THAT(name_problem(name), testing::HasSubstr("begins or ends with a blank"));
+    EXPECT_THAT(name_problem(name), HasSubstr("begins or ends with a blank"));
 }
 
 TEST_F(Trace, RefusesTetrahedraThatAreMissingOrPointBeyondTheNodes) {

@@ -1,16 +1,5 @@
 // What xpbd computes, against what is known without it, and the order in which it takes springs.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "backends/backends.h"
 #include "backends/implicit/constraints/step_constraints.h"
 #include "backends/implicit/nodes/solvers.h"
@@ -21,6 +10,7 @@
 #include "model/system.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/expect_coloured.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -399,9 +389,7 @@ TEST_P(EachXpbdKernel, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFloor) {
   std::get<ClothSpec>(spec.content).pins = ClothPins{13, 5};
   System cloth = build_system(spec);
   cloth.floor.height = cloth.start.position[cloth.pins.front()].y + 0.01;
-  System block = solid_block(4, 5, 6);
-  block.pins = {0, 17, 118};
-  for (const std::uint32_t node : block.pins) block.start.velocity[node] = {};
+  const System block = pinned(solid_block(4, 5, 6), {0, 17, 118});
   for (const System& system : {cloth, block}) {
     const auto backend = make(system, 3);
     backend->step(51);

@@ -1,12 +1,5 @@
 // fast-springs: what it converges to, on the spring list and with vectors.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <numeric>
-#include <vector>
-
 #include "backends/implicit/local_global/factor.h"
 #include "backends/implicit/local_global/step_local_global.h"
 #include "backends/implicit/nodes/solvers.h"
@@ -19,18 +12,14 @@
 #include "tests/support/backend_checks.h"
 #include "tests/support/backward_euler.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
 
 const Integrator& fast_springs = *find_integrator("fast-springs");
 
-System pinned_block() {
-  System system = solid_block(4, 3, 5);
-  system.pins = {0, 7, 30};
-  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
-  return system;
-}
+System pinned_block() { return pinned(solid_block(4, 3, 5), {0, 7, 30}); }
 
 System with_iterations(System system, std::uint32_t iterations) {
   system.solver.iterations = iterations;

@@ -1,14 +1,4 @@
 // implicit-euler and newton-euler against their equations, written out.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <utility>
-#include <vector>
 
 #include "backends/implicit/newton/newton_method.h"
 #include "backends/implicit/newton/spring_equation.h"
@@ -16,6 +6,7 @@
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/backward_euler.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -53,10 +44,7 @@ double residual_of_linear_step(const System& system, const std::vector<Vec3d>& w
 
 /// Small systems with compressed springs among the others; some have pins.
 std::vector<System> small_systems() {
-  System pinned_block = solid_block(3, 2, 3);
-  pinned_block.pins = {0, 7};
-  for (const std::uint32_t pin : pinned_block.pins) pinned_block.start.velocity[pin] = {};
-  return {cloth_system(5, 6), lone_cloth(1, 2), solid_block(2, 3, 2), pinned_block};
+  return {cloth_system(5, 6), lone_cloth(1, 2), solid_block(2, 3, 2), pinned(solid_block(3, 2, 3), {0, 7})};
 }
 constexpr std::array<double, 3> steps_s{5e-5, 1e-3, 2e-2};
 
@@ -66,9 +54,8 @@ System stirred_cloth() {
   std::mt19937 generator(1);
   const auto random = [&] { return 10 * static_cast<double>(generator()) / 0x1p32 - 5; };
   for (Vec3d& v : system.start.velocity) v = {random(), random(), random()};
-  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
   round_to_single(system.start);
-  return system;
+  return pinned(system, system.pins);
 }
 
 TEST(ImplicitEuler, IsTheSolutionOfItsLinearSystem) {
