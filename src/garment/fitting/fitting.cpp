@@ -1,5 +1,7 @@
 #include "garment/fitting/fitting.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +16,6 @@
 #include "garment/layers/cloth_contacts.h"
 #include "laws/host_laws.h"
 #include "statistics/statistics.h"
-#include "text/text.h"
 
 namespace mssim {
 namespace {
