@@ -1,89 +1,58 @@
 #!/usr/bin/env python3
-"""Opens pages in chromium, one after the other, and collects the results that they post.
+"""Opens pages of mssim web in chromium, without a window, and uses them as a person would.
 
-browse(chromium, flags, jobs) -> {name: text of the results}; jobs: {name: (text of the page, its query)}.
-As a program: web.py MSSIM PAGE FOLDER runs the checks of web_test.sh, and leaves a result as FOLDER/result.json.
+As a program: web.py CHROMIUM PAGE FOLDER runs the checks of web_test.sh, and leaves results as FOLDER/NAME.json.
 """
+import concurrent.futures
 import csv
 import http.server
 import io
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"]
-DRIVER = b"""<!DOCTYPE html><iframe id="page" style="width:100%;height:90vh"></iframe><script>
-let at = -1;
-setInterval(async () => {
-  const next = Number(await (await fetch('/next')).text());
-  if (next !== at) document.getElementById('page').src = `/page/${at = next}`;
-}, 50);
-</script>"""
 
 
-def browse(chromium, flags, jobs, seconds=240):
-    names, results, done = list(jobs), {}, threading.Event()
+class Browser:
+    """A chromium with a folder of its own, which ends with it. It shows pages from localhost."""
 
-    class Handler(http.server.BaseHTTPRequestHandler):
-        def reply(self, body, kind="text/html", location=None):
-            self.send_response(302 if location else 200)
-            self.send_header("Content-Type", kind + "; charset=utf-8")
-            self.send_header("Content-Length", str(len(body)))
-            # The clock of isolated pages is finer, and samples are shorter.
-            self.send_header("Cross-Origin-Opener-Policy", "same-origin")
-            self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
-            if location:
-                self.send_header("Location", location)
-            self.end_headers()
-            self.wfile.write(body)
-
-        def do_GET(self):
-            path, _, query = self.path.partition("?")
-            if path == "/":
-                self.reply(DRIVER)
-            elif path == "/next":
-                self.reply(str(len(results)).encode(), "text/plain")
-            elif path.startswith("/page/") and int(path[6:]) < len(names):
-                page, wanted = jobs[names[int(path[6:])]]
-                if query != wanted:
-                    self.reply(b"", location=f"{path}?{wanted}")
-                else:
-                    self.reply(page.encode())
-            else:
-                self.reply(b"")
-
-        def do_POST(self):
-            body = self.rfile.read(int(self.headers["Content-Length"])).decode()
-            self.reply(b"the test's folder", "text/plain")
-            if len(results) < len(names):
-                results[names[len(results)]] = body
-            if len(results) == len(names):
-                done.set()
-
-        def log_message(self, *arguments):
-            pass
-
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    with start(chromium, flags, f"http://localhost:{server.server_port}/"):
-        if not done.wait(seconds):
-            raise SystemExit(f"no result of {names[len(results)]} in {seconds} s")
-    server.shutdown()
-    return results
-
-
-class start:
-    """A chromium with a folder of its own, which ends with it."""
-
-    def __init__(self, chromium, flags, address):
+    def __init__(self, chromium, flags):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        self.page, self.number, self.read, self.session = b"", 0, b"", {}
+        browser = self
+
+        class Handler(http.server.BaseHTTPRequestHandler):
+            def do_GET(self):
+                self.send_response(200)
+                self.send_header("Content-Type", "text/html; charset=utf-8")
+                # The clock of isolated pages is finer, and samples are shorter.
+                self.send_header("Cross-Origin-Opener-Policy", "same-origin")
+                self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+                self.end_headers()
+                self.wfile.write(browser.page)
+
+            def log_message(self, *arguments):
+                pass
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+        # chromium reads requests (of the Chrome DevTools Protocol) from 3 and writes to 4, each with a 0 at its end.
+        requests, self.to = os.pipe()
+        self.answers, answers = os.pipe()
         self.process = subprocess.Popen(
-            [chromium, "--headless=new", "--no-sandbox", "--disable-gpu-watchdog", "--no-first-run",
-             f"--user-data-dir={self.folder.name}", "--remote-debugging-port=0", *flags, address],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            ["bash", "-c", f'exec "$@" 3<&{requests} 4>&{answers}', "bash", chromium, "--headless=new", "--no-sandbox",
+             "--disable-gpu-watchdog", "--no-first-run", f"--user-data-dir={self.folder.name}", "--remote-debugging-pipe", *flags],
+            pass_fds=(requests, answers), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(requests)
+        os.close(answers)
+        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        self.session = {"sessionId": self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]}
 
     def __enter__(self):
         return self
@@ -91,11 +60,58 @@ class start:
     def __exit__(self, *_):
         self.process.terminate()
         self.process.wait()
+        self.server.shutdown()
         self.folder.cleanup()
+
+    def ask(self, method, **parameters):
+        self.number += 1
+        os.write(self.to, json.dumps({"id": self.number, "method": method, "params": parameters, **self.session}).encode() + b"\0")
+        while True:
+            while b"\0" not in self.read:
+                self.read += os.read(self.answers, 1 << 20) or sys.exit("chromium has ended")
+            text, self.read = self.read.split(b"\0", 1)
+            answer = json.loads(text)
+            if answer.get("id") == self.number:
+                return answer["result"] if "result" in answer else sys.exit(f"{method}: {answer}")
+
+    def value(self, script):
+        """What a script gives, in the page."""
+        answer = self.ask("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        return answer["result"].get("value") if "exceptionDetails" not in answer else sys.exit(f"{script}: {answer}")
+
+    def until(self, script, seconds=240):
+        end = time.monotonic() + seconds
+        while not self.value(script):
+            time.sleep(0.05)
+            if time.monotonic() > end:
+                sys.exit(f"not in {seconds} s: {script}: {self.value('document.body.innerText')}")
+
+    def open(self, page, query=""):
+        self.page = page.encode()
+        self.ask("Page.navigate", url=f"http://localhost:{self.server.server_port}/?{query}")
+        self.until("document.readyState === 'complete' && Boolean(element('support').textContent)")
+
+    def press(self, key, **more):
+        for kind in ("keyDown", "keyUp"):
+            self.ask("Input.dispatchKeyEvent", type=kind, key=key, code=key, **more)
+
+    def resize(self, width, height, dark=False):
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.value("new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(resolve)))")
+
+    def results(self):
+        """What the page has measured, when it has."""
+        self.until("Boolean(session?.finished)")
+        return self.value("about().then(it => session.results(it))")
 
 
 def rows_of(text):
     return list(csv.DictReader(io.StringIO(json.loads(text)["timings_csv"])))
+
+
+def query_of(scenes, integrators="semi-euler", rounds=1, seconds=0.002, more=""):
+    return f"auto={scenes}&integrators={integrators}&rounds={rounds}&seconds={seconds}{more}"
 
 
 # What a kernel may have wrong: text of the page's WebGPU part, and what stands there instead. The reference stays right.
@@ -115,44 +131,107 @@ MUTANTS = {
 }
 
 
-def mutated(page, name):
-    old, new = MUTANTS[name]
-    if page.count(old) != 1:
-        raise SystemExit(f"the page has {page.count(old)} times: {old}")
-    return page.replace(old, new)
-
-
 def expect(condition, what):
     if not condition:
-        raise SystemExit(what)
+        sys.exit(what)
+
+
+def is_timed(row):
+    return row["verified"] == "true" and row["status"] == "ok" and float(row["ms_per_step"]) > 0
+
+
+def check_rows(browser, page):
+    """Every explicit integrator on a cloth and on bodies."""
+    every = browser.open(page) or browser.value("data.integrators.map(({name}) => name)")
+    browser.open(page, query_of("cloth2500,bodies3858", ",".join(every), 3, 0.005))
+    rows = rows_of(result := browser.results())
+    expect(len(rows) == 2 * 2 * len(every), f"{len(rows)} rows")
+    for row in rows:
+        expect(is_timed(row), f"not right: {row}")
+    expect(browser.value("Math.abs(session.done / session.units - 1) < 1e-6"), "the progress does not end at its end")
+    return {"result": result}
+
+
+def check_mutants(browser, page):
+    for name, (right, wrong) in MUTANTS.items():
+        expect(page.count(right) == 1, f"the page has {page.count(right)} times: {right}")
+        browser.open(page.replace(right, wrong), query_of("bodies3858" if "slices" in name else "cloth2500"))
+        rows = {row["backend"]: row for row in rows_of(browser.results())}
+        wrong = rows.pop("webgpu")
+        expect(wrong["status"].startswith("failed") and not wrong["ms_per_step"], f"not noticed: {name}: {wrong}")
+        expect(all(map(is_timed, rows.values())), f"others fail: {name}: {rows}")
+
+
+def check_accidents(browser, page):
+    """The GPU is lost, and a buffer is too large for it: other rows stay."""
+    browser.open(page, query_of("cloth2500,cloth4900,bodies3858", rounds=5, seconds=0.05, more="&lose=1.5"))
+    rows = rows_of(lost := browser.results())
+    expect(any("lost the GPU" in row["status"] + row["note"] for row in rows if row["backend"] == "webgpu"),
+           f"nothing says that the device was lost: {rows}")
+    expect(len(rows) >= 6 and all(is_timed(row) for row in rows if row["backend"] != "webgpu"), f"rows are gone: {rows}")
+    browser.open(page.replace("if (bytes > device.limits[limit])", "if (bytes > 100000)"), query_of("cloth2500,cloth4900"))
+    rows = {(row["scene"], row["backend"]): row for row in rows_of(browser.results())}
+    large = rows.pop(("cloth4900", "webgpu"))
+    expect(large["status"].startswith("unsupported") and "maxStorageBufferBindingSize" in large["status"] and not large["ms_per_step"],
+           f"no limit is named: {large}")
+    expect(all(map(is_timed, rows.values())), f"not right: {rows}")
+    return {"lost": lost}
+
+
+def check_person(browser, page):
+    """By keyboard: start, hide the page for a while, stop, and load it again."""
+    browser.open(page, "rounds=100&seconds=0.02&integrators=semi-euler")
+    for _ in range(100):
+        browser.press("Tab")
+        if browser.value("document.activeElement.id") == "start":
+            break
+    browser.press("Enter", text="\r")
+    browser.until("session?.rows.some(row => row.samples.length)")
+    hide = "Object.defineProperty(document, 'hidden', {value: %s, configurable: true}); document.dispatchEvent(new Event('visibilitychange'))"
+    browser.value(hide % "true")
+    browser.until("session.hidden")
+    before = browser.value("session.done")
+    time.sleep(0.5)
+    expect(browser.value("session.done") == before, "the page measures while it is hidden")
+    browser.value(hide % "false")
+    browser.until(f"session.done > {before}")
+    expect("left" in browser.value("element('left').textContent"), "the page does not say how much time is left")
+    expect(browser.value("document.activeElement.id") == "stop", "the focus is not on Stop")
+    browser.press("Enter", text="\r")
+    results = browser.results()
+    for what in "hidden", "stopped":
+        expect(any(what in note for note in json.loads(results)["provenance"]["noise"]), f"no note says that it was {what}: {results}")
+    rows = browser.value("element('rows').children.length")
+    browser.ask("Page.reload")
+    browser.until("typeof element === 'function' && Boolean(element('rows').children.length)")
+    expect(browser.value("element('rows').children.length") == rows, "rows are gone after loading the page again")
+    expect(rows_of(browser.results()) == rows_of(results), "rows have changed after loading the page again")
+    for width in 360, 1280:
+        for dark in False, True:
+            browser.resize(width, 800, dark)
+            expect(browser.value("document.documentElement.scrollWidth") <= width, f"the page is wider than {width}")
+
+
+def check_without(browser, page):
+    browser.open(page, query_of("cloth2500", rounds=2))
+    rows = rows_of(without := browser.results())
+    expect("webgpu" not in [row["backend"] for row in rows] and all(map(is_timed, rows)), f"rows without WebGPU: {rows}")
+    expect("WebGPU" in browser.value("element('notes').textContent"), "the page does not say that there is no WebGPU")
+    return {"without": without}
 
 
 def main(chromium, page_file, folder):
-    page = pathlib.Path(page_file).read_text()
-    every = ",".join(integrator["name"] for integrator in json.loads(page.split("const data =\n", 1)[1].split(";\n", 1)[0])["integrators"])
-    two = "auto=cloth2500,bodies3858&rounds=1&seconds=0.002"
-    jobs = {"all": (page, f"auto=cloth2500,bodies3858&rounds=3&seconds=0.005&integrators={every}"),
-            "lost": (page, "auto=cloth2500,cloth4900,bodies3858&rounds=5&seconds=0.05&integrators=semi-euler&lose=1.5")}
-    jobs.update({name: (mutated(page, name), two + "&integrators=semi-euler,midpoint") for name in MUTANTS})
-    results = browse(chromium, WEBGPU, jobs)
-    rows = rows_of(results["all"])
-    expect(len(rows) == 2 * 2 * len(every.split(",")), f"{len(rows)} rows")
-    for row in rows:
-        expect(row["verified"] == "true" and row["status"] == "ok" and float(row["ms_per_step"]) > 0, f"not right: {row}")
-    for name in MUTANTS:
-        bad = [row for row in rows_of(results[name]) if row["backend"] == "webgpu" and row["status"].startswith("failed")]
-        expect(bad and not any(row["ms_per_step"] for row in bad), f"not noticed: {name}")
-        expect(all(row["verified"] == "true" for row in rows_of(results[name]) if row["backend"] == "javascript"),
-               f"javascript fails: {name}")
-    lost = rows_of(results["lost"])
-    expect(any("lost the GPU" in row["status"] + row["note"] for row in lost if row["backend"] == "webgpu"),
-           f"nothing says that the device was lost: {lost}")
-    expect(len(lost) == 6 and all(row["status"] == "ok" for row in lost if row["backend"] == "javascript"), f"rows are gone: {lost}")
-    without = browse(chromium, ["--disable-features=WebGPU,WebGPUService"],
-                     {"without": (page, "auto=cloth2500&rounds=2&seconds=0.002&integrators=semi-euler&webgpu=no")})
-    expect([row["backend"] for row in rows_of(without["without"])] == ["javascript"], "rows without WebGPU")
-    for name, text in (("result", results["all"]), ("lost", results["lost"]), ("without", without["without"])):
-        (pathlib.Path(folder) / f"{name}.json").write_text(text)
+    page = pathlib.Path(page_file).read_text(encoding="utf-8")
+
+    def run(flags, *checks):
+        with Browser(chromium, flags) as browser:
+            return [found for check in checks for found in (check(browser, page) or {}).items()]
+
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        parts = [pool.submit(run, WEBGPU, check_rows, check_accidents), pool.submit(run, WEBGPU, check_mutants, check_person),
+                 pool.submit(run, ["--disable-features=WebGPU"], check_without)]
+    for name, text in [found for part in parts for found in part.result()]:
+        (pathlib.Path(folder) / f"{name}.json").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -131,10 +131,15 @@ async function verifySecond(make, scene, integrator) {
 /** Thrown where the user has pressed Stop. */
 class Stopped extends Error {}
 
+/** How often the page was hidden or shown again. */
+let hides = 0;
+document.addEventListener('visibilitychange', () => ++hides);
+
 /** A run. `options`: {scenes, integrators, rounds, sampleSeconds}, names. `show(session)` is called after each change. */
 class Session {
   constructor(options, device, adapterName, show) {
-    Object.assign(this, {options, device, adapterName, show, rows: [], notes: [], stopping: false, hidden: false, lost: '', done: 0});
+    Object.assign(this, {options, device, adapterName, show, rows: [], notes: [], stopping: false, hidden: false, lost: '', done: 0,
+                         scene: options.scenes[0], what: ''});
     this.granularity = clockGranularity();
     this.started = new Date().toISOString().replace(/\.\d+Z$/, 'Z');
     this.notes.push(`the browser's clock has steps of ${Number((1e6 * this.granularity).toPrecision(3))} microseconds`);
@@ -146,7 +151,14 @@ class Session {
       this.notes.push(this.lost);
       this.show(this);
     });
-    this.units = options.scenes.length * options.integrators.length * (2 + options.rounds);
+    // Of the progress: about how many seconds the parts take on a fast computer.
+    this.integrators = data.integrators.filter(({name}) => options.integrators.includes(name));
+    this.scenes = data.scenes.filter(({name}) => options.scenes.includes(name));
+    this.verifying = (scene, integrator) => 0.2 + 5e-5 * scene.nodes * integrator.stages.length;
+    this.round = 4 * options.sampleSeconds * this.integrators.length;
+    this.units = 0;
+    for (const scene of this.scenes)
+      this.units += this.integrators.reduce((sum, it) => sum + this.verifying(scene, it), options.rounds * this.round);
   }
 
   /** Lets the browser draw, waits while the page is hidden, and throws Stopped. */
@@ -161,16 +173,16 @@ class Session {
     this.breath = performance.now();
     if (this.stopping) throw new Stopped();
   }
-  advance(what) {
-    this.what = what;
-    ++this.done;
+  advance(scene, what, by = 0) {
+    Object.assign(this, {scene: scene.name, what});
+    this.done += by;
     this.show(this);
   }
 
   async run() {
     this.begin = performance.now();
     try {
-      for (const name of this.options.scenes) await this.measureScene(data.scenes.find(scene => scene.name === name));
+      for (const scene of this.scenes) await this.measureScene(scene);
     } catch (error) {
       if (!(error instanceof Stopped)) this.notes.push(`the measurement ended early: ${error.message}`);
       else this.notes.push('the user stopped the measurement');
@@ -196,8 +208,8 @@ class Session {
   async measureScene(scene) {
     const system = buildSystem(scene), timed = [];
     try {
-      for (const integrator of data.integrators.filter(({name}) => this.options.integrators.includes(name))) {
-        this.advance(`${scene.name}, ${integrator.name}: the double-precision reference`);
+      for (const integrator of this.integrators) {
+        this.advance(scene, `${integrator.name}: the double-precision reference`);
         await this.pause(true);
         const reference = await runReference(system, integrator, scene.checks[integrator.name], scene.dt, () => this.pause());
         for (const name of this.device || this.lost ? ['javascript', 'webgpu'] : ['javascript']) {
@@ -215,12 +227,11 @@ class Session {
             timed.push(row);
           });
         }
-        this.advance(`${scene.name}, ${integrator.name}: verified`);
+        this.advance(scene, `${integrator.name}: verified`, this.verifying(scene, integrator));
       }
       for (let round = 1; round <= this.options.rounds; ++round) {
         for (const row of shuffled(timed)) await this.attempt(row, () => this.sample(row, system));
-        this.done += this.options.integrators.length - 1;
-        this.advance(`${scene.name}: round ${round} of ${this.options.rounds}`);
+        this.advance(scene, `round ${round} of ${this.options.rounds}`, this.round);
         await this.pause(true);
       }
     } finally {
@@ -258,17 +269,17 @@ class Session {
   async time(row, system, steps) {
     for (;;) {
       if (row.backend === 'webgpu' && this.lost) throw new Error(this.lost);
-      const wasHidden = document.hidden;
+      const already = hides;
       await row.backend_.setState(system.start);
       await row.backend_.step(1);
       await row.backend_.setState(system.start);
       const before = performance.now();
       await row.backend_.step(steps);
       const seconds = Math.max((performance.now() - before) / 1000, 1e-9);
-      // Browsers slow hidden pages down.
-      if (!wasHidden && !document.hidden) return seconds;
-      this.hidden = true;
       await this.pause(true);
+      // Browsers slow hidden pages down.
+      if (hides === already) return seconds;
+      this.hidden = true;
     }
   }
 
@@ -280,8 +291,6 @@ class Session {
     let steps = 1;
     for (;;) {
       const seconds = await this.time(row, system, steps) / steps;
-      await this.pause();
-      row.backend_.setStepSeconds?.(seconds);
       const fit = stepsFor(seconds);
       if (fit <= 2 * steps) {
         steps = fit;
@@ -290,10 +299,7 @@ class Session {
       steps = Math.min(fit, 10 * steps);
     }
     const trialSteps = Math.max(1, Math.floor(steps / 4)), trials = [];
-    while (trials.length < data.most_warm_up_trials && !isWarm(trials)) {
-      trials.push(await this.time(row, system, trialSteps));
-      await this.pause();
-    }
+    while (trials.length < data.most_warm_up_trials && !isWarm(trials)) trials.push(await this.time(row, system, trialSteps));
     row.warm_up_trials = trials.length;
     row.steps = stepsFor(median(trials) / trialSteps);
   }
@@ -302,7 +308,6 @@ class Session {
     const seconds = await this.time(row, system, row.steps);
     if (!areFinite(await row.backend_.state())) throw new Error(`failed: not finite after ${row.steps} steps`);
     row.samples.push(1000 * seconds / row.steps);
-    await this.pause();
   }
 
   summarise(row) {
@@ -322,7 +327,7 @@ class Session {
   /** Milliseconds that are left, about. */
   left() {
     const share = Math.min(this.done / this.units, 1);
-    return share > 0.02 ? (performance.now() - this.begin) * (1 - share) / share : NaN;
+    return share > 0 ? (performance.now() - this.begin) * (1 - share) / share : NaN;
   }
 
   /** The largest drift of a row with a time. */

@@ -11,7 +11,8 @@ const create = (tag, properties = {}, ...children) => {
   made.append(...children);
   return made;
 };
-let session, adapter, lock;
+const {build} = data.provenance, keptAs = JSON.stringify(build);
+let session, adapter, lock, shown;
 
 // The device.
 
@@ -99,14 +100,37 @@ function showChart({rows}) {
 
 function show(its) {
   const left = its.left();
-  element('state').textContent = its.finished ? `Done: ${its.rows.filter(row => row.verified).length} of ${its.rows.length} rows are verified.`
+  // A screen reader says each new state: those are few.
+  const state = its.finished ? `Done: ${its.rows.filter(row => row.verified).length} of ${its.rows.length} rows are verified.`
+    : `Measures ${its.scene}.`;
+  if (element('state').textContent !== state) element('state').textContent = state;
+  element('left').textContent = its.finished ? ''
     : its.what + (left > 0 ? `; about ${left < 90000 ? `${Math.ceil(left / 1000)} s` : `${Math.ceil(left / 60000)} min`} left` : '');
   element('bar').value = its.finished ? 1 : its.done / its.units;
   const notes = its.drift() > 1.05 ? [...its.notes, `a row became ${((its.drift() - 1) * 100).toFixed(0)} % slower over its rounds: the device may be hot`] : its.notes;
   element('notes').replaceChildren(...notes.map(note => create('li', {textContent: note})));
-  showRows(its);
-  showChart(its);
+  const seen = JSON.stringify(its.rows.map(({status, verified, ms_per_step}) => [status, verified, ms_per_step]));
+  if (seen !== shown) {
+    shown = seen;
+    showRows(its);
+    showChart(its);
+  }
   for (const id of ['save', 'send']) element(id).disabled = !its.rows.some(row => row.samples.length || row.status !== 'ok');
+  const {notes: said, started, finished, rows} = its;
+  try {
+    sessionStorage.setItem(keptAs, JSON.stringify({notes: said, started, finished, rows: rows.map(({backend_, ...row}) => row)}));
+  } catch {}  // some browsers forbid it, for example in private windows
+}
+
+/** The rows of this tab, if the browser has ended the page since: phones end pages that they hide. */
+function showKept() {
+  let kept = null;
+  try { kept = JSON.parse(sessionStorage.getItem(keptAs)); } catch {}
+  if (!kept) return;
+  session = Object.assign(Object.create(Session.prototype), kept, {finished: true});
+  if (!kept.finished) session.notes.push('the page was loaded again during the measurement, which ended');
+  session.rows.forEach(row => session.summarise(row));
+  show(session);
 }
 
 // The cloth, while nothing is timed.
@@ -144,6 +168,10 @@ async function animate() {
 
 // Buttons.
 
+// A phone that sleeps ends the measurement. A page that was hidden has lost its lock.
+const stayAwake = async () => lock = await navigator.wakeLock?.request('screen').catch(() => null);
+document.addEventListener('visibilitychange', () => !document.hidden && session && !session.finished && stayAwake());
+
 const chosen = id => [...element(id).querySelectorAll('input:checked')].map(({value}) => value);
 
 async function measure() {
@@ -151,10 +179,11 @@ async function measure() {
                    sampleSeconds: Number(address.get('seconds')) || 0.1};
   if (session && !session.finished) return;
   if (!options.scenes.length || !options.integrators.length) return void (element('state').textContent = 'Choose a scene and an integrator.');
-  element('start').disabled = true;
   element('stop').disabled = false;
+  if (document.activeElement === element('start')) element('stop').focus();
+  element('start').disabled = true;
   const device = await openDevice().catch(() => null);
-  lock = await navigator.wakeLock?.request('screen').catch(() => null);  // a phone that sleeps ends the measurement
+  await stayAwake();
   session = new Session(options, device, adapterName(), show);
   if (address.get('lose')) setTimeout(() => device?.destroy(), 1000 * Number(address.get('lose')));
   show(session);
@@ -189,16 +218,14 @@ element('scenes').append(...data.scenes.map(({name}) => box(name, !autoScenes.le
 element('integrators').append(...data.integrators.map(({name, paper_name}) =>
   box(name, integrators.length ? integrators.includes(name) : name === paper_name)));
 if (address.get('rounds')) element('rounds').value = address.get('rounds');
-const {version, commit, dirty} = data.provenance.build;
-element('version').textContent = `Made by mssim ${version}, commit ${commit.slice(0, 12)}${dirty ? ' with changes' : ''}.`;
+element('version').textContent = `Made by mssim ${build.version}, commit ${build.commit.slice(0, 12)}${build.dirty ? ' with changes' : ''}.`;
 
 (async () => {
   const device = await openDevice().catch(() => null);
   element('support').textContent = device ? `WebGPU runs on ${adapterName()}.` : `${missingWebGpu()} Only JavaScript will be measured.`;
   device?.destroy();
   await animate();
-  if (autoScenes.length) {
-    await measure();
-    await send();
-  }
+  if (!autoScenes.length) return showKept();
+  await measure();
+  await send();
 })();

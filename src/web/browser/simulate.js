@@ -126,6 +126,23 @@ function moved({position, velocity}, seconds, floor = -Infinity) {
   })};
 }
 
+// The memory of a backend has number c (x, y, z, u, v, w) of a node at index at(node, c).
+
+function store({position, velocity}, memory, at) {
+  for (let i = 0; i < position.length; ++i) {
+    memory[at(Math.floor(i / 3), i % 3)] = position[i];
+    memory[at(Math.floor(i / 3), i % 3 + 3)] = velocity[i];
+  }
+}
+function stateIn(memory, at, nodes) {
+  const state = {position: new Float64Array(3 * nodes), velocity: new Float64Array(3 * nodes)};
+  for (let i = 0; i < 3 * nodes; ++i) {
+    state.position[i] = memory[at(Math.floor(i / 3), i % 3)];
+    state.velocity[i] = memory[at(Math.floor(i / 3), i % 3 + 3)];
+  }
+  return state;
+}
+
 // The plain list of springs in typed arrays.
 
 /** Compiles the steps of an integrator: a function of the list and a number of steps. */
@@ -196,24 +213,10 @@ class ListBackend {
       pairs: Array.from({length: 4}, () => new Real(6 * n)),
     };
   }
-  async setState(state) {
-    const {position, velocity} = moved(state, this.ahead);
-    for (let i = 0; i < position.length; ++i) {
-      const at = 6 * Math.floor(i / 3) + i % 3;
-      this.list.pairs[0][at] = position[i];
-      this.list.pairs[0][at + 3] = velocity[i];
-    }
-  }
+  at(node, c) { return 6 * node + c; }
+  async setState(state) { store(moved(state, this.ahead), this.list.pairs[0], this.at); }
   async step(count) { this.steps(this.list, count); }
-  async state() {
-    const n = this.system.nodes, position = new Float64Array(3 * n), velocity = new Float64Array(3 * n), from = this.list.pairs[0];
-    for (let i = 0; i < 3 * n; ++i) {
-      const at = 6 * Math.floor(i / 3) + i % 3;
-      position[i] = from[at];
-      velocity[i] = from[at + 3];
-    }
-    return moved({position, velocity}, -this.ahead, this.system.floor[0]);
-  }
+  async state() { return moved(stateIn(this.list.pairs[0], this.at, this.system.nodes), -this.ahead, this.system.floor[0]); }
   destroy() { this.list = null; }
 }
 
@@ -275,7 +278,7 @@ function sliceSprings(system) {
       rest[at + 1] = system.materials[0].stiffness * system.restLengths[s] / mass;
     });
   });
-  return {order, buffers: [
+  return {place, buffers: [
     ['first_entry', 'array<u32>', Uint32Array.from(firstEntry)], ['entries', 'array<vec2u>', entries],
     ['constants', 'array<SpringConstants>', constants]]};
 }
@@ -326,7 +329,7 @@ class WebGpuBackend {
   /** Throws an Error whose message is the reason if the system is too large for the device, or the device is lost. */
   static async make(device, system, integrator, dt) {
     const backend = new WebGpuBackend(), n = system.nodes;
-    const sliced = system.grid ? {order: null, buffers: []} : sliceSprings(system);
+    const sliced = system.grid ? {buffers: []} : sliceSprings(system);
     const bytes = Math.max(32 * n, ...sliced.buffers.map(([, , values]) => values.byteLength));
     for (const limit of ['maxStorageBufferBindingSize', 'maxBufferSize'])
       if (bytes > device.limits[limit])
@@ -335,7 +338,8 @@ class WebGpuBackend {
     if (groups > device.limits.maxComputeWorkgroupsPerDimension)
       throw new Error(`unsupported: it needs ${groups} workgroups, and the device's maxComputeWorkgroupsPerDimension is ` +
                       device.limits.maxComputeWorkgroupsPerDimension);
-    Object.assign(backend, {device, system, groups, order: sliced.order, ahead: integrator.ahead * dt, batch: 16, all: []});
+    const at = (node, c) => 8 * (sliced.place ? sliced.place[node] : node) + c + (c > 2);
+    Object.assign(backend, {device, system, groups, at, ahead: integrator.ahead * dt, batch: 1, all: []});
     const usage = GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC | GPUBufferUsage.COPY_DST;
     const buffer = (size, its) => (backend.all.push(device.createBuffer({size, usage: its})), backend.all.at(-1));
     backend.pairs = [];
@@ -364,23 +368,21 @@ class WebGpuBackend {
   }
   async setState(state) {
     if (this.known !== state) {  // samples all start from the same one
-      const {position, velocity} = moved(state, this.ahead), n = this.system.nodes, values = new Float32Array(8 * n);
-      for (let i = 0; i < n; ++i) {
-        const node = this.order ? this.order[i] : i;
-        values.set(position.subarray(3 * node, 3 * node + 3), 8 * i);
-        values[8 * i + 3] = this.system.free[node];
-        values.set(velocity.subarray(3 * node, 3 * node + 3), 8 * i + 4);
-      }
-      Object.assign(this, {known: state, values});
+      Object.assign(this, {known: state, values: new Float32Array(8 * this.system.nodes)});
+      store(moved(state, this.ahead), this.values, this.at);
+      this.system.free.forEach((free, node) => this.values[this.at(node, 2) + 1] = free);
     }
     this.device.queue.writeBuffer(this.pairs[0], 0, this.values);
     this.odd = 0;
     await this.device.queue.onSubmittedWorkDone();
   }
+  /** Submissions take at most about a fifth of a second: drivers end those that take seconds. Short calls overstate a step's time,
+   *  so a submission only grows from call to call. */
   async step(count) {
-    while (count > 0) {
+    const before = performance.now();
+    for (let left = count; left > 0; left -= this.batch) {
       const encoder = this.device.createCommandEncoder(), pass = encoder.beginComputePass();
-      const steps = Math.min(count, this.batch);
+      const steps = Math.min(left, this.batch);
       for (let step = 0; step < steps; ++step, this.odd = 1 - this.odd)
         for (const {pipeline, groups} of this.stages) {
           pass.setPipeline(pipeline);
@@ -389,9 +391,9 @@ class WebGpuBackend {
         }
       pass.end();
       this.device.queue.submit([encoder.finish()]);
-      count -= steps;
     }
     await this.device.queue.onSubmittedWorkDone();
+    this.batch = Math.max(this.batch, Math.min(2000, Math.floor(200 * count / (performance.now() - before))));
   }
   async state() {
     const n = this.system.nodes, encoder = this.device.createCommandEncoder();
@@ -400,15 +402,7 @@ class WebGpuBackend {
     await this.reading.mapAsync(GPUMapMode.READ);
     const values = new Float32Array(this.reading.getMappedRange().slice(0));
     this.reading.unmap();
-    const position = new Float64Array(3 * n), velocity = new Float64Array(3 * n);
-    for (let i = 0; i < n; ++i) {
-      const node = this.order ? this.order[i] : i;
-      position.set(values.subarray(8 * i, 8 * i + 3), 3 * node);
-      velocity.set(values.subarray(8 * i + 4, 8 * i + 7), 3 * node);
-    }
-    return moved({position, velocity}, -this.ahead, this.system.floor[0]);
+    return moved(stateIn(values, this.at, n), -this.ahead, this.system.floor[0]);
   }
-  /** As many steps a submission as take about a tenth of a second: drivers end those that take seconds. */
-  setStepSeconds(seconds) { this.batch = Math.max(1, Math.min(2000, Math.floor(0.1 / seconds))); }
   destroy() { for (const buffer of this.all) buffer.destroy(); }
 }
