@@ -65,7 +65,7 @@ class CompileTimer {
   CompileTimer& operator=(const CompileTimer&) = delete;
 
  private:
-  const Stopwatch watch_;
+  const Stopwatch watch_{};
 };
 
 /// Time for which this thread has waited so far until drivers had compiled, s: trials, builds, and the first
