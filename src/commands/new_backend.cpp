@@ -133,7 +133,6 @@ int run_new_backend(const NewBackendOptions& options) {
   std::vector<StarterFile> wanted;
   for (const StarterFile& file : starter.files)
     if (is_wanted(file, folder / file.name)) wanted.push_back(file);
-  make_folder(folder);
   for (const StarterFile& file : wanted) {
     const fs::path path = folder / file.name;
     write_file_atomically(path, file.text);

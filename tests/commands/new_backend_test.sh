@@ -33,8 +33,6 @@ status=0
 verified_everywhere 'a folder/mine' mine
 
 # A second one beside it takes the header that is there.
-ends 0 new-backend other --language c++ --out 'a folder/in it'
-said err 'mssim: wrote a folder/in it/other.cpp'
 ends 0 new-backend other --language c++ --out 'a folder'
 said err 'mssim: wrote a folder/other.cpp'
 
