@@ -236,7 +236,8 @@ int run_guide(const GuideOptions& options) {
     print(guide);
   }
   if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
-  if (folder && !written) std::cerr << "mssim: nothing was measured yet, and nothing written\n";
+  if (folder && !written)
+    std::cerr << "mssim: nothing was measured yet; " << escaped(options.folder) << " has no results\n";
   stop.throw_if_requested();
   const std::vector<std::string> failed = failures(guides, plan.scenes.size());
   tell_first(failed);

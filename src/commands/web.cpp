@@ -51,7 +51,7 @@ int web(const WebOptions& options) {
   }
   AtomicFile(make_folder(options.results) / ".probe").remove();  // before a phone has measured
   serve_page(
-      web_page(), options.port, options.once,
+      web_page, options.port, options.once,
       [&](const std::string& text) { return keep(options.results, text); },
       [](const std::string& address) { std::cout << address << std::endl; });
   return exit_ok;

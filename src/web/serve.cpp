@@ -19,6 +19,9 @@ constexpr std::size_t largest_request_bytes = std::size_t{64} << 20;
 /// A listening socket on the loopback address, which no other machine can reach.
 Descriptor listener(int port, std::string& address) {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  // Connections of a server that ended keep its port for a minute otherwise.
+  const int yes = 1;
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   sockaddr_in at{};
   at.sin_family = AF_INET;
   at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -87,11 +90,12 @@ void answer(int socket, std::string_view status, std::string_view type, std::str
 
 }  // namespace
 
-void serve_page(const std::string& page, int port, bool once,
+void serve_page(const std::function<std::string()>& make_page, int port, bool once,
                 const std::function<std::string(const std::string& text)>& taken,
                 const std::function<void(const std::string& address)>& ready) {
   std::string address;
   const Descriptor socket = listener(port, address);
+  const std::string page = make_page();
   ready(address);
   for (;;) {
     const Descriptor connection(::accept4(socket.get(), nullptr, nullptr, SOCK_CLOEXEC));

@@ -26,11 +26,11 @@ MeasuredRun read_web_results(const std::filesystem::path& file);
 /// The same of a text; `file` is for messages.
 MeasuredRun parse_web_results(const std::filesystem::path& file, const std::string& text);
 
-/// Serves the page on this machine's loopback address until an ending signal, or with `once` until it has
-/// taken a result. `taken` gets the text of each result that the page sends, and returns what to answer; what
-/// it throws is answered as an error. Port 0: any free one. Calls `ready` with the address. Throws
-/// UsageError if the port is taken.
-void serve_page(const std::string& page, int port, bool once,
+/// Serves what `make_page` makes on this machine's loopback address until an ending signal, or with `once`
+/// until it has taken a result. Makes the page when it has the port. `taken` gets the text of each result
+/// that the page sends, and returns what to answer; what it throws is answered as an error. Port 0: any free
+/// one. Calls `ready` with the address. Throws UsageError if the port is taken.
+void serve_page(const std::function<std::string()>& make_page, int port, bool once,
                 const std::function<std::string(const std::string& text)>& taken,
                 const std::function<void(const std::string& address)>& ready);
 

@@ -106,6 +106,8 @@ expect 2 'the compiler was GNU 12.* and is GNU 13.*; the number of threads was 2
 mkdir "$work/empty"
 expect 2 'nothing to compare' compare "$work/base" "$work/other"
 expect 2 'empty holds no timings.csv' compare "$work/base" "$work/empty"
+echo '{}' >"$work/empty/history.jsonl"
+expect 2 'history.jsonl is a file, and its folder .*empty holds no timings.csv' compare "$work/base" "$work/empty/history.jsonl"
 expect 2 'there is no .*missing' compare "$work/missing" "$work/base"
 expect 2 'NEW is missing: give .*BASE' compare "$work/base"
 

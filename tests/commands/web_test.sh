@@ -54,9 +54,11 @@ expect 2 cut.json report cut.json --no-runs --out damaged.html
 # The page sends its results to mssim.
 begins web --serve --once --results sent
 soon 60 test -s "$work/out" || fail "mssim does not serve the page"
+address=$(<"$work/out") port=$(grep -o '[0-9]*' "$work/out")
+(work=$(mktemp -d) && expect 2 "cannot serve on port $port.*--port" web --serve --port "$port" && rm -r "$work") || exit 1
 profile=$(mktemp -d)
 "$chromium" --headless=new --no-sandbox --user-data-dir="$profile" --remote-debugging-port=0 \
-  "$(<"$work/out")?auto=cloth2500&rounds=2&seconds=0.002&integrators=semi-euler" >/dev/null 2>&1 &
+  "$address?auto=cloth2500&rounds=2&seconds=0.002&integrators=semi-euler" >/dev/null 2>&1 &
 browser=$!
 soon 60 is_gone "$process" || fail "mssim takes no result"
 kill "$browser"

@@ -59,7 +59,10 @@ fs::path folder_of(const fs::path& path) {
                     : path.has_parent_path() ? path.parent_path()
                                              : fs::path(".");
   if (!fs::exists(folder / "timings.csv", error))
-    throw UsageError(folder.string() + " holds no timings.csv: give a folder that mssim bench --out wrote");
+    throw UsageError("{} holds no timings.csv: give a folder that mssim bench --out wrote",
+                     folder == path
+                         ? path.string()
+                         : fmt::format("{} is a file, and its folder {}", path.string(), folder.string()));
   return folder;
 }
 

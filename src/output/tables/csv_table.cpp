@@ -55,9 +55,8 @@ CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(na
       continue;
     }
     if (record.fields.size() != header_.size())
-      throw CsvError(
-          "{}, line {}: has {} fields, but the header has {}; add the missing ones, or remove the line",
-          name_, record.line, record.fields.size(), header_.size());
+      throw CsvError("{}, line {}: has {}, but the header has {}; add the missing ones, or remove the line",
+                     name_, record.line, pluralize(record.fields.size(), "field"), header_.size());
     records_.push_back(std::move(record));
   }
 }
