@@ -1,6 +1,7 @@
-// Queries OpenCL drivers for devices. A driver that crashes ends this process instead of mssim, which runs it
-// before its own query (backends/devices/drivers.h). The arguments are the libraries of the registered
-// drivers. For each driver without a platform, stdout has obstacle_mark, its number and the problem.
+// Queries all OpenCL drivers for their devices. A driver that crashes ends this process instead of mssim,
+// which runs it before its own query (backends/devices/drivers.h). The arguments are the libraries of the
+// registered drivers. For each driver without a platform, stdout has the reason: a line of obstacle_mark, its
+// number and the problem.
 
 #include <CL/cl_icd.h>
 #include <dlfcn.h>

@@ -1,4 +1,5 @@
-// Steps scenes on several processes and machines: a program of its own, so mssim does not depend on MPI.
+// Steps cloths on several processes, on one or several machines: a backend that is a program of its own, so
+// mssim does not depend on MPI.
 
 #include <cstring>
 

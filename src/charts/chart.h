@@ -19,8 +19,9 @@ enum class PointMark { none, ring, square, cross };
 struct Series {
   std::string name{};  ///< in the legend
   Origin origin = Origin::measured;
-  /// What is compared, such as a configuration of the paper. Series of one family share colour, points and
-  /// pattern, and differ by their origin. If empty or taken, the series has its own look.
+  /// What is compared, such as a configuration of the paper. Series of one family have the same colour, shape
+  /// of points and pattern, and differ by their origin. If empty, or used by a series of the same origin, the
+  /// series has its own look.
   std::string family{};
   std::vector<double> x{}, y{};  ///< of the same size
   /// Intervals around y, drawn as error bars: one per y, or none.
@@ -62,7 +63,8 @@ struct Chart {
 
 struct DrawnChart {
   /// An <svg> element without width and height, so that the page sets its size: 480 units wide, text of 14
-  /// units. Text and axes have the page's colour (currentColor), for light and dark. Empty without values.
+  /// units. Text and axes have the colour of the page's text (currentColor), for light and dark pages. Empty
+  /// if no value can be drawn.
   std::string svg;
   /// The chart's remarks, then what was left out of each series: sentences without full stop.
   std::vector<std::string> notes;

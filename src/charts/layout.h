@@ -33,7 +33,8 @@ struct PlottedValues {
 /// Leaves out values as described at Chart. Throws std::invalid_argument if the numbers of values differ.
 PlottedValues plotted_values(const Chart& chart);
 
-/// Colours of series, with a contrast of at least 3 to 1 on white and on near-black (WCAG 2.2, 1.4.11).
+/// Colours of series, each with a contrast of at least 3 to 1 on white and on near-black (WCAG 2.2, 1.4.11),
+/// so that light and dark pages have the same colours.
 inline constexpr std::array<std::string_view, 12> series_colours{"#2f7ed8", "#b8720a", "#2e8f57", "#d9534f",
                                                                  "#9b59b6", "#12858c", "#c2508a", "#8a7a00",
                                                                  "#808080", "#6d67e4", "#96603c", "#4f8f00"};
@@ -43,7 +44,8 @@ inline constexpr std::array<std::string_view, 12> series_colours{"#2f7ed8", "#b8
 /// Reference lines are numbered separately.
 std::vector<std::size_t> looks_of(std::span<const Series> series, std::span<const std::string> fixed = {});
 
-/// Any text as a chart shows it: a line of XML's characters, at most `most` letters wide; if cut, with "…".
+/// Any text as a chart shows it: on one line, of characters allowed in XML, at most `most` letters wide; a
+/// longer text ends in "…".
 std::string shown_text(std::string_view text, std::size_t most);
 
 /// The same text on at most three lines, broken at spaces if possible.
@@ -59,7 +61,8 @@ struct AxisScale {
   double fraction(double value) const;
 };
 
-/// A scale with a small margin around the finite values from `low` to `high`. It begins at zero if near it.
+/// A scale with a small margin around the finite values from `low` to `high`. It begins at zero if it would
+/// begin near it.
 AxisScale linear_scale(double low, double high);
 
 /// A logarithmic scale of positive values: ticks at powers of ten, and between them if there are few.

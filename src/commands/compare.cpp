@@ -32,7 +32,8 @@ struct CompareOptions {
   bool force = false;
 };
 
-/// Times of different machines or builds prove nothing: reports differences, and refuses unless forced.
+/// Times from different machines or builds show no regression or progress: reports the differences, and
+/// refuses unless forced.
 void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool force) {
   std::vector<std::string> all = differences(base.provenance, next.provenance);
   const std::vector<std::string> of_rows = differences(base.rows, next.rows);

@@ -18,8 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Language of a starter.
 enum class StarterLanguage : std::uint8_t { python, cpp };
 
+/// A file of a starter.
 struct StarterFile {
   fs::path name;
   std::string text;
@@ -40,7 +42,8 @@ constexpr std::string_view example_name = "my_backend";
 constexpr std::array<std::string_view, 3> needed_modules{"mssim_backend", "numpy", "h5py"};
 
 /// Whether the Python in PATH has a module of that name, in its library or installed. The program's folder is
-/// searched first, so imports would find the program instead. False without Python.
+/// searched first, so the imports of the example would find the program instead. False without Python, which
+/// could not run such a program either.
 bool is_module_of_python(const std::string& name) {
   const auto python = find_program("python3");
   if (!python || name.find('-') != std::string::npos) return false;  // `import a-b` is none
@@ -84,7 +87,8 @@ std::string bench_command(const fs::path& program) {
   return "mssim bench --scene cloth2500 --backend " + shell_word("serial,openmp," + program.string());
 }
 
-/// The starter of that name, for files in `folder`. Throws UsageError for a name that would not work.
+/// The starter with that name, whose files are to be in `folder`. Throws UsageError for a name that would not
+/// work.
 Starter starter_of(const std::string& name, StarterLanguage language, const fs::path& folder) {
   require_usable(name);
   const fs::path program = folder / name;

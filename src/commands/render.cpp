@@ -124,7 +124,8 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   return png_of(pictures.front().picture);
 }
 
-/// Frames per simulated second that the pictures need of a run, and no more: large scenes have large traces.
+/// Frames per simulated second that a run must provide for the pictures. A large scene has a large trace, so
+/// it takes no more than needed.
 double fps_of_run(const RenderOptions& options, bool has_strain) {
   if (options.run.fps) return *options.run.fps;
   if (options.movie || options.frames.given()) return movie_fps;

@@ -74,6 +74,7 @@ FoundPicture drawn(const ResultRow& row) {
           png_of(painter.picture_of(positions))};
 }
 
+/// Its energies at the times of the reference.
 FoundCurve energies(const ResultRow& row, const FoundCurve& reference) {
   RunOptions run = run_of(row);
   run.duration_s = reference.time_s.back();

@@ -25,7 +25,8 @@ enum class VelocityCorrection : std::uint8_t {
 /// Parameters of a dressing step that are not properties of the cloth. The step is Vassilev's Algorithm 1;
 /// ARCHITECTURE.md lists what mssim adds to the published one.
 struct DressingSettings {
-  /// While seams close, there is no friction and, by default, no gravity, under which panels would fall.
+  /// While the seams close, there is no friction and, by default, no gravity: the panels would fall before
+  /// the seams hold them.
   double seam_force = 4;               ///< N per metre of seam, initially
   double seam_force_doubling_s = 0.5;  ///< time in which the force grows by its initial value
   double seaming_damping = 8;          ///< 1/s, per mass; draping uses System::viscous_damping
@@ -50,7 +51,8 @@ struct DressingSettings {
 struct ClothClothSettings {
   double thickness = 0.003;  ///< m, distance that layers keep; more than they approach per step
   double friction = 0.3;     ///< Coulomb's coefficient, not negative
-  /// m/s, not negative: largest speed at which near or crossed layers' positions are moved apart.
+  /// m/s, not negative: largest speed at which layers that are too near, or have crossed, are moved apart.
+  /// Only positions change, not velocities.
   double push_speed = 1;
   std::uint32_t sweeps =
       2;  ///< over all contacts per step, at least 1; more propagate farther through stacks of contacts
@@ -98,7 +100,8 @@ struct Garment {
   std::vector<Joint> joints;
   std::vector<Vec3d> flat;  ///< [nodes] m, z = 0: positions in the pattern; y is the height when worn
   DressingSettings dressing;
-  /// [layers] Maps of the body that each layer's panels meet; further layers use the last. Empty: no body.
+  /// [layers] Maps of the body that the panels of each layer collide with; layers beyond the last use the
+  /// last. Empty: there is no body.
   std::vector<std::shared_ptr<const BodyMaps>> body_maps;
   CloseCloth close;                            ///< to the body; no nodes: the fit measures no such distance
   std::optional<ClothClothSettings> touching;  ///< none: layers pass through each other

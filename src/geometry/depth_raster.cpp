@@ -13,7 +13,8 @@
 namespace mssim {
 namespace {
 
-/// Fixed-point coordinates stay below 2^29: the difference of two products of differences stays below 2^61.
+/// Fixed-point coordinates stay below 2^29, so that the difference of two products of differences stays below
+/// 2^61.
 constexpr std::int64_t subpixels = 16384;
 constexpr double farthest = 4.0 * most_pixels_a_side;
 

@@ -42,7 +42,8 @@ struct Fragment {
 /// Rows of a band, which one thread draws at a time; a picture's last band may have fewer.
 constexpr std::uint32_t band_rows = 16;
 
-/// Receives a band: its first row, its fragments row by row. Threads call it concurrently. Must not throw.
+/// Receives a band: its first row, and its fragments row by row. Several threads call it concurrently, each
+/// for another band. Must not throw.
 using TakeBand = std::function<void(std::uint32_t first_row, std::span<const Fragment> fragments)>;
 
 /// Finds the nearest triangle at the centre of every pixel. Both sides of triangles are visible. Triangles

@@ -70,7 +70,8 @@ inline Vec3d rounded(const Vec3d& point) {
   return {round_one(point.x), round_one(point.y), round_one(point.z)};
 }
 
-/// Largest magnitude of a coordinate in a mesh file: volumes stay finite in every unit and single precision.
+/// Largest magnitude of a coordinate in a mesh file, in the file's unit: volumes, and single-precision values
+/// derived from them, then stay finite in every unit.
 constexpr double farthest_coordinate = 1e9;
 inline constexpr std::string_view coordinate_wanted = "give a number from -1e9 to 1e9";
 

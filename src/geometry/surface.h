@@ -46,7 +46,8 @@ struct Opening {
 
 /// Merges corners of triangles that differ in their last digits, as exporters write them. Candidates are
 /// points on edges of one triangle only, within a hundred-thousandth of the surface's longest extent, the
-/// nearest first, but never two of one triangle. A closed surface stays. Returns the number of merged points.
+/// nearest first, but never two of one triangle. A closed surface is unchanged. Returns the number of merged
+/// points.
 std::size_t join_corners(Surface& surface);
 
 /// Throws InputError if most edges belong to one triangle only: then openings between triangles are no holes.
@@ -66,7 +67,8 @@ void span_openings(Surface& surface);
 
 /// Unit normals of the surface's points, pointing outwards: the sum of the normals of the triangles around a
 /// point, each weighted with the triangle's angle there (Thürmer and Wüthrich, "Computing vertex normals from
-/// polygonal facets", 1998). They do not depend on how flat polygons are cut. (0, 0, 0) if the sum vanishes.
+/// polygonal facets", 1998). They do not depend on how flat polygons are cut into triangles. If the sum
+/// vanishes, the normal is (0, 0, 0).
 std::vector<Vec3d> vertex_normals(const Surface& surface);
 
 /// The surface with every point moved by `offset` (m, negative: inwards) along its normal.

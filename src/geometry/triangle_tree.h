@@ -21,7 +21,8 @@ struct NearestPoint {
 };
 
 /// The point of the triangle a, b, c nearest to p (Ericson, "Real-Time Collision Detection", 2005, 5.1.5). On
-/// an edge the third weight is exactly 0, at a corner two are. Without area, the result is on an edge.
+/// an edge the third weight is exactly 0, at a corner the two others are. If the triangle has no area, the
+/// result is a point of its edges.
 inline NearestPoint nearest_point(const Vec3<float>& p, const Vec3<float>& a, const Vec3<float>& b,
                                   const Vec3<float>& c) {
   const Vec3<float> ab = b - a, ac = c - a, ap = p - a;
@@ -74,7 +75,8 @@ class TriangleTree {
   std::optional<int> winding_by_ray(const Vec3d& point) const;
 
   /// The winding number from the sum of the solid angles of all triangles (Van Oosterom and Strackee, "The
-  /// solid angle of a plane triangle", 1983). Slow, without special cases. Not for points on a triangle.
+  /// solid angle of a plane triangle", 1983). It has no special cases but is slow. The point must not lie on
+  /// a triangle.
   int winding_by_angles(const Vec3d& point) const;
 
  private:

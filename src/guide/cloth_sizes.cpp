@@ -12,7 +12,8 @@ double share_of_frame(const SizeCurve& curve, const SizeCurve::Sample& sample, d
   return steps_a_frame(curve.dt_s, frames_per_second) * sample.seconds_a_step * frames_per_second;
 }
 
-/// Whether any sample from this number on keeps the lowest frame rate: another program may slow a sample.
+/// Whether any sample from this number on keeps the lowest frame rate. One that does not may have been slowed
+/// by another program.
 bool holds_any(const SizeCurve& curve, std::size_t first) {
   return std::any_of(curve.samples.begin() + static_cast<std::ptrdiff_t>(first), curve.samples.end(),
                      [&](const SizeCurve::Sample& sample) {

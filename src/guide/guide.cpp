@@ -18,6 +18,7 @@ namespace {
 constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.45, share_of_points = 0.3,
                  share_of_longest_steps = 0.05, share_of_sizes = 0.2, share_of_exact_steps = 0.1;
 
+/// The clock of a guide.
 class GuideClock {
  public:
   explicit GuideClock(double seconds) : seconds_(seconds) {}
@@ -27,7 +28,8 @@ class GuideClock {
     for (const LateProgram& program : programs) forgiven_ += program.seconds;
   }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
-  /// End of a part that starts now, in seconds of this clock, with the fraction `later` left for later parts.
+  /// End of a part that starts now, in seconds of this clock, with the fraction `later` left for the
+  /// following parts.
   double end_of_part(double share, double later) const {
     return std::max(spent() + share * seconds_, (1 - later) * seconds_);
   }
@@ -197,6 +199,7 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
                 });
 }
 
+/// Seconds, rounded up to two digits.
 double rounded_up(double seconds) {
   const double places = 1 - std::floor(std::log10(seconds)), scale = std::pow(10, std::abs(places));
   return places > 0 ? std::ceil(seconds * scale - 1e-9) / scale : std::ceil(seconds / scale - 1e-9) * scale;

@@ -50,7 +50,8 @@ struct SizeCurve {
 /// interpolated on logarithmic axes between samples that both have; none if one is always faster.
 std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b);
 
-/// Nodes along a side of the measured cloths: each but the last has four times the nodes of the one before.
+/// The number of nodes along a side of the measured cloths: each but the last has four times the nodes of the
+/// one before.
 inline constexpr std::array<std::uint32_t, 7> cloth_sides{16, 32, 64, 128, 256, 512, 724};
 
 /// A cloth of a family, and the file of its scene, from which other processes build it.
@@ -80,7 +81,8 @@ struct Recommendation {
   /// point_at_error of the cheapest method with another integrator, else on another backend.
   std::optional<std::size_t> runner_up;
   std::optional<std::size_t> nearest;  ///< the most accurate point, if none is accurate enough
-  /// Wall time, s, with which the guide would recommend a method; if set, none of the above is.
+  /// Wall time, s, with which the guide would have recommended a method; none: the time sufficed, or the
+  /// guide was stopped. If set, none of the above is.
   std::optional<double> needed_s;
   std::vector<std::string> sentences;  ///< up to three, with full stops; one if nothing is recommended
 };
@@ -123,19 +125,22 @@ struct SceneGuide {
 
 /// Measures a scene other than a garment: the trusted state, the largest stable steps, the work-precision
 /// curves from coarse to fine, interleaved, the longest steps of the two cheapest methods that keep the
-/// error, and the sizes of cloths. Omits what the time does not suffice for; statuses say so.
+/// error, and the sizes of cloths. Omits measurements for which the time does not suffice; the method's
+/// status gives that reason.
 SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch);
 
 /// Cost of a method at a given error.
 struct CostAtError {
   double seconds_a_second = 0;  ///< wall time of a simulated second
   double dt_s = 0;              ///< the longest step
-  /// The coarsest point that counts is more accurate than requested: longer ones were unstable or untried.
+  /// Both are of the coarsest point that counts, which is more accurate than requested: a longer step was
+  /// unstable, or not tried.
   bool at_longest_step = false;
 };
 
 /// The cost at which the method's curve, from long to short steps, first reaches the error. Cost and step are
-/// interpolated between two points on logarithmic axes. None if no point that counts is accurate enough.
+/// interpolated between two points on logarithmic axes. None if no point is accurate enough. Ignores points
+/// that do not count.
 std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
                                          double error);
 
@@ -145,7 +150,8 @@ std::optional<std::size_t> point_at_error(std::span<const WorkPoint> points, con
 
 /// The number of steps over the horizon with which the method should keep the requested error, if their
 /// length exceeds that of its point_at_error by more than step_resolution. It follows from the curve, or is
-/// the largest usable step's if the curve is accurate enough at its longest. None if none keeps the error.
+/// that of the largest usable step if the curve is accurate enough at its longest step. None if no point
+/// keeps the error.
 std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& method);
 
 /// Explicit methods that could be the cheapest at the requested error, but whose curves had no time to reach
@@ -153,26 +159,31 @@ std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& met
 /// backend, and its order; it is at most the largest usable step. With that step and the measured time per
 /// step, the method is cheaper than all measured ones. A method also counts if its step or time is unknown,
 /// but not if its integrator's curve on another backend is complete and does not reach the error. Implicit
-/// methods, whose cost per step is unknown, count only without such explicit methods and points.
+/// methods, whose cost per step is not known in advance, count only if there are no such explicit methods and
+/// no point counts.
 std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide);
 
-/// Wall time, s, with which the curves of these methods would have reached the requested error, with points
-/// of others that take no longer. Rounded up to two digits, at least twice the time of the request.
+/// Wall time, s, with which the curves of these methods would have reached the requested error, with the
+/// points of other methods that take no longer. Rounded up to two digits, and at least twice the time of the
+/// request.
 double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed);
 
 /// Recommends the cheapest method at the requested error, with the longest measured step that keeps it, its
-/// speed over real time, and the errors at which the runner-up is cheaper; none with missed_methods().
+/// speed relative to real time, and the errors at which the runner-up is cheaper. Recommends nothing if there
+/// are missed_methods().
 Recommendation recommend(const SceneGuide& guide);
 
-/// Sentences: the number of measured methods, and those not measured, or not to the requested error, and why.
+/// Sentences with full stops: the number of measured methods, those not measured or not down to the requested
+/// error, and the reasons.
 std::vector<std::string> what_was_measured(const SceneGuide& guide);
 
 /// Errors at which costs are shown, from large to small: the requested one and three around it.
 std::array<double, 4> errors_around(const Wish& wish);
 
 /// Compares Hong et al.'s ranking of integrators by milliseconds per step with the costs at the requested
-/// error: sentences with full stops. Per backend, these rank semi-euler, midpoint and rk4; the last is about
-/// explicit Euler, which they omit because it "can be readily blow-up". Empty if unmeasured.
+/// error: sentences with full stops. For each backend, these rank semi-euler, midpoint and rk4; the last is
+/// about explicit Euler, which they omit because it "can be readily blow-up". Empty if none of it was
+/// measured.
 std::vector<std::string> beside_the_paper(const SceneGuide& guide);
 
 }  // namespace mssim

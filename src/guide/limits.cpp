@@ -39,7 +39,8 @@ StepSearch search_for(const Integrator& integrator, const StepTheory& theory, co
   return search;
 }
 
-/// Shortens runs to the available time: about eight find a limit. False if there is no time for one.
+/// Shortens runs to the available time: about eight of them find a limit. False if there is no time for one
+/// run.
 bool fit(StepSearch& search, double seconds_a_step, double seconds) {
   constexpr int runs = 8, fewest_steps = 10;
   const double steps = seconds / runs / seconds_a_step;

@@ -33,8 +33,9 @@ struct WorkPoint {
   /// Largest distance from the trusted state at the horizon, in mean rest lengths; none if not finite.
   std::optional<double> position_error;
   std::optional<double> energy_error;  ///< of the total energy, over the trusted kinetic + elastic energy
-  /// Errors of an implicit method, in mean rest lengths, if time allowed. The solver's is the distance from
-  /// exact backward Euler with the same step; the step's is the latter's from the trusted state.
+  /// Errors of an implicit method, in mean rest lengths, if there was time to separate them. The solver's is
+  /// the distance from exact backward Euler with the same step; the step's is the distance of exact backward
+  /// Euler from the trusted state.
   std::optional<double> solver_error, step_error;
   bool beyond_trust = false;  ///< the error is below trusted_margin times the trusted state's own
   bool on_front = false;      ///< no other point is both as fast and as accurate (mark_pareto_front)
@@ -54,17 +55,19 @@ inline bool same_method(const WorkPoint& a, const WorkPoint& b) {
 /// Growth of the total energy, as a fraction of the available energy at the start, below which a run is
 /// stable. The bound is small because an unstable run need not blow up: large motions are not linear, and may
 /// end at several times the energy. Near the limit of a symplectic method, the energy of a stable oscillation
-/// varies, too; if such modes have much of the energy and no damping, this counts as growth.
+/// varies, too; if such stiff modes have a large fraction of the energy and no damping, this counts as
+/// growth.
 inline constexpr double allowed_energy_growth = 0.01;
 
 /// The largest total energy, J, that a stable run of `system` may have: that of its start, plus
 /// allowed_energy_growth of its kinetic and elastic energy and of the energy that gravity can still add (down
 /// to the floor, or along the free fall of `span_s`, whichever is less). Springs, gravity, resting pins and
-/// the floor do not increase the total of kinetic, elastic and gravitational energy; damping decreases it.
-/// Any increase is the integrator's error.
+/// the floor do not increase the total of kinetic, elastic and gravitational energy; damping decreases it. So
+/// any increase is an error of the integrator.
 double energy_bound(const System& system, double span_s);
 
-/// Takes `steps` steps from the start; about thirty times, numbers must be finite, energy within the bound.
+/// Takes `steps` steps from the system's start, and checks the state about thirty times: all numbers must be
+/// finite and the total energy within the bound.
 bool stays_below(Backend& backend, const System& system, int steps, double bound_j);
 
 /// Makes a backend of one integrator with this step, at the system's start.
@@ -104,7 +107,8 @@ inline constexpr double step_resolution = 1.02;
 /// bisects their ratio. Growth too slow to show in a run counts as stable.
 StableStep largest_stable_step(const System& system, const StepMaker& make, const StepSearch& search);
 
-/// An integrator's largest stable step by linear theory, s; infinite if A-stable, 0 if a mode always grows.
+/// An integrator's largest stable step by linear theory, s; infinite for implicit integrators (backward Euler
+/// is A-stable) and 0 if some mode grows with every step.
 struct StepTheory {
   double at_start_s = 0;    ///< with the spectrum at the scene's start
   double on_the_way_s = 0;  ///< with the spectrum of the strained state that a run reaches
@@ -112,7 +116,8 @@ struct StepTheory {
   double shortest_s() const { return at_start_s < on_the_way_s ? at_start_s : on_the_way_s; }
 };
 
-/// From the amplification of the stages (integrators/stability.h). `reached`: spectrum of the strained state.
+/// Computed from the amplification of the integrator's stages (integrators/stability.h). `reached`: the
+/// spectrum of the strained state.
 StepTheory step_theory(const Integrator& integrator, const System& system, const Spectrum& start,
                        const Spectrum& reached);
 
@@ -139,7 +144,8 @@ enum class Lack {
   backend       ///< the backend cannot run here, cannot run this method, or fails
 };
 
-/// Largest usable step over the largest stable one, which is accurate to 2 % and from other runs.
+/// Largest usable step over the largest stable one, which is accurate to 2 % and from other runs than those
+/// over the horizon.
 inline constexpr double usable_share = 0.95;
 
 /// An integrator and its limit of stability.
@@ -186,7 +192,8 @@ inline bool is_of(const WorkPoint& point, const GuidedMethod& method) {
   return point.integrator == method.integrator && point.backend == method.backend->name;
 }
 
-/// Calls `work`, which uses a backend. False, with the reason in `status`, if that fails or cannot run.
+/// Calls `work`, which uses a backend. False if the backend cannot run here, cannot run this, or its program
+/// fails; `status` gives the reason.
 template <class Work>
 bool succeeds(const BackendInfo& backend, std::string& status, std::vector<LateProgram>& late,
               const Work& work) {
@@ -236,7 +243,8 @@ struct LimitRequest {
 inline constexpr double stability_span_s = 0.2;
 
 /// Measures the integrator's largest stable step on the first backend that runs it, and explains differences
-/// from theory. `openmp` comes first, almost always the fastest: the limit is the integrator's.
+/// from theory. `openmp` comes first, because it is almost always the fastest, and the limit depends on the
+/// integrator, not on the backend.
 StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& request);
 
 }  // namespace mssim

@@ -26,7 +26,8 @@ const WorkPoint* point_for_sizes(const SceneGuide& guide, const GuidedMethod& me
 /// The integrator's limit of stability; null if it was not looked for.
 const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator);
 
-/// The longest step, s, with which the integrator should keep the requested error; none if unmeasured.
+/// The longest step, s, with which the integrator should keep the requested error; none if no measurement
+/// shows it.
 std::optional<double> expected_step(const SceneGuide& guide, const Integrator& integrator);
 
 }  // namespace mssim

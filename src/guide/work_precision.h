@@ -17,7 +17,8 @@ namespace mssim {
 /// of springs and acceleration with the table of integrators: Boost.Odeint's Bulirsch-Stoer method
 /// (extrapolated modified midpoint rules of variable order and step; Hairer, Norsett and Wanner, Solving
 /// Ordinary Differential Equations I, section II.9). `tolerance`: absolute error per step of positions in m
-/// and velocities in m/s. The floor does not act. None if `stop` ended it, or if no step was small enough.
+/// and velocities in m/s. The floor does not act. None if `stop` ended it between two steps, or if no step
+/// was small enough.
 std::optional<State> independent_state(const System& system, double span_s, double tolerance,
                                        const std::function<bool()>& stop);
 
@@ -30,8 +31,9 @@ struct TrustedRequest {
   std::function<bool()> stop = [] { return false; };
 };
 
-/// Factor by which the distance of neighbouring trajectories may grow within a horizon. Beyond, the error at
-/// the end shows how chaotic the motion is, not how good a step was: rounding errors grow as much.
+/// Factor by which the distance of neighbouring trajectories may grow within a horizon. If it grows by more,
+/// the error at the end shows how chaotic the motion is, not how good a step was: rounding errors of single
+/// precision grow as much.
 inline constexpr double allowed_parting = 10;
 
 /// Smallest ratio of an error that is shown to the trusted state's own.
@@ -89,7 +91,8 @@ struct MeasuredPoint {
 /// A work-precision curve, from its coarsest step on.
 class WorkCurve {
  public:
-  /// `limit`: the integrator's. References must outlive this. It ends at a quarter of `wanted_error`.
+  /// `limit`: of the method's integrator. All references must outlive the curve. `wanted_error`: the curve
+  /// ends after a point with at most a quarter of it.
   WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit, GuidedMethod& method,
             const ExecutionOptions& execution, double wanted_error);
 
@@ -105,7 +108,8 @@ class WorkCurve {
   bool is_timed() const { return method_.step_seconds > 0; }
   /// Times a step of an explicit method. If the backend does not run, or fails, the curve ends.
   void time_step();
-  /// Measures the next point, with half the step. None, with a method.status, if the backend does not run.
+  /// Measures the next point, with half the step of the one before. None if the backend does not run, or
+  /// fails; method.status gives the reason.
   std::optional<MeasuredPoint> next();
   /// Measures an additional point, of `steps` steps over the horizon. None as for next().
   std::optional<MeasuredPoint> measure(int steps);
@@ -113,7 +117,8 @@ class WorkCurve {
   double seconds_of(int steps) const;
 
  private:
-  /// Whether the curve continues. If rounding limits its accuracy, it ends, and the method's status says so.
+  /// Whether the curve continues. If it ends because rounding limits its accuracy, the method's status says
+  /// so.
   bool goes_on_after(const WorkPoint& point);
 
   const System& system_;

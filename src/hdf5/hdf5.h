@@ -22,8 +22,9 @@ struct Hdf5Error : std::runtime_error {
   int error_number;    ///< the errno that HDF5 noted, 0 if none
 };
 
-/// Call before any other HDF5 function, in each thread. It stops HDF5 from locking files, as their writers
-/// do, from printing its error stack, and from flushing files at exit, where it crashes if it cannot write.
+/// Call before any other HDF5 function, in each thread. It stops HDF5 from locking files, which their writers
+/// already do, from printing its error stack, and from flushing files at exit, where it crashes if a file
+/// could not be written.
 void prepare_hdf5();
 
 /// Throws the Hdf5Error of the HDF5 call that has just failed.
@@ -115,7 +116,8 @@ Hdf5Properties chunked(std::span<const hsize_t> chunk, Packing packing);
 Hdf5Dataset create_dataset(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> shape,
                            bool grows, const Hdf5Properties& properties);
 
-/// Grows the first dimension to first + count; writes rows from `first` on: `data` in `memory_type`.
+/// Grows the dataset's first dimension to first + count and writes the rows from `first` on; `data` holds
+/// them in `memory_type`.
 void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t first, hsize_t count,
                 hid_t memory_type, const void* data);
 
@@ -125,14 +127,16 @@ inline void write_row(const Hdf5Dataset& dataset, const std::string& name, hsize
   write_rows(dataset, name, row, 1, memory_type, data);
 }
 
-/// Thrown for bad content. what() has problem and place: "/connectivity/springs has 2 extents instead of 1".
+/// Thrown if the content of an HDF5 file cannot be used. what() is only the problem and its place:
+/// "/connectivity/springs has 2 extents instead of 1".
 struct Hdf5ContentError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// Reading parts of an HDF5 file from any source, the counterpart of the writing functions. Nothing is read
 /// before its type and size are checked, and nothing is allocated that the file cannot hold. Paths consist of
-/// hard links only: others may name any file. All throw Hdf5Error and Hdf5ContentError.
+/// hard links only: other links may name any file of the machine. All functions throw Hdf5Error and
+/// Hdf5ContentError.
 
 /// Opens a file for reading, with the filter plugins in the machine's folders disabled.
 Hdf5File open_for_reading(const std::filesystem::path& file);
@@ -143,7 +147,8 @@ bool exists(hid_t file, const std::string& path);
 /// The dataset at `path`; it must be stored in this file, with filters that mssim writes.
 Hdf5Dataset open_dataset(hid_t file, const std::string& path);
 
-/// Whether numbers are floats of 32 or 64 bits (is_real), integers of 8 to 64, in any byte order.
+/// Whether numbers are floating-point of 32 or 64 bits (is_real) or integers of 8 to 64 bits (is_integer), of
+/// either byte order.
 bool is_real(const Hdf5Type& type);
 bool is_integer(const Hdf5Type& type);
 

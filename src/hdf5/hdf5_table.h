@@ -13,7 +13,8 @@
 
 namespace mssim {
 
-/// Writes tuples of particles as H5MD's /connectivity, with a reference to their group, unless empty.
+/// Writes tuples of particles as H5MD's /connectivity stores them, with a reference to their group. An empty
+/// list gets no dataset. Throws Hdf5Error.
 template <std::size_t size>
 void write_tuples(hid_t file, const std::string& path, const std::string& particles,
                   std::span<const std::array<std::uint32_t, size>> tuples) {

@@ -30,7 +30,8 @@ inline constexpr auto integrators = std::to_array<Integrator>({
                  {{{Slot::x_next, {{{1, 0, Slot::x}, {1, 1, Slot::v_a}}}},  //
                    {Slot::v_next, {{{1, 0, Slot::v}, {1, 1, Slot::a}}}}}}}}}),
 
-    // Eq. (4), four evaluations, the classical method: `next` sums slopes; two trial pairs alternate.
+    // Eq. (4), four evaluations: the classical method. Ours: `next` gathers the weighted slopes, and two
+    // trial pairs alternate.
     of_stages("rk4", 4, "classical fourth-order Runge-Kutta", "rk4",
               {{{Pair::state,
                  {{{Slot::x_a, {{{1, 0, Slot::x}, {1. / 2, 1, Slot::v}}}},
@@ -70,7 +71,8 @@ inline constexpr auto integrators = std::to_array<Integrator>({
                       {1. / 6, 1, Slot::temporary_2}}}},
                    {Slot::v_next, {{{1, 0, Slot::v}, {1, 1, Slot::a}}}}}}}}}),
 
-    // Ours: Euler's method, x+ = x + dt v, v+ = v + dt a(x, v). Undamped oscillations grow.
+    // Ours, for comparison: Euler's method, x+ = x + dt v, v+ = v + dt a(x, v). It feeds energy into every
+    // undamped oscillation, at every dt.
     of_stages("explicit-euler", 1, "explicit Euler: unstable at every dt without damping", {},
               {{{Pair::state,
                  {{{Slot::x_next, {{{1, 0, Slot::x}, {1, 1, Slot::v}}}},

@@ -10,7 +10,8 @@
 
 namespace mssim {
 
-/// [stage][assignment][term] coefficient * dt^dt_power, evaluated once in double and rounded to Real.
+/// [stage][assignment][term] coefficient * dt^dt_power of every term, evaluated once in double and rounded
+/// once to Real, so the loops multiply by one number.
 template <class Real>
 using Coefficients = std::array<std::array<std::array<Real, max_terms>, max_assignments>, max_stages>;
 

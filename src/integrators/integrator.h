@@ -17,7 +17,8 @@ namespace mssim {
 enum class Pair : std::uint8_t { state, next, trial_a, trial_b };
 inline constexpr std::size_t pair_kinds = 4;
 
-/// Vectors of assignments. The first eight are in memory, by pairs; the rest in registers.
+/// Vectors that an assignment may read or write. The first eight are in memory, pair by pair; the rest are in
+/// registers within a stage.
 enum class Slot : std::uint8_t { x, v, x_next, v_next, x_a, v_a, x_b, v_b, a, temporary_1, temporary_2 };
 inline constexpr std::size_t memory_slots = 2 * pair_kinds;
 inline constexpr std::size_t slot_kinds = memory_slots + 3;
@@ -54,7 +55,8 @@ enum class Solver : std::uint8_t {
   constraints    ///< one spring after the other, in substeps
 };
 
-/// A step: the stages in order, or the solver. After it, `next` is the new state, after the floor's action.
+/// A step: the stages in order, or the solver. After it, `next` is the new state and the floor has acted on
+/// it.
 struct Integrator {
   std::string_view name;
   int order = 0;                   ///< order of convergence on smooth problems, measured by the tests
@@ -66,7 +68,8 @@ struct Integrator {
   int damped_order = order;  ///< order of convergence if forces depend on velocities
   /// The row of the table that has these stages; null: this one is such a row.
   const Integrator* row = nullptr;
-  /// How far the stages' positions are ahead of the state's, in steps (step_ahead, backend.h).
+  /// How far the stages' positions are ahead of the state's, in steps (step_ahead,
+  /// backends/interface/backend.h).
   double ahead = 0;
 };
 
@@ -111,7 +114,8 @@ constexpr bool writes(const Stage& stage, Pair pair) {
   return writes(stage, position_slot(pair)) || writes(stage, velocity_slot(pair));
 }
 
-/// Does the stage read the slot from memory, before an assignment writes it? The force reads its pair anyway.
+/// Does the stage read the slot from memory, because an assignment uses it before one has written it? The
+/// force reads the gathered pair in any case.
 constexpr bool reads(const Stage& stage, Slot slot) {
   for (const Assignment& assignment : stage.assignments) {
     for (std::size_t t = 0; t < term_count(assignment); ++t)
@@ -144,7 +148,8 @@ enum class Storage {
 };
 
 /// The array pair that stores `pair`. In place, the second trial pair shares the first one's arrays (a trial
-/// is dead once the next is written), and `next` the state's unless an earlier stage writes it.
+/// is dead once the next one is written), and `next` shares the state's unless an earlier stage already
+/// writes it.
 constexpr Pair storage_of(const Integrator& integrator, Pair pair, Storage storage) {
   if (storage == Storage::separate) return pair;
   if (pair == Pair::trial_b) return Pair::trial_a;
@@ -155,7 +160,8 @@ constexpr Pair storage_of(const Integrator& integrator, Pair pair, Storage stora
 }
 
 /// The arrays to which a stage writes `pair` if stages follow each other in a walk over the nodes. A step's
-/// last stage writes `next` over the state, which no later stage reads, wherever it gathered `next`.
+/// last stage writes `next` over the state, which no later stage of the step reads, wherever the step
+/// gathered its `next`.
 constexpr Pair walk_writes_to(const Integrator& integrator, std::size_t stage, Pair pair) {
   if (pair == Pair::next && stage + 1 == integrator.stage_count) return Pair::state;
   return storage_of(integrator, pair, Storage::in_place);
@@ -179,7 +185,8 @@ inline std::vector<Pair> stored_pairs(const Integrator& integrator, Storage stor
   return stored;
 }
 
-/// Does the stage write values of `pair` that a later stage gathers, or the next step as its state?
+/// Does the stage write values of `pair` that are gathered later, by another stage or as the state by the
+/// next step?
 constexpr bool writes_to_gather(const Integrator& integrator, std::size_t stage, Pair pair) {
   if (!writes(integrator.stages[stage], pair)) return false;
   if (pair == Pair::next && stage + 1 == integrator.stage_count) return true;

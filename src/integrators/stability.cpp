@@ -12,7 +12,8 @@
 namespace mssim {
 namespace {
 
-/// A linear function of the state at a step's start, of_x * x + of_v * v; a step of such gives its matrix.
+/// A number as a linear function of the state at the start of a step: of_x * x + of_v * v. A step of such
+/// numbers gives the step's matrix.
 struct Linear {
   double of_x = 0, of_v = 0;
 
@@ -61,7 +62,8 @@ double amplification(const Integrator& integrator, double dt_s, double stiffness
 }
 
 double largest_amplification(const Integrator& integrator, double dt_s, const ModeBound& bound) {
-  // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, is nearly free.
+  // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, is nearly in free
+  // flight.
   constexpr int modes = 63;
   double largest = 0, fraction = 1;
   for (int mode = 0; mode < modes; ++mode, fraction *= 0.8) {
@@ -77,7 +79,8 @@ double largest_stable_dt(const Integrator& integrator, const ModeBound& bound) {
   const double fastest_rate = std::max(std::sqrt(bound.stiffness), bound.damping);
   if (is_implicit(integrator) || !(fastest_rate > 0)) return std::numeric_limits<double>::infinity();
   // The first unstable dt going up, so an island of stability beyond it is not mistaken for the limit. A
-  // consistent method that damping stabilises is stable at the start, no explicit one at the end.
+  // consistent method that damping stabilises is stable at the start of the search, and no explicit method is
+  // stable at its end.
   constexpr double step = 1.02;
   double unstable = 1e-5 / fastest_rate;
   if (!is_stable(integrator, unstable, bound)) return 0;

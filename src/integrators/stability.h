@@ -22,7 +22,8 @@ inline constexpr double tolerated_growth = 1e-6;
 /// the spectral radius of the integrator's step matrix for the oscillator. `integrator` must be explicit.
 double amplification(const Integrator& integrator, double dt_s, double stiffness, double damping);
 
-/// The largest amplification over the modes of the bound: an error's factor per step in the worst mode.
+/// The largest amplification over the modes of the bound: the factor per step of an error once the
+/// fastest-growing mode dominates it.
 double largest_amplification(const Integrator& integrator, double dt_s, const ModeBound& bound);
 
 /// The dt in s below which no mode of the bound grows by more than tolerated_growth per step; infinite for

@@ -5,7 +5,8 @@
 ///   mul_add(Real, Vector, Vector), Vector + Vector, Real * Vector,
 /// and has included integrators/coefficients.h.
 
-/// One assignment: the sum of its terms, the last first, so that the large first one is added last.
+/// One assignment: the sum of its terms, the last first, so the large first term is added last. A sum of two
+/// terms is rounded once if mul_add is.
 template <std::size_t row, std::size_t stage, std::size_t assignment, bool in_steps, class Vector, class Real>
 MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coefficients) {
   constexpr Assignment terms = integrators[row].stages[stage].assignments[assignment];

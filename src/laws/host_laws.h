@@ -7,7 +7,8 @@
 
 namespace mssim {
 
-/// The laws of kernels/ for single nodes on the host, float or double. Vector code has its own instances.
+/// The laws of kernels/ for one node at a time on the host: Real is float or double. Vector code instantiates
+/// the same texts itself.
 
 /// a * b + c with two roundings: a fused one would be a library call on CPUs without the instruction.
 template <class Real>

@@ -1,5 +1,6 @@
-// The laws of kernels/ for a number type `Real`. Include it in a namespace with the names the texts need,
-// after defining MSSIM_LAW_INLINE (the prefix of inline functions). No guard: it is included several times.
+// The laws of kernels/ for a number type `Real` of C++. Include it inside a namespace that has the names the
+// texts need, after defining MSSIM_LAW_INLINE (the prefix of inline functions). It may be included several
+// times, so it has no guard.
 
 #define MSSIM_LAW       \
   template <class Real> \

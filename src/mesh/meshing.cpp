@@ -119,8 +119,9 @@ std::optional<TetMesh> read_entry(const fs::path& file) {
 }
 
 /// Cache of meshes, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME or ~/.cache).
-/// A file's name is INPUT-PROGRAM: hashes of TetGen's input and of the TetGen that made the mesh. It only
-/// saves time: a missing or damaged entry is no error, and processes may share it.
+/// A file's name is INPUT-PROGRAM: hashes of TetGen's input and of the TetGen that made the mesh. The cache
+/// only saves time: an entry that is missing, damaged or cannot be written is no error, and several processes
+/// may use it at once.
 class MeshCache {
  public:
   /// The mesh that this TetGen made from this input.
@@ -178,7 +179,8 @@ Vec3d half_size(const TorusShape& torus) {
 }
 
 /// TetGen adds nodes, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
-/// than 1.414 times its shortest edge. (Long triangles, if kept, would become springs.)
+/// than 1.414 times its shortest edge. (Long triangles of the surface, if kept, would become springs of the
+/// body.)
 const std::string fill_well = "-pq1.414";
 
 /// The limit as TetGen's switch, which takes no exponents.
@@ -196,7 +198,8 @@ struct Thickness {
   Vec3d at;
 };
 
-/// Samples the surface uniformly by area: places where the body is thinner than `limit`, m, thinnest first.
+/// Samples the surface uniformly by area and returns the places where the body is thinner than `limit`, m,
+/// the thinnest first.
 std::vector<Thickness> thin_places(const Surface& surface, const std::vector<double>& area_up_to,
                                    std::size_t samples, double limit) {
   const TriangleTree tree(surface);
@@ -304,7 +307,8 @@ double smallest_dihedral_angle(const TetMesh& mesh) {
     const Vec3d ab = mesh.nodes[nodes[1]] - a;
     const Vec3d ac = mesh.nodes[nodes[2]] - a;
     const Vec3d ad = mesh.nodes[nodes[3]] - a;
-    // Outward normals of the faces; the angle between two faces is 180 degrees minus that of their normals.
+    // Outward normals of the four faces; the angle between two faces is 180 degrees minus that of their
+    // normals.
     const std::array normals{cross(ac - ab, ad - ab), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = i + 1; j < 4; ++j)

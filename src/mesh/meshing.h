@@ -27,7 +27,8 @@ struct TetMesh {
 /// The unique edges of the tetrahedra, the lower node first, ascending.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const TetMesh& mesh);
 
-/// The faces of the tetrahedra, ascending, as are the nodes of each. A face inside the body appears twice.
+/// The faces of the tetrahedra in ascending order, the nodes of each ascending. A face inside the body
+/// appears twice, one on its surface once.
 std::vector<std::array<std::uint32_t, 3>> faces_of(const TetMesh& mesh);
 
 /// The sum of the tetrahedra's volumes, m^3.
@@ -43,11 +44,13 @@ struct MeshDefect {
   std::string what;  ///< half a sentence: the defect and its remedy
 };
 
-/// The first defect of a mesh with indices in range and finite coordinates: a node of no tetrahedron, two
-/// nodes at one place, a flat or inverted tetrahedron, or a face of three tetrahedra.
+/// The first defect of a mesh whose indices are in range and whose coordinates are finite: a node of no
+/// tetrahedron, two nodes at one place, a flat or inverted tetrahedron, or a face that three tetrahedra
+/// share.
 std::optional<MeshDefect> find_defect(const TetMesh& mesh);
 
-/// If every tetrahedron's volume is negative (nodes in the opposite sense), swaps two nodes of each.
+/// If every tetrahedron's volume is negative (the file counts nodes in the opposite sense), swaps two nodes
+/// of each.
 void turn_if_mirrored(TetMesh& mesh);
 
 /// A box around the origin, its sides along the axes.
@@ -62,13 +65,15 @@ struct BoxShape {
 /// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
 std::uint64_t surface_point_count(const BoxShape& box);
 
-/// The surface with surface_point_count points. Throws InputError unless size and cells are positive.
+/// The surface with surface_point_count points. Throws InputError for a size that is not positive or for
+/// fewer than one cell.
 Surface surface_of(const BoxShape& box);
 
 /// Depth of a point: distance from the nearest side, m; not positive outside.
 double depth_in(const BoxShape& box, const Vec3d& point);
 
-/// A sphere around the origin: an icosahedron, its triangles cut into frequency^2 each, projected.
+/// A sphere around the origin: an icosahedron whose triangles are cut into frequency^2 each and projected
+/// onto the sphere.
 struct SphereShape {
   double radius_m = 0;          ///< m
   std::uint32_t frequency = 0;  ///< triangles along an edge of the icosahedron
@@ -85,7 +90,8 @@ Surface surface_of(const SphereShape& sphere);
 /// Depth of a point: distance from the sphere, m; not positive outside.
 double depth_in(const SphereShape& sphere, const Vec3d& point);
 
-/// A ring around the y axis: a circle of the minor radius, its centre at the major one.
+/// A ring around the y axis: a circle of the minor radius whose centre moves around the origin at the major
+/// radius.
 struct TorusShape {
   double major_radius_m = 0;  ///< m
   double minor_radius_m = 0;  ///< m, less than major_radius_m
@@ -99,7 +105,8 @@ struct TorusShape {
 /// Points of the surface: cells_around x cells_across.
 std::uint64_t surface_point_count(const TorusShape& torus);
 
-/// The surface. Throws InputError for radii that make no ring, odd cells around, fewer than 4 or 3 across.
+/// The surface with surface_point_count points. Throws InputError for radii that make no ring, an odd number
+/// of cells around, and fewer than 4 around or 3 across.
 Surface surface_of(const TorusShape& torus);
 
 /// Depth of a point: distance from the ring's surface, m; not positive outside.
@@ -136,11 +143,13 @@ inline constexpr const char* keep_surface = "-pY";
 /// The mesh that TetGen makes of a valid surface (validate_surface) and points inside it, or its copy in the
 /// cache. Its nodes are the surface's points, then the interior points, then TetGen's own. Without TetGen, a
 /// cached mesh of another TetGen is used. `added_points`: lower bound on the points that TetGen adds. Throws
-/// like run_tetgen and require_meshing_memory, and MissingProgram if TetGen is needed and not installed.
+/// what run_tetgen and require_meshing_memory throw, and MissingProgram if TetGen is needed and not
+/// installed.
 TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
                        const std::string& switches, std::uint64_t added_points = 0);
 
-/// The size of the mesh when its scene was written. Another size, from another TetGen, is reported.
+/// The size of the mesh when its scene was written. Another TetGen may give another size, which is reported,
+/// not refused.
 struct MeshSize {
   std::uint32_t nodes = 0;
   std::uint32_t springs = 0;  ///< unique edges
@@ -163,7 +172,8 @@ ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
 
 /// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add
 /// (none for the bodies of the committed scenes). Made by TetGen or taken from the cache (tetrahedralise).
-/// Throws InputError for parameters out of range and too many points, and MissingProgram without TetGen.
+/// Throws InputError for parameters out of range and for more points than can be meshed (tetgen.h),
+/// MissingProgram if TetGen is needed and not installed.
 TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior);
 
 /// A body whose surface comes from a user's file.
@@ -175,8 +185,8 @@ struct SurfaceShape {
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
 /// shaped and small enough; the shape stays. Uses the cache. Throws InputError, which names the file, if it
-/// cannot be read, encloses no body or is too thin, and for numbers out of range; MissingProgram without
-/// TetGen.
+/// cannot be read, encloses no body or is too thin to be filled, and for numbers out of range; MissingProgram
+/// if TetGen is needed and not installed.
 TetMesh surface_mesh(const SurfaceShape& body);
 
 }  // namespace mssim

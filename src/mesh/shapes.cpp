@@ -13,7 +13,8 @@
 namespace mssim {
 namespace {
 
-/// Throws InputError, with `what`, unless it is from 0.1 mm to 1 km: coordinates are rounded to micrometres.
+/// Throws InputError unless `metres` is between a tenth of a millimetre and a kilometre: coordinates are
+/// rounded to micrometres. `what` names it in the message.
 void require_length(double metres, std::string_view what) {
   if (!(metres >= 1e-4 && metres <= 1000))
     throw InputError("{} is {} m; give a length from 0.0001 to 1000 m", what, decimal(metres));
@@ -77,7 +78,8 @@ constexpr std::array<std::array<std::uint32_t, 3>, 20> icosahedron_faces{{
     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1},
 }};
 
-/// Points of the cut icosahedron. One on an edge has one number in all faces, by its corners' weights.
+/// The points of the cut icosahedron. A point on an edge belongs to several faces and has one number: its key
+/// is its weights at the corners around it.
 class SpherePoints {
  public:
   SpherePoints(const SphereShape& sphere, Surface& surface) : sphere_(sphere), surface_(surface) {}
@@ -125,7 +127,8 @@ void require_ring(const TorusShape& torus) {
                      " m; give one less than the major radius");
 }
 
-/// Uniform numbers from std::mt19937's own output, which the standard fixes, unlike the std distributions'.
+/// Uniform numbers from the engine's own output: the standard fixes the output of std::mt19937, but not that
+/// of the std distributions.
 class UniformNumbers {
  public:
   explicit UniformNumbers(std::uint32_t seed) : engine_(seed) {}
@@ -141,7 +144,8 @@ class UniformNumbers {
   std::mt19937 engine_;
 };
 
-/// Three perpendicular unit vectors of uniform random direction: the rotation of a random unit quaternion.
+/// Three perpendicular unit vectors in a random direction, uniformly distributed: the rotation of a random
+/// quaternion of length 1.
 std::array<Vec3d, 3> random_axes(UniformNumbers& random) {
   double w = 0;
   Vec3d v;

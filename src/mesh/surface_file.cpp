@@ -15,7 +15,8 @@
 namespace mssim {
 namespace {
 
-/// Adds points to a surface, each location once, so that triangles with separate corners share them.
+/// Adds points to a surface, each location once, so files that list the corners of every triangle separately
+/// become surfaces with shared points.
 class PointMerger {
  public:
   explicit PointMerger(Surface& surface) : surface_(surface) {}
@@ -36,13 +37,15 @@ class PointMerger {
 
 using Corners = std::array<std::size_t, 3>;
 
+/// Triangles that fan out from the first corner.
 std::vector<Corners> fan(std::size_t corners) {
   std::vector<Corners> triangles;
   for (std::size_t i = 2; i < corners; ++i) triangles.push_back({0, i - 1, i});
   return triangles;
 }
 
-/// Cuts a polygon of four or more corners in its plane; the normal is Newell's: the edges' cross products.
+/// Cuts a polygon of four or more corners in its plane, whose normal is Newell's: the sum of the cross
+/// products along its edges.
 class PolygonCutter {
  public:
   explicit PolygonCutter(const std::vector<Vec3d>& corners) {
@@ -68,7 +71,8 @@ class PolygonCutter {
 
   bool has_plane() const { return !flat_.empty(); }
 
-  /// Does the fan from the first corner cover the polygon? The others are then in order, in at most one turn.
+  /// Does the fan from the first corner cover the polygon, as for a convex one? The other corners are then
+  /// seen in order from there, in at most one turn.
   bool fan_covers() const {
     double angle = 0;
     for (const auto& [a, b, c] : fan(flat_.size())) {
@@ -288,7 +292,8 @@ class ObjReader {
   PointMerger merger_;
 };
 
-// A binary file: 80 bytes, the number of triangles; a normal, three corners, two bytes each; little-endian.
+// A binary file: 80 bytes of any text, the number of triangles, then a normal, three corners and two bytes
+// for each; numbers are little-endian.
 constexpr std::size_t bytes_before_count = 80;
 constexpr std::size_t bytes_before_triangles = 84;
 constexpr std::size_t bytes_of_triangle = 50;
@@ -404,7 +409,8 @@ class AsciiReader {
   PointMerger merger_;
 };
 
-/// Binary files may begin with "solid", so the length decides; if truncated, a zero byte, which no text has.
+/// Binary files may begin with "solid" as well, so the length decides; if it is wrong too (truncated), a zero
+/// byte, which no text has.
 bool is_binary(std::string_view content) {
   if (content.size() < bytes_before_triangles) return content.find('\0') != std::string_view::npos;
   const std::size_t count = number_at(content, bytes_before_count);

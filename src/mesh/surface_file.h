@@ -15,7 +15,8 @@ namespace mssim {
 /// continues it. Polygons are cut into triangles: a fan from their first corner if it covers them, else
 /// (concave ones) ears in their plane; a bent quadrangle whose edges pass each other is cut along any
 /// diagonal. All other lines (texture, normals, groups, materials, curves) are ignored. Points at one
-/// location become one. Throws InputError with file, line and value, also for a polygon that crosses itself.
+/// location become one. Throws InputError that names file, line and value, also for a polygon that crosses
+/// itself.
 Surface parse_obj(const std::string& name, std::string_view text);
 
 /// Reads a surface from the content of an STL file, ASCII or binary; up to 49 bytes, too few for a triangle,

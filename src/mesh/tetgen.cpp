@@ -40,7 +40,8 @@ std::vector<fs::path> libraries_of(const fs::path& executable) {
   return libraries;
 }
 
-/// TetGen prints its version only with its help, and Debian's then crashes: finds "Version" in the program.
+/// TetGen prints its version only with its help, after which Debian's crashes. The text of that help is a
+/// string in the program that begins "Version".
 std::optional<std::string> version_in(std::string_view program) {
   using namespace std::string_view_literals;
   constexpr auto before = "\0Version "sv;
@@ -53,7 +54,8 @@ std::optional<std::string> version_in(std::string_view program) {
   return std::nullopt;
 }
 
-/// The count at the start of a file. One beyond the file's length is refused before memory is allocated.
+/// The count at the start of a file. A line has at least one byte, so a count beyond the file's length is
+/// refused before memory is allocated.
 std::size_t count_of(const TextLines& lines, const std::string& things) {
   const std::int64_t count = lines.integer(0, "the number of " + things);
   if (count <= 0) lines.fail("the number of {} is {}; a mesh has at least one", things, count);
@@ -121,6 +123,7 @@ std::int64_t read_nodes(TextLines& lines, std::vector<Vec3d>& nodes, std::vector
   return first;
 }
 
+/// Reads tetrahedra between `nodes` nodes.
 void read_tetrahedra(TextLines& lines, std::vector<Tetrahedron>& tetrahedra,
                      std::vector<std::size_t>& at_line, std::size_t nodes, std::int64_t first_node) {
   lines.require_next("the number of tetrahedra");
@@ -253,7 +256,8 @@ class Run {
     return last.empty() ? last : fmt::format(" after writing \"{}\"", last);
   }
 
-  /// The crossing triangles in the output with -d, without which it crashes: "Facet #3 intersects facet #17".
+  /// Finds the crossing triangles in TetGen's output with -d: "Facet #3 intersects facet #17", counted from
+  /// 1. (Without -d it just crashes on them.)
   std::optional<std::string> crossing_triangles(const std::string& search) const {
     std::istringstream lines(search);
     for (std::string line; std::getline(lines, line);) {

@@ -45,7 +45,8 @@ std::string smesh_text(const Surface& surface);
 /// TetGen takes 40 us per point for thousands of points, and 90 us for hundreds of thousands.
 inline constexpr std::uint64_t most_meshable_points = 4'000'000;
 
-/// Throws InputError, with the remedy, for more points than TetGen meshes in its limit of CPU time.
+/// Throws InputError, which ends in the remedy, for more points than TetGen meshes within its limit of CPU
+/// time.
 void require_meshable(std::uint64_t points,
                       std::string_view remedy = "with fewer cells, triangles or points");
 

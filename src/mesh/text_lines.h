@@ -22,13 +22,15 @@ struct LineSigns {
 };
 
 /// Iterates over the lines of a mesh file, splits them into words, and converts words to numbers. Lines end
-/// in LF, CR LF or CR. Every error is an InputError "FILE, line N: ..."; N is the first of continued lines.
+/// in LF, CR LF or CR. Every error is an InputError that begins "FILE, line N: "; N is the first of continued
+/// lines.
 class TextLines {
  public:
   /// `text` must outlive this object; a UTF-8 byte-order mark at its start is skipped.
   TextLines(std::string file, std::string_view text, const LineSigns& signs = {});
 
-  /// Advances to the next line with words; false at the end. Throws for lines of more than a megabyte.
+  /// Advances to the next line that has words; false at the end. Throws if a line is longer than a megabyte:
+  /// its words would take many times that.
   bool next();
   /// Advances to the next line that has words; throws at the end, naming `expected`.
   void require_next(const std::string& expected);

@@ -33,7 +33,8 @@ struct NodeSurface {
   std::vector<std::string> parts;                       ///< "cloth", "body 1", or the names of panels
 };
 
-/// The surface of `nodes` nodes of that shape, ascending: sheets, two triangles per cell, or bodies' outside.
+/// The surface of `nodes` nodes of that shape: sheets with two triangles per cell, or the outside of bodies.
+/// Nodes ascend; those inside bodies are omitted.
 NodeSurface surface_of(const NodeShape& shape, std::size_t nodes);
 
 /// [nodes] the body of each, numbered from 0 in the order of their first nodes.

@@ -45,7 +45,8 @@ inline constexpr auto spring_constants = std::to_array<SpringConstantInfo>({
 });
 static_assert(spring_constants.size() == spring_constant_count);
 
-/// Springs of a cloth, by the deformation that they resist; indices of GridSpringKind tables and materials.
+/// The springs of a regular cloth, by the deformation that they resist. The numbers index GridSpringKind
+/// tables and materials.
 enum GridSpringKind : std::uint32_t { structural, shear, bending };
 
 /// One row per kind of cloth spring: its name in scene files and its squared length in units of the spacing.
@@ -59,7 +60,8 @@ inline constexpr std::array<GridSpringKindInfo, 3> grid_spring_kinds{{
     {"bending", 4},
 }};
 
-/// A spring of the stencil: the offset from its owner to its end. Down: towards higher rows, in panels too.
+/// One spring of the stencil, as an offset from its owner to the other end. Down means towards higher rows,
+/// in panels too.
 struct GridSpring {
   int rows;     ///< down
   int columns;  ///< to the right
@@ -120,7 +122,8 @@ struct SolverSettings {
   std::uint32_t substeps = 10;    ///< of xpbd: substeps per step
 };
 
-/// Positions and velocities of all nodes, in the scene's order and double precision, as backends take them.
+/// Positions and velocities of all nodes, in the scene file's node order and in double precision: the form in
+/// which states enter and leave every backend.
 struct State {
   std::vector<Vec3d> position;  ///< [nodes] m
   std::vector<Vec3d> velocity;  ///< [nodes] m/s
@@ -249,13 +252,15 @@ struct EnergyLosses {
 /// Energy of `state` in double precision. Pinned nodes are included, at their constant height.
 Energy energy_of(const System& system, const State& state);
 
-/// Work on the nodes that these energies omit, in words; empty if EnergyLosses account for everything.
+/// The work on the nodes that none of these energies include, in words; empty if EnergyLosses account for
+/// everything.
 std::string_view energies_leave_out(const System& system);
 
 /// Energy of one spring, J.
 double elastic_energy(const System& system, const Spring& spring, const State& state);
 
-/// Power lost in damping in `state`, W: spring_loss of all springs, viscous_damping m v^2 of all nodes.
+/// Power dissipated by damping of the springs and of the air in `state`, W: the sum of spring_loss over all
+/// springs, and of viscous_damping m v^2 over all nodes.
 double damping_power(const System& system, const State& state);
 
 }  // namespace mssim

@@ -13,7 +13,8 @@
 namespace mssim {
 namespace {
 
-/// All labels of a scale have as many decimals as 10^exponent, and a minus as wide as a plus.
+/// All labels of a scale have the same number of decimals, as many as 10^exponent has, and a minus as wide as
+/// a plus.
 std::string tick_label(double value, int exponent) {
   if (value == 0) return "0";
   if (value < 0) return "−" + tick_label(-value, exponent);
@@ -27,8 +28,9 @@ double decimal_product(double mantissa, int exponent) {
   return exponent < 0 ? mantissa / std::pow(10.0, -exponent) : mantissa * std::pow(10.0, exponent);
 }
 
-/// Lightness L* of CIE 1976, from 0 (black) to 100 (white). Chroma (0 is grey) and hue of Oklab (B. Ottosson,
-/// "A perceptual color space for image processing", 2020), the same at every lightness.
+/// Lightness L* of CIE 1976, from 0 (black) to 100 (white), which is what remains in black and white. Chroma
+/// (0 is grey) and hue of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020), which
+/// look the same at every lightness.
 struct Lch {
   double lightness, chroma, hue_degrees;
 };
@@ -88,6 +90,7 @@ Rgb srgb(const Lch& colour) {
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }
 
+/// The map with the colour `colour_at(share)` at each share.
 template <class ColourAt>
 ColourMap map_of(const ColourAt& colour_at) {
   ColourMap map{};
@@ -96,6 +99,7 @@ ColourMap map_of(const ColourAt& colour_at) {
   return map;
 }
 
+/// Sizes of a legend, in pixels.
 struct LegendSizes {
   Letters letters;
   /// Between the content and the edge of a panel, and between panel and edge of the picture.

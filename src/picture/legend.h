@@ -26,14 +26,17 @@ struct ColourMap {
   /// Evenly spaced, from the lower end; an odd number, so that one is in the middle.
   std::array<Rgb, 257> colours;
 
-  /// The colour at `share` of the way from the lower to the upper end; beyond, the end's; for NaN grey.
+  /// The colour at `share` of the way from the lower end to the upper. Beyond an end it is that end's colour,
+  /// for NaN grey.
   Rgb at(double share) const;
 };
 
-/// For deviations from a middle: from blue over light grey to red. Lightness falls evenly to both ends.
+/// For deviations from a middle value, such as compression and stretch: from blue over light grey to red.
+/// Lightness falls evenly from the middle to both ends.
 const ColourMap& diverging_map();
 
-/// For names. All differ in lightness, for any colour vision and black and white; the first ones most.
+/// For names. All differ in lightness, so that they can be told apart with any colour vision and, less
+/// easily, in black and white. The first ones differ most.
 const std::array<Rgb, 8>& category_colours();
 
 /// A colour and its meaning.

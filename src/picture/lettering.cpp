@@ -115,7 +115,8 @@ char32_t character_at(std::string_view text, std::size_t size) {
   return character;
 }
 
-/// Calls `use` with each character and its start in pixels from the text's left edge. Returns the right one.
+/// Calls `use` with each character and its start in pixels from the left edge of the text. Returns the right
+/// edge.
 template <class Use>
 int walk_along(std::string_view text, const Letters& letters, const Use& use) {
   int x = 0, right = 0;

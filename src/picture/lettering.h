@@ -8,7 +8,8 @@
 
 namespace mssim {
 
-/// Size and colour of text in DejaVu Sans. Capitals are about 0.73 `size_px`, x 0.55. Readable from 10 px on.
+/// Size and colour of text in DejaVu Sans. `size_px` is the size of the font: capitals are about 0.73 and x
+/// 0.55 of it. Text is readable from 10 px on.
 struct Letters {
   double size_px = 14;
   Rgb colour = black;
@@ -24,7 +25,8 @@ struct Letters {
 /// The size of letters in pixels for a picture of this height: 2.5 % of it, at least 11.
 double letter_size_for(std::uint32_t picture_height);
 
-/// Pixels from the left edge of the first character to the right edge of the last; bad UTF-8 is U+FFFD.
+/// Pixels from the left edge of the first character to the right edge of the last. `text` is UTF-8; a byte
+/// that is not part of a character counts as U+FFFD.
 int text_width(std::string_view text, const Letters& letters);
 
 /// Draws a line of text that begins at column `x`; letters without descender end in the row above `baseline`.

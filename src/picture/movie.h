@@ -10,7 +10,8 @@ struct WebPAnimEncoder;  // in libwebp
 
 namespace mssim {
 
-/// An animated WebP that repeats for ever, made frame by frame. The same libwebp makes the same bytes.
+/// An animated WebP that repeats for ever, made frame by frame; only compressed frames are stored. The same
+/// frames give the same bytes with the same libwebp.
 class Movie {
  public:
   /// Frame i is shown from time i / `frames_per_second` on, rounded to milliseconds. Throws
@@ -21,7 +22,8 @@ class Movie {
   /// across), and std::invalid_argument if its size differs from that of the first frame.
   void add(const Picture& frame);
 
-  /// The bytes of the file. Ends the movie: no other call may follow. Throws std::logic_error without frames.
+  /// The bytes of the file. Ends the movie: no other call is allowed after it. Throws std::logic_error
+  /// if there are no frames.
   std::string take_bytes();
 
  private:

@@ -51,11 +51,13 @@ constexpr Rgb blended(Rgb under, Rgb over, std::uint8_t coverage) {
 /// Blends `colour` over every pixel of `box`; by default it replaces them.
 void fill(Picture& picture, const PixelBox& box, Rgb colour, std::uint8_t coverage = 255);
 
-/// Copies `pasted` into `picture`, its top left pixel to column `left` of row `top`; cuts off parts outside.
+/// Copies `pasted` into `picture`, its top left pixel to column `left` of row `top`. Parts outside are cut
+/// off.
 void paste(Picture& picture, const Picture& pasted, int left, int top);
 
-/// The bytes of a PNG file of `picture`: 8 bits per channel, sRGB, no alpha. The same libpng and zlib give
-/// the same bytes. Throws std::runtime_error without pixels or if libpng refuses.
+/// The bytes of a PNG file of `picture`: 8 bits per channel, sRGB, no alpha. The same picture gives the same
+/// bytes with the same libpng and zlib. Throws std::runtime_error for a picture without pixels or one that
+/// libpng refuses.
 std::string png_of(const Picture& picture);
 
 /// Throws MissingProgram, with the remedy, if the font for text in pictures is not installed. All functions
@@ -68,8 +70,9 @@ struct CaptionedPicture {
 };
 
 /// The pictures in rows of `columns`, from left to right, each with its caption below it, on white. The last
-/// row may be incomplete; fewer pictures than columns are one row. Long captions are shortened; empty ones
-/// take no room. Throws std::invalid_argument without columns or pictures, and for different sizes.
+/// row may be incomplete; fewer pictures than columns are one row. Long captions are shortened; if all
+/// captions are empty, they take no room. Throws std::invalid_argument without columns or pictures, and for
+/// pictures of different sizes.
 Picture sheet_of(std::span<const CaptionedPicture> pictures, std::uint32_t columns);
 
 }  // namespace mssim

@@ -116,7 +116,8 @@ Descriptor open_locked(const fs::path& file) {
 void sync_folder_of(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const Descriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // Not every folder can be read or synced; then the rename is done, but may not survive a power failure.
+  // A folder may be writable but not readable, and some file systems cannot sync folders; then the rename is
+  // done, but may not survive a power failure.
   if (!handle.is_open()) return;
   if (::fsync(handle.get()) != 0 && errno != EINVAL) fail(file, "syncing folder " + folder.string());
 }

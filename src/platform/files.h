@@ -28,7 +28,8 @@ struct ReadError : std::runtime_error {
 /// Throws ReadError unless the file exists and is regular.
 void require_regular_file(const std::filesystem::path& file);
 
-/// All bytes of a regular file, no pipe, device or folder. Throws ReadError, also beyond `most_bytes`.
+/// All bytes of a regular file: a pipe would block, a device may never end, and a folder reads as empty.
+/// Throws ReadError, also for more than `most_bytes`.
 std::string read_file(const std::filesystem::path& file,
                       std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
@@ -39,7 +40,8 @@ struct WriteError : ErrorWith<exit_file_error> {
 };
 
 /// The sentence of a WriteError: "cannot write FILE: ACTION failed: REASON; REMEDY". `error_number` is an
-/// errno value; `reason` replaces its text if the caller knows more (a library reports no errno: 0).
+/// errno value; `reason` replaces its text if the caller knows more (for example if a library reports no
+/// errno and `error_number` is 0).
 std::string write_failure(const std::filesystem::path& file, const std::string& action, int error_number,
                           const std::string& reason = {});
 
@@ -63,8 +65,9 @@ void require_replaceable(const std::filesystem::path& file);
 /// the user names, target_of() follows links first.
 class AtomicFile {
  public:
-  /// Creates or empties FILE.part and locks it. Throws WriteError if another writer of any process has it, if
-  /// it is a link, no regular file or cannot be created, and like require_replaceable().
+  /// Creates or empties FILE.part and locks it for this writer. Throws WriteError if another writer of any
+  /// process has it, if FILE.part is a link or not a regular file, if it cannot be created, and like
+  /// require_replaceable().
   explicit AtomicFile(std::filesystem::path file);
   AtomicFile(AtomicFile&&) = default;
   /// Removes FILE.part unless the writing has ended.
@@ -74,7 +77,8 @@ class AtomicFile {
 
   /// Appends to FILE.part. Throws WriteError; FILE.part then ends where it did before.
   void append(std::string_view text);
-  /// Syncs FILE.part, renames it to FILE and syncs the folder. On WriteError, FILE.part stays, locked.
+  /// Ends the writing: syncs FILE.part, renames it to FILE and syncs the folder. On WriteError, FILE.part is
+  /// unchanged and still locked.
   void move_into_place();
   /// Ends the writing and leaves the partial FILE.part to the user.
   void keep() { part_ = Descriptor(); }
@@ -130,7 +134,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The process's temporary folder, made on first use, removed when main returns. Throws like TemporaryFolder.
+/// The temporary folder of the process, made on first use and removed when main returns. Throws like
+/// TemporaryFolder.
 const std::filesystem::path& temporary_folder_of_process();
 
 /// Removes that folder, if it exists, before a signal ends the process.
@@ -141,23 +146,28 @@ void remove_temporary_folder_of_process();
 /// std::runtime_error with one sentence if it is missing.
 std::filesystem::path data_folder();
 
-/// The folder of that name in mssim's part of $XDG_CACHE_HOME or ~/.cache; empty if the user has neither.
+/// The folder of that name in mssim's part of the user's cache folder, $XDG_CACHE_HOME or ~/.cache; empty if
+/// the user has neither.
 std::filesystem::path cache_folder(std::string_view name);
 
-/// A helper program of mssim, in `libexec/mssim` next to `bin`. Throws std::runtime_error without /proc.
+/// A helper program that mssim runs: in `libexec/mssim` next to the program's `bin` folder. Throws
+/// std::runtime_error if this program cannot be found.
 std::filesystem::path helper_program(std::string_view name);
 
-/// mssim itself, to be run: the one in `bin` or, under an emulator, its helper. Throws like helper_program.
+/// mssim itself, to be run as another process: the program in `bin`, or, under an emulator, the helper that
+/// starts it. Throws like helper_program.
 std::filesystem::path mssim_program();
 
 /// The file that the shell would run for this name: the first executable one in the folders of PATH; for a
 /// name with a slash, the file at that path. Absolute; nothing if there is none.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
-/// Why the system did not execute this file, given errno, the same for no interpreter: a sentence's end.
+/// Why the system did not execute this file, given errno: the end of a sentence. execve has the same errno
+/// for a missing interpreter as for a missing program.
 std::string why_not_executed(const std::filesystem::path& file, int error);
 
-/// Whether it is a script whose first line ends in CR LF, and so its interpreter's name in a carriage return.
+/// Whether the file is a script whose first line ends in CR LF: then the name of its interpreter, or of that
+/// one's last argument, ends in a carriage return.
 bool names_interpreter_with_return(const std::filesystem::path& file);
 
 }  // namespace mssim

@@ -79,7 +79,8 @@ constexpr const char* execution = "starting it";
 /// process may have threads. `group`: a process group, 0 for a new one. Returns only on failure.
 StartError become(const ChildProcess& child, char* const* arguments, char* const* environment, int output,
                   pid_t group) {
-  // In its own group, so that its descendants can be killed with it; it dies even with a killed parent.
+  // In a group of its own, so that its descendants can be killed with it; it dies with this process, even if
+  // that is killed.
   if (::setpgid(0, group) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
     return {"setting its process group", errno};
   const int nothing = ::open("/dev/null", O_RDONLY);
@@ -246,7 +247,8 @@ class Running {
   ::_exit(0);
 }
 
-// Data of a signal handler is global; atomic, because the system chooses the thread that handles a signal.
+// Data used by a signal handler must be global; atomic, because the system chooses the thread that handles a
+// signal.
 std::atomic<int> noted = 0;
 std::atomic<pid_t> watched_group = 0;
 std::atomic<int> received_signal = 0;

@@ -78,8 +78,9 @@ ChildResult run(const ChildProcess& child);
 std::vector<ChildResult> run_together(std::span<const ChildProcess> children);
 
 /// Runs `work` in a forked copy of this process and returns whether it finished. A library that crashes, or
-/// uses more than `most_seconds` of CPU time, ends only that copy. An exception counts as finished; output is
-/// discarded. True if the system cannot fork. `work` must not need other threads.
+/// uses more than `most_seconds` of CPU time, ends only that copy. An exception from `work` counts as
+/// finished; its output is discarded. True if the system cannot fork. The copy has only this thread, so
+/// `work` must not need others.
 bool ends_in_trial(const std::function<void()>& work, unsigned most_seconds);
 
 /// Signals by which a user ends a program: Ctrl-C, kill, a closed terminal, Ctrl-\.

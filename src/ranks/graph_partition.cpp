@@ -22,7 +22,8 @@ std::string reason_of(int result) {
       fmt::format("METIS cannot cut a body of {} nodes into {} parts: {}", nodes, parts, reason));
 }
 
-/// Gives every part that METIS left empty, as small ones, the largest part's node with the fewest neighbours.
+/// Gives every empty part a node of the largest part, the one with the fewest neighbours there. METIS leaves
+/// parts empty if they are to have only a few nodes.
 void fill_empty_parts(const Adjacency& graph, std::size_t parts, std::vector<std::uint32_t>& part_of) {
   std::vector<std::size_t> nodes_of(parts, 0);
   for (const std::uint32_t part : part_of) ++nodes_of[part];

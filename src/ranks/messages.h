@@ -37,7 +37,8 @@ class SecondsAdded {
   Stopwatch watch_;
 };
 
-/// Longest wait for a message of another rank, s: all work alike, so a silent one, or its host, has ended.
+/// Longest wait for a message of another rank, s. All ranks do the same work at the same time, so a rank that
+/// is silent for so long has ended, or its host has.
 inline constexpr double longest_silence_s = 20;
 
 /// An MPI session: the rank of this process, and waiting for other ranks. One thread at a time may call it.
@@ -67,7 +68,8 @@ class Session {
 
   /// Waits until all requests are complete. `peers`: the ranks that they wait for, for the failure message.
   void wait(std::span<MPI_Request> requests, std::span<const int> peers) const;
-  /// Waits, asleep and without a time limit, for a request that only mssim's next request completes.
+  /// Waits for a request that only the next request from mssim completes: sleeps meanwhile, without a time
+  /// limit.
   static void wait_idle(MPI_Request& request);
   /// Barrier of all ranks.
   void meet() const;
@@ -88,14 +90,16 @@ class Session {
 /// Throws RankFailure if an MPI function failed. `action`: for example "sending a state".
 void check_mpi(int result, const char* action);
 
-/// Repeated messages between the same buffers of ranks: MPI learns them once (persistent requests). Threads
-/// of a step call these functions, one at a time; an exception must not leave them: on failure all ranks end.
+/// Repeated messages between the same buffers of this and other ranks: MPI learns them once (persistent
+/// requests). Threads of a step call these functions, one at a time; an exception must not leave them, so on
+/// failure all ranks end.
 class StandingMessages : public ColumnMessages {
  public:
   explicit StandingMessages(const Session& session) : session_(session) {}
   ~StandingMessages() override;
 
-  /// Adds a message of `sent` to a rank and one from it to `received`; both must stay. Throws RankFailure.
+  /// Adds a message of `sent` to a rank and one from it to `received`; both must stay at their address.
+  /// Throws RankFailure.
   void add(int rank, std::span<const float> sent, std::span<float> received);
 
   /// Starts all messages.
@@ -120,10 +124,12 @@ class StandingMessages : public ColumnMessages {
   bool under_way_ = false;
 };
 
-/// The edge columns of a rank's piece as messages, directly from and to the arrays: nothing is packed.
+/// The edge columns of a rank's piece of a cloth as messages to its neighbours, directly from and to the
+/// arrays of the state: nothing is packed.
 class NeighbourMessages final : public StandingMessages {
  public:
-  /// `bands` must stay in place; both must outlive this. Rank r has the columns to the right of rank r - 1's.
+  /// The arrays of `bands` must stay at their address; both arguments must outlive this object. Rank r has
+  /// the columns to the right of those of rank r - 1.
   NeighbourMessages(const Session& session, BandGrid& bands);
 };
 
@@ -159,7 +165,8 @@ struct LinkSpeed {
 };
 
 /// Measures messages there and back: first between ranks 0 and 1, 2 and 3, ... simultaneously, then between 1
-/// and 2, 3 and 4, ... All ranks call this and get the same result; nothing for one rank.
+/// and 2, 3 and 4, ... All ranks call this together and get the same result; nothing if there is only one
+/// rank.
 LinkSpeed measure_links(const Session& session);
 
 }  // namespace mssim

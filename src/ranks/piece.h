@@ -51,7 +51,8 @@ class Piece {
   virtual void set_state(const State& state) = 0;
   /// The current state of the nodes of owned_by(this rank).
   virtual State state() const = 0;
-  /// Returns to the start, with positions moved by `seconds` times velocity. Throws RankFailure if it cannot.
+  /// Returns to the scene's start state, with positions moved by `seconds` times their velocities. Throws
+  /// RankFailure if it cannot.
   virtual void restart(double seconds);
   /// The nodes of a window of a cloth that a rank owns, numbered within the window. Throws RankFailure.
   virtual std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const;
@@ -67,10 +68,12 @@ class Piece {
   virtual std::string note() const = 0;
 };
 
-/// This rank's part, at the start. Throws Unsupported, on all ranks, if the scene cannot be cut for them.
+/// This rank's part, at the scene's start state. Throws Unsupported, on all ranks, if the scene cannot be cut
+/// for this many.
 std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job);
 
-/// Throws Unsupported if the scene cannot be cut for `ranks` ranks, like make_piece, before any are started.
+/// Throws Unsupported if the scene cannot be cut for `ranks` ranks, like make_piece on each of them: call it
+/// before any are started.
 void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks);
 
 /// make_piece for a cloth, with ghost columns next to its own, and for bodies, whole ones and parts of
@@ -107,8 +110,9 @@ StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Da
                     session.name_of(0), sets.front(), session.name_of(static_cast<int>(rank)), sets[rank]);
 }
 
-/// Transfer of states between mssim and the pieces: rank 0 has a state's file (docs/protocol.md), each rank
-/// its part. No rank holds more than its part and a message. All ranks call these; they throw RankFailure.
+/// Transfer of states between mssim and the pieces: rank 0 has the file of a state (docs/protocol.md),
+/// and each rank its part. No rank holds more than its part and a message. All ranks call these functions
+/// together; they throw RankFailure.
 
 /// Sends every rank its part of the state in the file.
 void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece);
@@ -120,7 +124,8 @@ void gather_state(const Session& session, const std::filesystem::path& file, con
 void gather_window(const Session& session, const std::filesystem::path& file, const Piece& piece,
                    const GridWindow& window);
 
-/// Costs of all ranks' steps since the last report: the answers to `costs` (docs/protocol.md).
+/// Costs of the steps of all ranks since the last report: the answers to the request `costs`
+/// (docs/protocol.md).
 class StepCosts {
  public:
   explicit StepCosts(const LinkSpeed& links) : links_(links) {}

@@ -33,7 +33,8 @@ struct Wish {
   GridWindow nodes = {};  ///< nodes of a window
 };
 
-/// mssim's introduction to rank 0 as a text for the others, which need neither its file nor environment.
+/// mssim's introduction to rank 0, as a text for the other ranks. Only rank 0 needs the scene's file and the
+/// environment that mssim has set.
 std::string job_text(const std::map<std::string, std::string>& introduction, int ranks, bool copies) {
   const std::filesystem::path file = variable("MSSIM_SCENE_FILE");
   const int processors = number_in<int>(introduction.at("threads")).value_or(1);
@@ -90,6 +91,7 @@ std::string take_processors(const Session& session, int threads) {
   return "";
 }
 
+/// The first nonempty text.
 std::string first_of(const std::vector<std::string>& texts) {
   const auto found = std::ranges::find_if(texts, [](const std::string& text) { return !text.empty(); });
   return found == texts.end() ? "" : *found;

@@ -16,7 +16,8 @@ inline std::string variable(const char* name, const char* otherwise = "") {
   return value && *value ? value : otherwise;
 }
 
-// Texts by which the ranks, within their output, report to launch_ranks.
+// Texts by which the ranks, within their output, report to the process that started the launcher
+// (launch_ranks).
 
 /// The argument of mssim-mpi and its ranks that makes each step the whole scene.
 inline constexpr std::string_view copies_word = "copies";
@@ -43,7 +44,8 @@ class Requests {
   /// Connects to the socket that MSSIM_SOCKET names. Throws std::runtime_error with one sentence.
   Requests();
 
-  /// The lines before "prepare": the first word of each, and its rest. Of repeated keywords, the last wins.
+  /// The lines before "prepare": the first word of each line, and its rest. If a keyword repeats, the last
+  /// line wins.
   std::map<std::string, std::string> read_introduction();
   /// The next line, without its newline; "end" if mssim has ended.
   std::string next();

@@ -15,7 +15,8 @@
 
 namespace mssim {
 
-/// Why a run on several processes cannot continue; what() names other ranks with hosts, and this one "it".
+/// Why a run on several processes cannot continue; what() is a sentence that names other ranks with their
+/// hosts, and calls this one "it".
 struct RankFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -43,7 +44,8 @@ struct BodyShare {
   bool operator==(const BodyShare&) const = default;
 };
 
-/// A rank's fewest nodes of a divided body; with fewer, nearly all would have remote neighbours.
+/// A rank gets at least this many nodes of a divided body; with fewer, nearly all would have remote
+/// neighbours.
 inline constexpr std::size_t least_share = 16;
 
 /// How far a rank may be above the mean load before a body is divided, relative to the mean.
@@ -52,7 +54,8 @@ inline constexpr double most_excess = 0.1;
 /// Assigns bodies of these numbers of nodes to ranks: [bodies] the ranks of each, one if it stays whole. All
 /// bodies stay whole if every rank then has one and none is more than most_excess above the mean. Otherwise
 /// as few of the largest bodies as necessary are divided, and fill the ranks up to one level on top of the
-/// whole ones. Every rank has nodes; nothing if that would divide bodies that are too small.
+/// whole ones. Every rank has nodes; nothing if that is impossible, because bodies that are too small would
+/// have to be divided.
 std::optional<std::vector<std::vector<BodyShare>>> body_shares(const std::vector<std::size_t>& nodes,
                                                                int ranks);
 
@@ -75,13 +78,15 @@ struct BodiesPart {
     std::size_t ghosts;               ///< number of its nodes that are ghosts here
   };
 
-  /// Own nodes in the order of bodies, then each neighbour's ghosts; springs with an own end; no topology.
+  /// Own nodes in the order of the bodies, then the ghosts of each neighbour in the same order. It has the
+  /// springs with an own end, and no topology.
   System system;
   GraphPart graph;
   std::vector<Neighbour> neighbours;  ///< ascending by rank
 };
 
-/// A rank's part of these bodies. `place`: [nodes] in the scene's order (GraphPart); `owner`: [nodes] ranks.
+/// The part of a rank in these bodies. `place`: [nodes] of the bodies in the order of the scene (GraphPart);
+/// `owner`: [nodes] the rank of each.
 BodiesPart part_of_bodies(const System& bodies, std::span<const std::uint32_t> place,
                           std::span<const int> owner, int rank);
 

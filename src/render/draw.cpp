@@ -82,6 +82,7 @@ class Lights {
 
   const Camera& key() const { return key_; }
 
+  /// The light on a surface with this normal.
   PointLight on(const Vec3d& normal) const {
     const auto key = static_cast<float>(dot(normal, key_.near()));
     const auto fill = static_cast<float>(dot(normal, fill_.near()));
@@ -214,7 +215,8 @@ struct PixelFragments {
   const Fragment& at(std::uint32_t i, std::uint32_t j) const { return first[j * row_pitch + i]; }
 };
 
-/// Mean light of a pixel's samples. Pixels of only ground, or one smooth surface, are shaded at fewer points.
+/// The mean light of a pixel's samples. Pixels with only ground, or one smooth surface, are shaded at fewer
+/// points.
 Light mean_light(const Stage& stage, const PixelFragments& pixel) {
   std::uint32_t hits = 0;
   double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -54,7 +54,8 @@ class Camera {
   Vec3d right_, up_, near_;
 };
 
-/// The smallest grid of square pixels around `seen` (Camera::seen), with `margin` (a fraction) on each side.
+/// The smallest grid of columns x rows square pixels around `seen`, a box of Camera::seen, with `margin` (a
+/// fraction of the picture) free on every side.
 PixelGrid grid_around(const Box<double>& seen, std::uint32_t columns, std::uint32_t rows, double margin);
 
 /// Level ground with a grid of lines, which fades out around the subject.
@@ -66,7 +67,8 @@ class Ground {
   /// Distance of the lines, m.
   double spacing() const { return spacing_; }
 
-  /// Where a ray to the camera (x, y: Camera::seen) meets the ground; none from below or along it.
+  /// Where a ray towards the camera meets the ground; none if the camera looks along it or from below. `x`
+  /// and `y` as in Camera::seen.
   std::optional<Vec3d> met_by(const Camera& camera, double x, double y) const;
 
   /// Its colour at a point, on `background`; `light` is the fraction of level ground's light that arrives.
@@ -97,11 +99,13 @@ Vec3d shadow_light(const ViewDirection& direction);
 /// The box around points in coordinates of Camera::seen.
 Box<double> seen_box(const Camera& camera, const std::vector<Vec3d>& points);
 
-/// A picture's samples as pixels of a grid: four by four per pixel. The content has margins of 6 %.
+/// The samples of a picture as pixels of a grid: four by four per pixel. The content has a margin of 6 % on
+/// each side.
 PixelGrid drawn_points(const Shot& shot);
 
-/// Draws a subject with points. Two lights and the sky shade it; the first casts its shadow on the subject
-/// and the ground; each pixel is the mean of sixteen samples. Every number of threads draws the same.
+/// Draws a subject, which must have points. Two lights and the sky shade it; the first casts its shadow on
+/// the subject and the ground; each pixel is the mean of sixteen samples. The number of threads does not
+/// change the picture.
 Picture drawn(const Subject& subject, const Shot& shot);
 
 }  // namespace mssim

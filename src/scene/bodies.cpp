@@ -98,7 +98,8 @@ void visit_scene_shape(FieldVisitor& fields, BodySpec& body) {
               Presence::required, body.shape.emplace<ShapeOfScene>().name);
 }
 
-/// The TABLE of shapes, in BodyShape's order: value of `shape`, its section, and the function of its fields.
+/// The TABLE of shapes, in the order of BodyShape's alternatives: value of `shape`, its section, and the
+/// function that names the section's fields.
 struct ShapeKind {
   Field section;
   void (*visit_fields)(FieldVisitor& fields, BodySpec& body);
@@ -178,7 +179,8 @@ SceneCounts least_counts(const OwnShape& own) {
 
 constexpr std::size_t most_bodies = 10'000;
 
-/// Range of lengths of a body's springs, m. Within it, all quantities are normal in single precision.
+/// Range of lengths of a body's springs, m. Within it, lengths, masses and stiffnesses over masses are normal
+/// numbers in single precision.
 constexpr double shortest_spring = 1e-7, longest_spring = 1e6;
 
 const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.content); }

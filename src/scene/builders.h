@@ -16,7 +16,8 @@ System build_cloth_window(const SceneSpec& spec, const GridWindow& window);
 /// The system of a cloth without its nodes: without masses, pins, springs and start.
 System outline_of_cloth(const SceneSpec& spec);
 
-/// The ripple's displacement in the plane over that out of it, which alone strains springs in second order.
+/// Ratio of the ripple's displacement in the plane to that out of it. A small ripple only out of the plane
+/// would strain the springs in second order only.
 inline constexpr double ripple_in_plane_share = 0.5;
 
 /// Phases of the ripple's six components along x and z, in radians. A component is zero along lines of
@@ -36,7 +37,8 @@ System build_cloth(const SceneSpec& spec);
 std::uint64_t memory_needed(const SceneCounts& counts);
 
 /// Lower bounds on the nodes and springs of a body of that shape, without making its mesh; zero if unknown.
-/// `folder` is the scene file's. Throws SceneError for the shape of an unusable other scene.
+/// `folder` is the scene file's. Throws SceneError if the shape is of another scene that does not exist or
+/// cannot be used.
 SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder);
 
 }  // namespace mssim

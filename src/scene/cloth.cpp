@@ -109,7 +109,8 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
                 [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
 }
 
-/// Checks the number of nodes, the pinned row, the height, and that the ripple leaves springs a length.
+/// The nodes can be numbered, the pinned row exists, the cloth starts above the floor, and the ripple
+/// compresses no spring to length zero.
 void check(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   constexpr std::uint64_t largest = std::numeric_limits<std::uint32_t>::max();
@@ -197,7 +198,8 @@ extern const SceneKind cloth_kind{
         "bending springs.",
     .visit_fields = visit_fields,
     .check = check,
-    // The published counts are of every node's 12-neighbour stencil, so each spring from both ends.
+    // The published counts include the 12-neighbour stencil of every node, and so each spring from both of
+    // its ends.
     .published_per_spring = 2,
     .files = [](const SceneSpec& /*spec*/) { return std::vector<std::string>(); },
     .stated = [](const SceneSpec& spec) { return std::optional(cloth_counts(spec)); },

@@ -31,10 +31,12 @@ bool is_path_of_scene(std::string_view name_or_path);
 /// Is there a scene of that name, or a file at that path?
 bool is_scene(std::string_view name_or_path);
 
-/// The scene of that name (NAME.json in scenes/), or at that path. Throws SceneError, with the known names.
+/// The scene of that name (NAME.json in the data folder's scenes/), or at that path. Throws SceneError; for
+/// an unknown name it lists the known ones.
 SceneSpec find_scene(std::string_view name_or_path);
 
-/// The scenes in the data folder, by kind, the fewest stated nodes first. Throws SceneError for a bad one.
+/// The scenes in the data folder, by kind, the smallest (in stated nodes) first. Throws SceneError if one of
+/// them cannot be read.
 std::vector<SceneSpec> shipped_scenes();
 
 }  // namespace mssim

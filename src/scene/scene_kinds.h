@@ -10,7 +10,8 @@
 
 namespace mssim {
 
-/// The TABLE of scene kinds, in SceneSpec::content's order. A new kind is a row next to its builder.
+/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is a row, defined
+/// next to its spec and builder, and an alternative.
 std::span<const SceneKind* const> scene_kinds();
 
 /// The row of the scene's kind.
@@ -28,10 +29,12 @@ SceneCounts counts_of(const SceneSpec& spec);
 /// Nodes and springs of the scene's System.
 SceneCounts counts_of(const SceneSpec& spec, const System& system);
 
-/// Throws SceneError, naming both amounts, if every run of these counts needs more memory than is available.
+/// Throws SceneError, naming both amounts, if any run of the scene, which has these counts, needs more memory
+/// than is available (memory_needed).
 void require_memory(const SceneSpec& spec, const SceneCounts& counts);
 
-/// Throws SceneError, naming both amounts and the remedy, if `needed` bytes for a use exceed the memory.
+/// Throws SceneError, naming both amounts and the remedy, if `needed` bytes for a use of the scene exceed the
+/// available memory.
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy);
 

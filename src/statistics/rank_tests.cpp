@@ -119,7 +119,8 @@ RankDistribution rank_sum_distribution(std::size_t x_size, std::size_t y_size) {
     const auto pairs = static_cast<double>(largest), all = static_cast<double>(x_size + y_size);
     return RankDistribution::normal(pairs / 2, std::sqrt(pairs * (all + 1) / 12));
   }
-  // ways[count][u]: sets of `count` ranks so far. The (i+1)-th of x, at rank r from 0, is above r - i of y.
+  // ways[count][u]: sets of `count` of the ranks so far. The (i+1)-th smallest of x, at rank r from 0, is
+  // above r - i values of y.
   std::vector<std::vector<double>> ways(x_size + 1, std::vector<double>(largest + 1));
   ways[0][0] = 1;
   for (std::size_t rank = 0; rank < x_size + y_size; ++rank)

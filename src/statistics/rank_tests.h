@@ -10,7 +10,8 @@ namespace mssim {
 /// Error probability of a 95 % interval.
 inline constexpr double usual_error = 0.05;
 
-/// Result of a rank test: the probability of a statistic at least as extreme if there is no difference.
+/// Result of a test that uses only ranks: the probability of a statistic at least as extreme if there is no
+/// difference.
 struct RankTest {
   double statistic = 0;
   double p_less = 1;     ///< of a statistic as small or smaller
@@ -59,7 +60,8 @@ RankTest signed_rank_test(std::span<const double> differences);
 ShiftEstimate signed_rank_shift(std::span<const double> differences, double error = usual_error);
 
 /// The distribution of a rank statistic if there is no difference: exactly, as a table, for samples of fewer
-/// than `exact_below` without ties, else as a normal distribution with continuity correction. Symmetric.
+/// than `exact_below` without ties, else as a normal distribution with continuity correction. Symmetric about
+/// its mean.
 class RankDistribution {
  public:
   /// `ways[s]` of the equally likely arrangements give the statistic s.

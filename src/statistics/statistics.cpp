@@ -41,7 +41,8 @@ RatioEstimate estimate_of(const ShiftEstimate& shift, const RankTest& test) {
   return {std::exp(shift.shift), std::exp(shift.low), std::exp(shift.high), shift.covers, test.p_two_sided()};
 }
 
-/// A division of a part of a series, and its sides' difference: m n / (m + n) times their energy distance.
+/// A division of a part of a series, and how much its sides differ: m n / (m + n) times the energy distance
+/// of m and n values.
 struct Division {
   std::size_t first = 0;  ///< of the second side
   double divergence = 0;
@@ -50,7 +51,8 @@ struct Division {
 /// The division with the largest divergence; each side needs two values.
 Division best_division(std::span<const double> values) {
   const std::size_t size = values.size();
-  // Sums of distances of all pairs on the left, on the right, and across. At first all are right.
+  // Sums of the distances of all pairs on the left side, on the right side, and across. At first all are
+  // right.
   double left = 0, right = 0, across = 0;
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j) right += std::abs(values[i] - values[j]);
@@ -81,12 +83,14 @@ Division best_of_parts(std::span<const double> values, std::span<const std::size
   return best;
 }
 
-/// Random orders that a change is tested against: of 500 divergences, the fifth largest is just significant.
+/// Random orders of a series that a change is tested against. With 499, the fifth largest of 500 divergences,
+/// the observed one included, is just significant.
 constexpr int random_orders = 499;
 /// Random numbers begin with it in every test, so that the same series gives the same changes.
 constexpr std::uint64_t order_seed = 1;
 
-/// Whether at most `change_error` of the orders, the observed one included, divide as well; stops if decided.
+/// Whether no more than `change_error` of the random orders, the observed one included, have a division at
+/// least as good. Stops when that is decided.
 bool is_significant(const Division& observed, std::vector<double> values,
                     std::span<const std::size_t> bounds) {
   constexpr double rounding = 1e-9;

@@ -31,7 +31,8 @@ inline constexpr double interval_confidence = 0.95;
 double rank_coverage(std::size_t samples, std::size_t rank);
 
 /// The largest rank whose interval still covers 95 %: the narrowest such symmetric interval; 0 if there is
-/// none (fewer than 6 samples). The binomial distribution is discrete: the coverage is often well above 95 %.
+/// none (fewer than 6 samples). The binomial distribution is discrete, so the coverage is often well above 95
+/// %; nothing is interpolated.
 std::size_t interval_rank(std::size_t samples);
 
 /// The samples in ascending order. Throws std::invalid_argument for no samples or for one that is not finite.
@@ -57,7 +58,8 @@ MedianInterval median_interval(std::span<const double> samples);
 /// std::invalid_argument for unequal lengths.
 MedianInterval median_ratio(std::span<const double> numerators, std::span<const double> denominators);
 
-/// The `fraction` quantile (0 to 1): one of the values, not interpolated; 1 gives the largest. Needs a value.
+/// The `fraction` quantile (0 to 1): one of the values, not interpolated; 1 gives the largest. Needs at least
+/// one value.
 double quantile(std::vector<double> values, double fraction);
 
 /// First and third quartile: the samples number p (n + 1), p = 1/4 and 3/4, counted from 1 in ascending
@@ -81,7 +83,8 @@ std::string_view name_of(Outlier outlier);
 /// Tukey, Exploratory Data Analysis, Addison-Wesley 1977. Throws like quartiles().
 std::vector<Outlier> outliers(std::span<const double> samples);
 
-/// A ratio of two times, estimated on logarithms: a factor is a shift, and both times are treated alike.
+/// A ratio of two times, estimated on logarithms: there a factor is a shift, and both times are treated
+/// alike.
 struct RatioEstimate {
   double ratio = 1;
   double low = 1, high = 1;  ///< the 95 % interval
@@ -90,7 +93,8 @@ struct RatioEstimate {
 };
 
 /// next / base of two independent samples of times: rank_sum_shift() and rank_sum_test() (rank_tests.h) of
-/// the logarithms. Throws std::invalid_argument without samples or for times not finite and positive.
+/// the logarithms. Throws std::invalid_argument for an empty sample or a time that is not finite and
+/// positive.
 RatioEstimate ratio_of(std::span<const double> base, std::span<const double> next);
 
 /// next[i] / base[i] of pairs: signed_rank_shift() and signed_rank_test(). `fraction` is the share of their
@@ -104,7 +108,8 @@ double geometric_mean(std::span<const double> ratios);
 /// A place in a series of times from which on they are others.
 struct ChangePoint {
   std::size_t first = 0;  ///< the first time after the change
-  /// Times from it to the next change over those since the previous: ratio_of(), as if its place were known.
+  /// The times from it to the next change, over those before it from the previous one on: ratio_of(). Its
+  /// interval takes the place of the change as known.
   RatioEstimate ratio;
 };
 
@@ -115,7 +120,8 @@ inline constexpr double change_error = 0.01;
 /// part of the series best, by the energy distance of its two sides, is a change if at most `change_error` of
 /// random orders have a place that divides them as well. All parts are searched again until none has one. A
 /// random order shuffles each part between known changes, so the test needs no distribution of the times. It
-/// needs that all orders are equally likely without a change: a trend counts as changes. Deterministic.
+/// needs that all orders are equally likely without a change: a trend counts as changes. The same series
+/// gives the same changes.
 ///
 /// Sources: D. S. Matteson, N. A. James, A nonparametric approach for multiple change point analysis of
 /// multivariate data, Journal of the American Statistical Association 109 (2014), 334-345, with exponent 1,
@@ -131,7 +137,8 @@ std::vector<ChangePoint> change_points(std::span<const double> times);
 /// k-th look may spend the fraction 1 / (k (k + 1)) of a single test's error. The fractions of all looks,
 /// however many there will be, add up to 1, and so do the error probabilities: p over the fraction is a
 /// p-value, and the interval with the error times the fraction is valid, whenever and for whatever reason the
-/// measurement stops (a repeated p-value, a repeated confidence interval). Looks may depend on each other.
+/// measurement stops (a repeated p-value, a repeated confidence interval). Looks may depend on each other in
+/// any way.
 ///
 /// If the measurement ends between two looks, for a reason independent of the pairs (a time budget), the next
 /// look is taken then. Looks may come at unplanned times, if these do not depend on the results.

@@ -13,7 +13,8 @@ enum class Repeatable { never, at_same_threads, always };
 /// The word for tables.
 std::string_view name_of(Repeatable repeatable);
 
-/// A row of the TABLE of methods against the data race of Hong et al.'s Figure 1, at shared nodes.
+/// A row of the TABLE of methods against the data race of Hong et al.'s Figure 1: threads concurrently add
+/// the forces of springs to the nodes that they share.
 struct AccumulationMethod {
   BackendInfo backend;
   std::string_view extra_memory;      ///< in addition to `serial`'s

@@ -131,6 +131,7 @@ HWY_INLINE void put_back_pins(const PaddedRows& cloth, std::size_t row, float* a
   }
 }
 
+/// One stage at the nodes of one row.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void step_row(const PaddedRows& cloth, const ClothConstants& constants, const Arrays& arrays,
                          std::size_t row) {
@@ -162,7 +163,8 @@ HWY_INLINE void take_steps(const PaddedRows& cloth, const Team& team, int count)
 /// Takes `count` steps of an integrator of these Stages.
 template <std::size_t stages>
 void step_rows(PaddedRows& cloth, int count) {
-  // Nodes sum their springs in the stencil's order: bitwise identical for any number of lanes and threads.
+  // A node sums its springs in the stencil's order, in any lane and thread: the result is bitwise identical
+  // for any number of threads.
   with_integrator(*cloth.integrator, [&](auto method) HWY_ATTR {
     if constexpr (Stages<stages>::have(integrators[method]))
       with_team(cloth.threads, [&](const Team& team) HWY_ATTR { take_steps<method>(cloth, team, count); });

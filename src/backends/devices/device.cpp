@@ -85,7 +85,8 @@ constexpr std::array error_names{
 
 using Property = cl_device_partition_property;
 
-/// Properties that request a part of `count` compute units, the most specific the driver has, or nothing.
+/// Properties that request a part of `count` compute units from the driver, in the most specific way; nothing
+/// if the driver supports none.
 std::optional<std::vector<Property>> request_for(const cl::Device& device, int count) {
   const std::vector<Property> properties = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
   const auto offers = [&](Property property) {

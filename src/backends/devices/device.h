@@ -44,7 +44,8 @@ std::string_view name_of(OpenclDeviceType type);
 /// in any case. Throws Unavailable if there is none or if several match; the sentence lists the devices.
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
 
-/// Nodes or springs per work-item: wide vectors for a CPU (its driver does not vectorise), else one.
+/// Nodes or springs per work-item that suit the device: wide vectors for a CPU, whose driver does not
+/// vectorise, else one.
 int lanes_for(const OpenclDevice& device);
 
 /// A part of the device with `count` compute units, if it is this machine's CPU and has more: the driver then

@@ -25,9 +25,10 @@ inline constexpr const char* obstacle_mark = "mssim: the driver with number ";
 /// Is it PoCL, which has a cache of compiled kernels?
 bool is_pocl(const RegisteredDriver& driver);
 
-/// Makes PoCL bind each thread to a core, unless the user decides that. Otherwise they sleep between short
-/// kernels, and Linux wakes two of them on one core: the spring forces of 38,233 nodes took 200 microseconds
-/// on two cores, 110 to 150 with bound threads. A process restricted to some cores must not bind them.
+/// Makes PoCL bind each of its threads to its own core, unless the user has decided that. Otherwise they
+/// sleep between short kernels, and Linux wakes two of them on one core: the spring forces of 38,233 nodes
+/// then took 200 microseconds on two cores, and 110 to 150 with bound threads. PoCL numbers cores from 0, so
+/// a process restricted to some cores must not bind them.
 void bind_pocl_threads();
 
 /// PoCL's folder of compiled kernels, without which it offers no device.
@@ -36,8 +37,9 @@ struct PoclCache {
   std::string note;     ///< the cost of having no permanent folder, a sentence; or empty
 };
 
-/// Lets PoCL write its cache: if its default folder cannot be written, sets POCL_CACHE_DIR to mssim's folder
-/// in the user's cache folder or, if that fails too, to a temporary folder of the process.
+/// Makes sure that PoCL can write its cache: if its default folder cannot be written, sets POCL_CACHE_DIR to
+/// mssim's folder in the user's cache folder or, if that cannot be written either, to a temporary folder that
+/// is removed when the process ends.
 PoclCache provide_pocl_cache();
 
 }  // namespace mssim

@@ -72,7 +72,8 @@ SpringKernel AlikeNodes::spring_kernel(int lanes) const {
 
 namespace {
 
-/// Data of `hybrid` on the device: springs; nodes and forces in shared memory, the host's between calls.
+/// Data of `hybrid` on the device: the springs permanently; the nodes and forces in memory that it shares in
+/// turn with the host. Between calls the host has them.
 class SpringDevice {
  public:
   /// `lanes`: those of the kernel's text. `stored`: the pairs that the integrator needs; they and the forces
@@ -108,7 +109,8 @@ class SpringDevice {
     launch_ = {kernel, chunks.items};
   }
   ~SpringDevice() {
-    // Drivers never free a buffer released while mapped. Unmapped as if read: nothing is copied back.
+    // A driver never frees a buffer that is released while mapped. Unmapped as if read: nothing is copied
+    // back.
     try {
       for (std::size_t i = 0; i < pair_kinds; ++i)
         if (pairs_[i]) pairs_[i]->unmap(host_pairs_[i], CL_MAP_READ);
@@ -122,6 +124,7 @@ class SpringDevice {
   SpringDevice& operator=(const SpringDevice&) = delete;
 
   const DeviceQueue& queue() const { return queue_; }
+  /// The nodes of a stored pair.
   std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }
   const float* forces() const { return host_forces_.data(); }
 
@@ -263,7 +266,8 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
   if (threads < 1)
     throw std::invalid_argument(fmt::format("hybrid needs at least one host thread, not {}", threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    // Seven bodies in 16 lanes take 1.05 to 1.1 times as long as with packed springs, 13 take 0.66 times.
+    // With seven bodies in sixteen lanes, a step takes 1.05 to 1.1 times as long as with packed springs, with
+    // thirteen 0.66 times (Intel Xeon).
     constexpr double lanes_per_body = 2;
     const auto alike = alike_bodies_for(system, AlikeSprings::slice_nodes, lanes_per_body);
     before(alike ? SteppedKind::alike_bodies : SteppedKind::bodies);

@@ -75,7 +75,8 @@ template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void integrate_slices(const HostNodes& nodes, const MappedNodes& mapped, std::size_t begin,
                                    std::size_t end) {
   // A few slices per pass, as many as the first-level cache holds. First the additions, whose stream brings
-  // the data of the later lookups into the cache. Sums are complete before they are loaded as vectors.
+  // the data of the later lookups into the cache. Sums are complete before they are loaded as vectors: a load
+  // of a vector cannot be forwarded from narrower stores.
   constexpr std::size_t at_a_time = 4;
   alignas(64) float sums[at_a_time * slice_floats];
   const PackedSprings& packed = nodes.packed;

@@ -18,14 +18,16 @@ namespace mssim {
 struct SpringKernel {
   std::string text;  ///< text of the program
   const char* name;  ///< name of its kernel
-  /// Units of work; a work-item takes some in turn: the last arguments are their number in all and per item.
+  /// Units of work; a work-item takes some of them in turn: the last arguments are their number and the
+  /// number per item.
   std::size_t parts;
   std::size_t pair_floats, force_floats;  ///< its first two arguments: a pair of nodes, the forces
   std::vector<std::span<const std::byte>> constants;  ///< the arguments between those
 };
 
-/// Data with which the host's threads sum spring forces and integrate, for one integrator and dt. Nodes are
-/// records (kernels/records.h), forces are in the order of PackedSprings, four floats each, N.
+/// Data with which the host's threads sum the spring forces at the nodes and integrate them, for one
+/// integrator and one dt (made in hybrid.cpp). Nodes are records (kernels/records.h), forces are in the order
+/// of PackedSprings, four floats each, N.
 struct HostNodes : ExplicitSteps {
   PackedSprings packed;
   /// [slices][inverse mass, held][16]: 1/kg; 1 if pinned or padding, else 0.
@@ -61,7 +63,8 @@ struct AlikeNodes : ExplicitSteps {
   void forget_units() { springs.springs = {}; }
 };
 
-/// Mapped data of a stage: `pairs` by role, and the forces of all springs, in the layout of the nodes.
+/// Mapped data of a stage: `pairs` by role, and the forces of all springs, in the layout of the corresponding
+/// nodes.
 struct MappedNodes {
   std::array<float*, pair_kinds> pairs{};
   const float* forces = nullptr;

@@ -12,6 +12,7 @@
 namespace mssim {
 namespace {
 
+/// The functions for the steps of one solver.
 struct SolverSteps {
   using Make = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s);
   using MakeOpenMp = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s,
@@ -37,13 +38,16 @@ std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrato
     return make(system, dt_s);
 }
 
-/// SpringEquation<float>: per node PlainNodes, six vectors, a block of P; per spring a part of A.
+/// Memory of a SpringEquation<float>: per node PlainNodes, six vectors and a block of P; per spring its part
+/// of A.
 constexpr MemoryUse plain_newton{.node = 29 + 6 * 12 + 24, .spring = 20};
 
-/// Entries of a factor in minimum degree order, per node: 5 to 6 per doubling for a cloth of 40,000 to
-/// 160,000; 5 to 7 per cube root of nodes for the scenes of bodies, 7 to 13 for a body of 1,700 to 27,000.
+/// Entries of a sparse factor in minimum degree order, per node: 5 to 6 per doubling for a cloth of 40,000 to
+/// 160,000 nodes; 5 to 7 per cube root of the number of nodes for the scenes of bodies, and 7 to 13 for one
+/// body of 1,700 to 27,000.
 constexpr double cloth_entries = 6, body_entries = 13;
-/// An entry takes 12 bytes in Eigen's factor and in its copy; three matrices, matrix_bytes per node.
+/// An entry takes 12 bytes in Eigen's factor, and 12 in its copy; the matrix itself, in three forms, takes
+/// matrix_bytes per node.
 constexpr double entry_bytes = 2 * 12, matrix_bytes = 550;
 /// openmp's blocks, besides their sources.
 constexpr double block_bytes = 38;
@@ -57,7 +61,8 @@ constexpr SolverSteps newton{
     .reference = make_newton_reference,
     .reference_memory = {.node = 2 * plain_newton.node - 1, .spring = 2 * plain_newton.spring},
     .openmp = make_openmp_newton,
-    // Measured for 700,000 nodes: eight vectors, a block, and temporaries for padding and conversion.
+    // Measured for a cloth of 700,000 nodes: eight vectors, a block, and temporary data for padding and
+    // conversion.
     .openmp_memory = {.node = 165}};
 
 constexpr SolverSteps local_global{

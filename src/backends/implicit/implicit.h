@@ -15,7 +15,8 @@ namespace mssim {
 std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options);
 
-/// The plain code in double precision, which iterates until it improves no more, or `stop` (make_reference).
+/// The plain code in double precision, whose solvers iterate until they improve no more, or until `stop`
+/// returns true (make_reference in backends/backends.h).
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
                                                  double dt_s, const std::function<bool()>& stop);
 

@@ -10,7 +10,8 @@
 namespace mssim {
 
 /// Alike bodies: all have the same springs, with the same constants, between corresponding nodes. A body is a
-/// connected component of the springs, its nodes numbered by its reverse_cuthill_mckee().
+/// connected component of the springs. Its nodes are numbered by their position in the body's
+/// reverse_cuthill_mckee().
 struct AlikeBodies {
   /// A spring to a later node.
   struct SpringAhead {
@@ -43,7 +44,8 @@ std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, s
                                                          double per_body);
 
 /// Storage of the nodes of alike bodies: a slice has one node of as many bodies as there are lanes, so the
-/// ends of a spring of all are two slices, [x y z u v w][lanes]. Unused lanes repeat the first body.
+/// ends of a spring of all of them are two slices, [x y z u v w][lanes] each. Unused lanes repeat the group's
+/// first body.
 struct AlikeSlices {
   static constexpr std::size_t components = 6;
 

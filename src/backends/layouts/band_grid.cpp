@@ -48,7 +48,8 @@ std::size_t narrowest_partition(const Integrator& integrator, std::size_t steps_
 /// Rows, including the cost of columns in rows, of a pass over one of the partitions.
 double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                     std::size_t threads, double rows_beside) {
-  // Measured on an Intel Xeon, rounded up: cost of a column whose nodes are not updated, copies included.
+  // Measured on an Intel Xeon, rounded up: cost of a column whose nodes are not updated, including the copies
+  // it is read from.
   constexpr double partial_column = 0.8;
   const std::size_t columns = (layout.columns + layout.halves - 1) / layout.halves;
   const std::size_t partitions = partitions_for(columns, threads, integrator, steps_per_pass);
@@ -109,13 +110,15 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
 
 ColumnCosts ColumnCosts::here() {
 #if defined(__x86_64__)
-  // On Zen 4 a column costs 1 to 1.4 rows more than its own; the second-level cache is as fast as the first.
+  // On Zen 4 a column costs 1 to 1.4 rows in addition to its own, and the second-level cache, part of which
+  // threads and other arrays need, is as fast as the first.
   if (__builtin_cpu_is("amd")) return {1, 0.98, cache_bytes(_SC_LEVEL2_CACHE_SIZE, 1L << 20) / 4};
 #endif
   return usual_column_costs();
 }
 
-/// Folds for clearly fewer rows, if a cache holds the active columns: three of the state, two of forces.
+/// Folds if that clearly reduces the rows to walk through, and if a cache holds the active columns: three of
+/// the state and two of forces.
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                        std::size_t threads, const ColumnCosts& of_one_stage) {
   if (layout.lanes < 2) return 1;
@@ -243,7 +246,8 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {
         const std::size_t row = lane % layout.bands * layout.height + r;
         const std::ptrdiff_t of_cloth = partition.cloth_column(column, lane / layout.bands);
-        // Dummies keep a cloth's spacing, also from other pieces: springs between them need a length.
+        // Dummies keep the spacing of a cloth at rest, also from those of other pieces: springs between them
+        // have no stiffness, but must not have length zero.
         Vec3d x{static_cast<double>(static_cast<std::ptrdiff_t>(first_column_) + of_cloth) * spacing_,
                 dummy_height, static_cast<double>(row) * spacing_};
         Vec3d v{};

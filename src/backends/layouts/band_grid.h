@@ -27,7 +27,8 @@ namespace mssim {
 ///
 /// The cloth may be folded: its columns are divided into halves that share the lanes, so there are lanes / 2
 /// bands of twice the height. Column c of the layout is then two columns of the cloth; BandPartition defines
-/// the mapping. Folding leaves fewer empty rows in a small cloth and halves the columns, which cost.
+/// the mapping. Folding leaves fewer empty rows in a small cloth and halves the columns, each of which has a
+/// fixed cost.
 ///
 /// Two halo rows above and below have room for the neighbouring bands' rows: opencl keeps them there, openmp
 /// writes them only where it reads them. Padding rows in the last bands are dummies: they stay at rest and
@@ -56,11 +57,13 @@ struct BandLayout {
   std::size_t offset(std::size_t row, std::size_t half = 0) const {
     return (row % height + halo) * row_floats() + half * bands + row / height;
   }
-  /// Floats of a column of forces: rows 0 .. height, three components; the last: of row 0 on the lane before.
+  /// Floats of one column of forces: rows 0 .. height, three components. The last row has the forces of the
+  /// first row on the column's last row, one lane before.
   std::size_t force_floats() const { return (height + 1) * 3 * lanes; }
 };
 
-/// For each half: the number of the cloth's columns from this one on, 0 if it is none of the cloth's.
+/// For each half of a layout's columns: the number of the cloth's columns from this one to the end, including
+/// this one; 0 if it is not a column of the cloth.
 using ColumnsToEnd = std::array<std::size_t, 2>;
 
 /// Constants for the nodes of each row of a banded cloth, one value per lane: those of the springs that they
@@ -96,7 +99,8 @@ struct ColumnRange {
   std::size_t end() const { return first + count; }
 };
 
-/// One of `parts` parts of these columns, equal but for one column: the share of a process or a thread.
+/// One of `parts` parts of these columns, which differ by at most one column: the share of a process, and of
+/// one of its threads.
 inline ColumnRange part_of(ColumnRange all, std::size_t part, std::size_t parts) {
   const std::size_t begin = all.count * part / parts, end = all.count * (part + 1) / parts;
   return {all.first + begin, end - begin};
@@ -109,8 +113,9 @@ inline ColumnRange with_ghosts(ColumnRange own, std::size_t ghosts, std::size_t 
 }
 
 /// Stages active at the same time. Each follows the previous one at a distance of two columns, so it gathers
-/// what has just been written, and the few columns between them stay in a cache: a step of RK4 moves the
-/// state through memory once instead of four times, and a pass takes several steps of few stages.
+/// what has just been written, and the data between them are a few columns, which stay in a cache: a step of
+/// RK4 moves the state through memory once instead of four times, and steps of few stages are passed several
+/// at a time.
 inline constexpr std::size_t stages_under_way = 4;
 static_assert(max_stages <= stages_under_way);
 
@@ -122,7 +127,8 @@ inline std::size_t ghost_columns(const Integrator& integrator, std::size_t steps
 /// How a banded cloth is divided, if not by its size.
 struct BandCut {
   std::optional<std::size_t> steps_per_pass{};  ///< the total of their stages is at most stages_under_way
-  /// The columns that a piece owns; within the cloth it needs ghost_columns on each side. It is not folded.
+  /// The columns that a piece owns; of the others it needs ghost_columns on each side, or none at the end of
+  /// the cloth. A piece is not folded.
   std::optional<ColumnRange> piece{};
   std::optional<std::size_t> halves{};  ///< BandLayout::halves
 };
@@ -149,7 +155,8 @@ struct ColumnCosts {
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                        std::size_t threads, const ColumnCosts& of_one_stage = ColumnCosts::here());
 
-/// Exchange of a piece's edge columns with the adjacent processes, as threads do by copies.
+/// Exchange of the edge columns of a piece with the processes that step the adjacent columns: the counterpart
+/// between processes of the copies between threads.
 class ColumnMessages {
  public:
   ColumnMessages() = default;
@@ -157,7 +164,8 @@ class ColumnMessages {
   ColumnMessages& operator=(const ColumnMessages&) = delete;
   virtual ~ColumnMessages() = default;
 
-  /// Starts to send the complete edge columns. The ghosts must not be read before finish(). Does not wait.
+  /// Starts to send the edge columns, which are complete for the next pass. The ghosts next to them must not
+  /// be read before finish(). Does not wait.
   virtual void begin() = 0;
   /// Lets messages progress. Does not wait.
   virtual void advance() = 0;
@@ -166,13 +174,16 @@ class ColumnMessages {
   virtual void finish() = 0;
 };
 
-/// Columns from the first active stage to those that the last one gathers: a trial pair keeps a ring of them.
+/// Columns between the first active stage and those that the last one still gathers, and so the columns that
+/// a trial pair keeps, as a ring.
 inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * stages_under_way);
 
-/// Columns at an end of a partition, for the next one: copies, because the walk overwrites the state. Two
-/// alternating sets, so that a thread one pass behind still finds its data: threads need no barrier.
+/// Columns at one end of a partition, for the adjacent partition: copies, because the walk overwrites the
+/// state. Two alternating sets, so that a thread that is one pass behind still finds the data of its pass:
+/// threads need no barrier.
 struct EdgeColumns {
-  /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: only what another thread reads.
+  /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: without halo rows, and without the half that no
+  /// other thread reads, to move less between caches.
   std::array<AlignedArray, 2> sets;
   ThreadProgress pass;  ///< the next pass that may read its set
 
@@ -193,17 +204,20 @@ struct BandPartition {
   std::size_t count = 0;           ///< own columns of the thread
   std::size_t first_of_cloth = 0;  ///< column of the cloth that `first` is in the first half
   std::size_t ghosts = 0;          ///< on each side
-  /// State [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats] or empty.
+  /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty if
+  /// not stored.
   std::array<AlignedArray, pair_kinds> pairs;
   std::vector<std::vector<PlacedPin>> pins;  ///< [ghosts + count + ghosts] by column
   std::vector<const BandRows*> column_rows;  ///< by column: constants of its rows
   AlignedArray forces;                       ///< [stages_under_way][2][force_floats], active columns
-  /// Its first `ghosts` columns for the partition before it, its last ones for the next; empty without one.
+  /// Its first `ghosts` columns for the partition before it and its last ones for the next; empty if there is
+  /// none.
   EdgeColumns left, right;
 
   /// Index of a column in `pins` and in the state; first - ghosts <= column.
   std::size_t local(std::size_t column) const { return column + ghosts - first; }
-  /// The cloth's column for one of the layout in a half; may be outside the cloth. Halves are contiguous.
+  /// The cloth's column for a column of the layout in a half; may be outside the cloth. The halves of a
+  /// partition are contiguous.
   std::ptrdiff_t cloth_column(std::size_t column, std::size_t half) const {
     return static_cast<std::ptrdiff_t>(first_of_cloth + column + half * count) -
            static_cast<std::ptrdiff_t>(first);
@@ -242,7 +256,8 @@ struct BandGrid : ExplicitSteps {
   ColumnMessages* messages = nullptr;  ///< of a piece; must outlive the steps
   TeamGain team_gain;                  ///< for one thread per inner partition
 
-  /// For `lanes` lanes and at most `most_threads` inner partitions. set_state first touches the arrays.
+  /// Divides the cloth for `lanes` lanes and at most `most_threads` inner partitions. Arrays are untouched
+  /// until set_state.
   BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
            std::size_t lanes, std::size_t most_threads, const BandCut& given = {});
   /// Distributes the state over the partitions, including ghosts and dummies; each thread writes its own.

@@ -23,7 +23,8 @@ struct IndexRange {
   std::size_t begin, end;
 };
 
-/// `floats` in an odd number of vectors: powers of two would share few sets of the first-level cache.
+/// `floats` in whole vectors, an odd number of them: rows and components at a distance of a power of two
+/// share a few sets of the first-level cache.
 constexpr std::size_t odd_pitch(std::size_t floats, std::size_t lanes) {
   const std::size_t whole = round_up(floats, lanes);
   return whole / lanes % 2 == 0 ? whole + lanes : whole;
@@ -54,7 +55,8 @@ class AlignedArray {
   static constexpr std::size_t alignment = 4096;
 
   AlignedArray() = default;
-  /// `size` floats, zero and untouched: the first writer sets their NUMA node. Throws std::bad_alloc.
+  /// `size` floats, all zero and untouched: the first writer determines their NUMA node. Throws
+  /// std::bad_alloc.
   explicit AlignedArray(std::size_t size);
 
   float* data() { return data_.get(); }
@@ -73,7 +75,8 @@ class AlignedArray {
 
 /// Nodes as records of eight floats, x y z 0 u v w 0 (u v w: velocity), half a cache line, as in
 /// kernels/records.h: a vector of neighbours is gathered by loading whole records and transposing them in
-/// registers. On two Zen 4 cores with 38,148 nodes: 3.6 times as fast as gathers of separate components.
+/// registers. On two Zen 4 cores with 38,148 nodes that is 3.6 times as fast as gather instructions on
+/// separate components.
 constexpr std::size_t record_floats = 8;
 
 /// Writes the record of every node: node i's is number `slot[i]`. Rounds to float.
@@ -170,7 +173,8 @@ inline float* write_constants(float* to, std::size_t step, const SpringConstants
   return to;
 }
 
-/// SpringPerMass of a cloth's springs, by GridSpringKind. Throws Unsupported if its nodes differ in mass.
+/// SpringPerMass of a cloth's springs, by GridSpringKind. `unit_s`: as in spring_per_mass. Throws Unsupported
+/// if its nodes differ in mass.
 inline std::vector<SpringPerMass> springs_per_mass(const System& system, const GridPatch& grid,
                                                    double unit_s = 1) {
   const double mass = require_uniform_mass(system);

@@ -43,7 +43,8 @@ HWY_INLINE SpringConstants<Lanes> load_constants(const float*& from) {
 #undef MSSIM_LOADED
 }
 
-/// Parameters of a cloth in rows for every vector. A copy, because a vector store may alias any object.
+/// Parameters of a cloth in rows for every vector. A copy, because the compiler must assume that a vector
+/// store may change any object in memory.
 struct WalkedRows {
   SpringLanes spring[3];  ///< by GridSpringKind
   std::ptrdiff_t pitch;   ///< RowLayout::pitch

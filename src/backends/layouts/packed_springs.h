@@ -20,8 +20,8 @@ namespace mssim {
 ///
 /// The nodes are renumbered: a grid's keep their order, those of bodies are ordered so that neighbours are
 /// near each other (reverse Cuthill-McKee), then sorted within windows by the number of forces that they add
-/// and subtract. But for the sorting, a first end comes before the second, so a force is soon subtracted
-/// again.
+/// and subtract. Except for the sorting, a first end comes before the second one in that order, so a force is
+/// subtracted shortly after it was added.
 struct PackedSprings {
   static constexpr std::size_t slice_nodes = 16;
   static constexpr std::size_t list_nodes = 4;
@@ -40,7 +40,8 @@ struct PackedSprings {
   };
   std::vector<Entry> entries;
   /// [entries][second node, rest length][16]: slots, and the bits of a float, m. If a node has fewer units
-  /// than its slice has entries, the rest name itself and empty_unit, which must give no force.
+  /// than its slice has entries, the rest name the node itself and empty_unit: such a unit must give no
+  /// force.
   std::vector<std::uint32_t> units;
 
   /// [slots / 4 + 1]: begin of the list of each four nodes, and the end of the last list.
@@ -72,7 +73,8 @@ struct PackedSprings {
 
 /// The springs of alike bodies as `hybrid` shares them between device and host, instead of PackedSprings: the
 /// device computes the forces of a spring for sixteen bodies together (kernels/alike_springs.cl), and the
-/// host sums whole vectors of forces. Constants are divided by mass, so forces are accelerations.
+/// host sums whole vectors of forces for every slice. Constants are divided by a node's mass, so forces are
+/// accelerations.
 struct AlikeSprings {
   static constexpr std::size_t slice_nodes = 16;
 

@@ -37,6 +37,7 @@ void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint
   }
 }
 
+/// A whole system as a part of itself.
 GraphPart whole_of(const System& system) {
   if (system.springs.size() > SlicedGraph::no_node / 2)
     throw Unsupported("the scene has {} springs; a sliced graph holds at most 2147483647",

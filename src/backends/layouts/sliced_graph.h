@@ -13,7 +13,8 @@ namespace mssim {
 
 /// Data of the whole system that a part of it needs for bitwise identical steps.
 struct GraphPart {
-  /// [nodes] position in the whole's reverse_cuthill_mckee(), the order in which a node's springs are added.
+  /// [nodes] position in the whole's reverse_cuthill_mckee(): a node's springs are added in this order of its
+  /// neighbours.
   std::vector<std::uint32_t> place;
   /// Nodes from this one on are ghosts: neighbours of own nodes that other processes step.
   std::size_t own = 0;
@@ -22,7 +23,8 @@ struct GraphPart {
 /// The springs of a system as every node sees them, for code that gathers: the nodes are renumbered so that
 /// neighbours are near each other (reverse Cuthill-McKee), then sorted by degree within windows, then divided
 /// into slices of `lanes` nodes, whose springs are interleaved (sliced ELLPACK; M. Kreutzer et al., 2014,
-/// call it SELL-C-sigma). Constants are divided by the node's mass: forces are accelerations.
+/// call it SELL-C-sigma). The spring law's constants are divided by the mass of the node, so forces are
+/// accelerations.
 ///
 /// A slice has as many entries as the largest degree of its nodes; a node's neighbours are in the order
 /// before sorting. Entry e of the slice gives each lane's node one neighbour, in elements e * lanes + lane of
@@ -51,7 +53,8 @@ struct SlicedGraph {
   std::vector<SpringConstants<float>> constants;  ///< [slots] divided by mass, of all springs of the node
   std::vector<std::uint32_t> held;                ///< [slots] 1 if pinned or padding, else 0
 
-  /// Throws Unsupported if springs of different materials meet, or are too many for 32-bit indices of ends.
+  /// Throws Unsupported if springs of different materials meet in a node, or if there are too many springs
+  /// for 32-bit indices from both ends.
   SlicedGraph(const System& system, std::size_t slice_lanes);
   /// Slices a part of a graph: its nodes have the same entries as in the whole's graph, in the same order,
   /// with the same constants. Springs between ghosts are omitted.
@@ -66,7 +69,8 @@ struct SlicedGraph {
 /// Unit of record offsets in slice entries, in floats: a scale factor that CPU addressing supports.
 inline constexpr std::size_t slice_offset_floats = 2;
 
-/// Throws Unsupported for more nodes than entries can address as records of `floats_of_record` floats.
+/// Throws Unsupported if there are more nodes than entries can address as records of `floats_of_record`
+/// floats.
 void require_nameable_records(const System& system, std::size_t floats_of_record);
 
 /// [entries][2][lanes] in one stream: offsets of the neighbours' records, in units of slice_offset_floats and

@@ -14,7 +14,8 @@ namespace mssim {
 /// [nodes] number of springs at each node.
 std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs);
 
-/// The neighbours of every node, ascending: node i's are [first[i], first[i + 1]) in `neighbours`.
+/// The neighbours of every node, ascending: node i's are neighbours[first[i]] to neighbours[first[i + 1] -
+/// 1].
 struct Adjacency {
   std::vector<std::uint32_t> first;       ///< [nodes + 1]
   std::vector<std::uint32_t> neighbours;  ///< [2 springs]
@@ -52,10 +53,12 @@ std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order);
 std::vector<std::size_t> component_ends(std::span<const Spring> springs,
                                         std::span<const std::uint32_t> place);
 
-/// Springs by the end that comes first in an order of nodes: a counting sort, four times as fast as a sort.
+/// Springs by the end that comes first in an order of their nodes: a counting sort, because sorting a copy of
+/// all springs takes four times as long on a large cloth.
 class SpringsByFirstEnd {
  public:
-  /// `slot`: [nodes] slots; `rank`: [nodes] position by which first ends are chosen. All must outlive this.
+  /// `slot`: [nodes] the slot of each node; `rank`: [nodes] the position by which first ends are chosen. The
+  /// springs and both arrays must outlive this object.
   SpringsByFirstEnd(std::span<const Spring> springs, std::span<const std::uint32_t> slot,
                     std::span<const std::uint32_t> rank);
 

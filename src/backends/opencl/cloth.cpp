@@ -55,7 +55,8 @@ struct NodeShape {
   static constexpr std::size_t halo_rows = 2;   // above and below, as far as the stencil reaches
   static constexpr std::size_t left_halo = 16;  // floats; keeps every row aligned to what hardware reads
 
-  // A tile: most neighbours of a group's nodes are its own; 64 wide, at least any hardware's SIMD group.
+  // A tile, so that most neighbours of a group's nodes are its own; 64 wide, at least as wide as the SIMD
+  // groups of any hardware.
   NodeShape(const GridPatch& patch, const OpenclDevice& device) : grid(patch) {
     const std::size_t largest = cl::Device(device.id, true).getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
     local = {std::min<std::size_t>(64, largest), std::clamp<std::size_t>(largest / 64, 1, 4)};
@@ -196,7 +197,8 @@ BandShape::BandShape(const GridPatch& grid, const Integrator& integrator, std::s
     : bands(grid, lanes) {
   constexpr std::size_t most_stages = 16;  // whose columns still fit in a second-level cache
   constexpr std::size_t most_partitions_per_unit = 4;
-  // If half of the cache does not hold the state, more steps per launch also mean fewer passes over memory.
+  // If half of the cache does not hold the state, it comes from memory: more steps per launch then also mean
+  // fewer passes over it, as in the host's walk.
   const bool fits = bands.columns * bands.column_floats() * sizeof(float) <= cache_bytes / 2;
   const std::size_t fewest = fits ? 1 : stages_under_way / integrator.stage_count;
   const std::size_t first = steps_in_a_launch.value_or(fewest);

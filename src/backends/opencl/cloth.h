@@ -14,26 +14,30 @@ namespace mssim {
 
 /// Steps a cloth on an OpenCL device, `lanes` nodes at a time (1, 4, 8 or 16): with one lane a work-item owns
 /// a node; with several, work-items walk over columns of `lanes` bands of rows, several steps per launch.
-/// `steps_in_a_launch`: by default chosen from the size of the cloth. Throws cl::Error, and Unsupported.
+/// `steps_in_a_launch`: by default chosen from the size of the cloth. May throw cl::Error; throws Unsupported
+/// if the cloth does not fit into the device's memory.
 std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch& grid,
                                           const Integrator& integrator, double dt_s,
                                           const OpenclDevice& device, DeviceMemory memory, int lanes,
                                           std::optional<std::size_t> steps_in_a_launch = {});
 
-/// How the work-items of a launch share the columns of a cloth (kernels/grid_bands.cl), and its steps.
+/// How the work-items of a launch that walks over the columns of a cloth share them (kernels/grid_bands.cl),
+/// and how many steps the launch takes.
 struct BandShape {
   BandLayout bands;
   std::size_t steps = 1;       ///< per launch
   std::size_t ghosts = 0;      ///< columns on each side of a partition
   std::size_t partitions = 0;  ///< work-items
 
-  /// The fastest shape on `units` compute units with `cache_bytes`; `steps_in_a_launch` if given.
+  /// The shape whose steps are fastest on `units` compute units with a cache of `cache_bytes`; with
+  /// `steps_in_a_launch` if given.
   BandShape(const GridPatch& grid, const Integrator& integrator, std::size_t lanes, std::size_t units,
             std::uint64_t cache_bytes, std::optional<std::size_t> steps_in_a_launch = {});
 
   /// First column of a partition.
   std::size_t first(std::size_t partition) const { return bands.columns * partition / partitions; }
-  /// Columns that a partition keeps of a trial pair: those from the first stage to what the last one gathers.
+  /// Columns that a partition keeps of a trial pair: at least those between the first stage and what the last
+  /// one gathers.
   std::size_t ring() const;
 
   /// Layout of the state, which is contiguous.

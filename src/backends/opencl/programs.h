@@ -11,13 +11,15 @@ namespace mssim {
 // Texts of the programs of the `opencl` backend: files of kernels/, and text generated from the table of
 // integrators. They depend only on the integrator and on `lanes` (nodes at a time).
 
-/// Steps a grid: with one lane one kernel per stage, whose work-items own a node (kernels/grid_nodes.cl);
-/// with several one for steps, whose work-items walk over columns (kernels/grid_bands.cl).
+/// Steps a grid: with one lane one kernel per stage of the integrator, whose work-items own a node each
+/// (kernels/grid_nodes.cl); with several one kernel that takes steps, whose work-items walk over columns of
+/// bands (kernels/grid_bands.cl).
 std::string grid_program_text(const Integrator& integrator, int lanes);
 /// Name of the kernel that takes steps in a walk.
 inline constexpr const char* steps_kernel_name = "take_steps";
 
-/// The program for a sliced graph, one kernel per stage (kernels/mesh_stage.cl), and its nodes per slice.
+/// The program that steps a sliced graph with one kernel per stage of the integrator (kernels/mesh_stage.cl),
+/// and the number of nodes per slice that it requires.
 std::string mesh_program_text(const Integrator& integrator, int lanes);
 std::size_t mesh_slice_lanes(int lanes);
 

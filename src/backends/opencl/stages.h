@@ -48,7 +48,8 @@ class OpenclBackend : public Backend {
   bool runs_on_host() const override { return queue_.runs_on_host(); }
 
  protected:
-  /// Throws Unsupported unless the device can hold `buffers` (bytes). Step parameters are argument 0.
+  /// Throws Unsupported unless the device can hold `buffers`, sizes in bytes. The step parameters are the
+  /// first argument.
   OpenclBackend(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
                 DeviceMemory memory, const PairLayout& layout, std::span<const std::uint64_t> buffers);
 
@@ -58,7 +59,8 @@ class OpenclBackend : public Backend {
   void add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items);
 
   /// Writes the state into a buffer of this layout that begins `first` floats into `buffer`; ghosts have
-  /// their own layout, and are not read. This and read_state throw std::runtime_error if the driver fails.
+  /// their own layout, and nothing is read from them. This and read_state throw std::runtime_error if the
+  /// driver fails.
   void write_state(const OpenclBuffer<float>& buffer, const PairLayout& layout, const State& state,
                    std::size_t first = 0) const;
   State read_state(const OpenclBuffer<float>& buffer) const;
@@ -67,7 +69,8 @@ class OpenclBackend : public Backend {
   DeviceQueue queue_;
   std::vector<OpenclBuffer<std::byte>> arguments_;
   std::array<std::vector<Launch>, 2> launches_;  ///< [swapped]
-  /// Whether the next launch is swapped: the state is in the pair `next`, or ghosts in their second half.
+  /// Whether the next launch is swapped: the state is in the pair `next`, or ghosts are read from the second
+  /// half of theirs.
   bool swapped_ = false;
 };
 
@@ -81,7 +84,8 @@ struct StageKernels {
   std::optional<std::uint64_t> stored_springs = {};  ///< Backend::stored_springs
 };
 
-/// Steps a system with one kernel per stage, all queued in order: `opencl` but for cloth.h's walk.
+/// Steps a system with one kernel per stage of the integrator, all steps queued in order: the `opencl`
+/// backend, except for the walk over a cloth (cloth.h).
 class OpenclStages final : public OpenclBackend {
  public:
   /// Throws Unsupported unless the device can hold the integrator's pairs and the arguments.

@@ -31,7 +31,8 @@ struct BodySteps : SeparateSteps {
                                 const std::function<std::size_t(std::size_t chunk)>& first_float);
 };
 
-/// Exchange of nodes with the processes that have them as ghosts, between two stages (as ColumnMessages).
+/// Exchange of nodes with the processes that have them as ghosts, once per stage, between two stages: the
+/// counterpart of ColumnMessages for bodies.
 class NodeMessages {
  public:
   NodeMessages() = default;
@@ -43,12 +44,14 @@ class NodeMessages {
   virtual void begin(const float* records) = 0;
   /// Lets messages progress. Does not wait.
   virtual void advance() = 0;
-  /// Waits until the ghosts are in the pair that the stage gathers. Threads call it: none of these may throw.
+  /// Waits until the ghosts' records are in the pair that the stage gathers. Must not throw, like the other
+  /// functions: threads of a step call them, one at a time.
   virtual void finish(float* records) = 0;
 };
 
-/// Bodies laid out for vectors of `lanes` floats: pairs are [slices][lanes][record_floats]. Other processes
-/// may step a part of the bodies: they send ghosts once per stage, which follow as [ghosts][record_floats].
+/// Bodies laid out for vectors of `lanes` floats: pairs are [slices][lanes][record_floats]. They may be a
+/// part of bodies whose rest other processes step: these send the ghosts once per stage, which follow as
+/// [ghosts][record_floats].
 struct SlicedBodies : BodySteps {
   std::size_t lanes = 0;
   std::vector<std::uint32_t> slot;         ///< [own nodes] SlicedGraph::slot
@@ -57,7 +60,8 @@ struct SlicedBodies : BodySteps {
   /// [slices][slice_constants][lanes] SlicedGraph's `constants`, and `held` as 0 or 1.
   AlignedArray constants;
   static constexpr std::size_t slice_constants = spring_constant_count + 1;
-  /// In a part, `chunks` has the slices without edge nodes, if any; this has as many chunks of the others.
+  /// In a part, `chunks` has the slices without edge nodes and may be empty; this has as many chunks of the
+  /// others.
   std::vector<IndexRange> edge_chunks;
   NodeMessages* messages = nullptr;  ///< brings the ghosts of a part; null for a whole
 
@@ -76,8 +80,9 @@ struct SlicedBodies : BodySteps {
 };
 
 /// Alike bodies, one per lane, so the ends of a spring of all of them are two vectors and no gather is
-/// needed. Each body's nodes are ordered along its springs, so the force on a node is complete when the walk,
-/// which computes each spring at its first end, reaches it. Pairs: as in `slices`.
+/// needed. Each body's nodes are ordered along its springs, so the force on a node is complete when the walk
+/// over the nodes, which computes each spring at its first end, reaches it. Pairs are laid out as in
+/// `slices`.
 struct BodyLanes : BodySteps {
   /// A spring whose first end is in another piece. Offsets are those of a node's force, in floats from the
   /// body's first one: 3 * lanes per node. Offsets in a pair are twice as large.

@@ -1,4 +1,5 @@
-// The walk over a banded cloth in partitions with ghosts. Compiled for the integrators of MSSIM_STAGES.
+// The walk over a banded cloth: stages follow each other, partitions are adjacent, with ghosts between them.
+// Compiled for the integrators of MSSIM_STAGES.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -41,7 +42,8 @@ HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& pa
   }
 }
 
-/// Copies a pass's ghosts at the cut of a folded partition: each half gets the columns at the other's end.
+/// Copies the ghost columns of a pass at the cut between the halves of a folded partition: each half gets, in
+/// its own lanes, the columns at the other one's end.
 HWY_NOINLINE inline void take_ghosts_of_halves(const BandLayout& layout, BandPartition& partition) {
   const auto copy = [&](std::size_t to, std::size_t to_half, std::size_t from) HWY_ATTR {
     const auto lanes_of = [&](std::size_t column, std::size_t half) HWY_ATTR {
@@ -72,7 +74,8 @@ class EdgeAhead {
         pass_(pass) {}
   EdgeAhead() = default;  ///< at an end of the cloth: no prefetch
 
-  /// Prefetches `floats` more of `all`, once the other thread has published them and read the old.
+  /// Prefetches `floats` more floats, of `all`, once the other thread has published the data to be read: it
+  /// has then also read the data to be overwritten.
   HWY_INLINE void ask(std::size_t floats, std::size_t all) {
     constexpr std::size_t line_floats = 16;
     if (!theirs_ || asked_ >= all || !theirs_->pass.has_reached(pass_)) return;
@@ -117,7 +120,8 @@ HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition,
     leave(partition.right, partition.ghosts - behind, layout.halves - 1);
 }
 
-/// Resets the pins of a new column in every pair that the stage wrote and a later one gathers.
+/// Resets the pins of a newly written column in every pair that the stage has written and that a later stage,
+/// or the next step's first, gathers.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition, std::size_t column) {
   const auto put_back = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
@@ -215,7 +219,8 @@ struct BandPass {
 ///
 /// Columns of other partitions from the previous pass are read as late as possible, and own columns are
 /// published as soon as they are complete. No set is overwritten while it is read: a thread that publishes
-/// for a pass has seen what the reader published, after reading the set, in the previous pass.
+/// columns for a pass has seen those that the reader published in the previous pass, after reading the same
+/// set.
 template <std::size_t method>
 HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& pass, ColumnMessages* messages,
                                std::optional<ForcesUnderWay>* handed_on) {
@@ -268,7 +273,8 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& p
   if (handed_on) *handed_on = under_way[0].forces;
 }
 
-/// Passes between checks whether several threads pay off: enough to make these a small part of the time.
+/// Passes between meetings of a cloth's threads, which check whether several threads pay off: enough to make
+/// meetings a small fraction of the time.
 HWY_INLINE std::size_t passes_between_meetings(const BandGrid& bands) {
   constexpr std::size_t updates = 100'000;  // node updates: about a tenth of a millisecond
   const std::size_t of_a_pass = bands.layout.rows * bands.layout.halves * bands.own.count *
@@ -311,7 +317,8 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   };
   const std::size_t begin = bands.team_gain.take_rounds(pass_alone);
   const std::size_t between_meetings = passes_between_meetings(bands);
-  // Other threads wait for all to start and to end: for a few passes on a busy machine, all of the time.
+  // Other threads wait until all have started, and until all have ended: in a call of a few passes on a busy
+  // machine that may be all of the time.
   using Clock = TeamGain::Clock;
   const Clock::time_point call = Clock::now();
   Clock::time_point first_has_ended = call;

@@ -31,7 +31,8 @@ struct ConversationFailure : std::runtime_error {
 /// Interrupted (platform/process.h) within a tenth of a second after an ending signal.
 class Conversation {
  public:
-  /// Listens at a socket in `folder`, or in /tmp if its name is too long. Throws std::runtime_error.
+  /// Listens at a socket in `folder`, or in a new folder in /tmp if the name is too long for a socket. Throws
+  /// std::runtime_error with one sentence if that fails.
   explicit Conversation(const std::filesystem::path& folder);
 
   const std::filesystem::path& socket() const { return socket_; }
@@ -40,7 +41,8 @@ class Conversation {
   /// `end_descriptor` becomes readable when the program has ended.
   void begin(std::chrono::duration<double> time_limit, int end_descriptor);
 
-  /// Sends lines that request one answer; `asked` names them in messages. An earlier answer is an error.
+  /// Sends lines, each ended by a newline, that request one answer. `asked` names the request in messages. An
+  /// answer that arrived before its request is an error.
   void ask(std::string_view lines, const std::string& asked);
 
   /// The program's next line, without its newline. The time limit counts from ask().
@@ -66,7 +68,8 @@ class Conversation {
   std::string received_;  ///< received part of the next line, possibly more
 };
 
-/// A failure, reported or an invalid answer. what() is a sentence without its subject: "failed at ...".
+/// An answer that reports a failure, or an invalid answer. what() is the predicate of a sentence, without the
+/// program's name: "failed at ...".
 struct AnswerFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -85,7 +88,8 @@ struct Introduction {
 
 // Parsers of a program's answers; each throws AnswerFailure for an unexpected line.
 
-/// An answer to `prepare`; returns true for the last. Throws what it reports: Unsupported or Unavailable.
+/// One of the answers to `prepare`; returns true for the last. Throws the Unsupported and Unavailable that
+/// the program reports.
 bool take_introduction(Introduction& introduction, const std::string& line);
 
 /// One of the answers to `costs`; returns true for the last.

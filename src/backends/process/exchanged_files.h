@@ -11,7 +11,8 @@
 
 namespace mssim {
 
-/// The program's failure to write a state. what() is a sentence without its subject, the program's name.
+/// The program's failure to write a state into the state file. what() is the predicate of a sentence, without
+/// the program's name.
 struct StateFileFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -21,7 +22,8 @@ struct StateFileFailure : std::runtime_error {
 /// truncates it would crash this process.
 class StateFile {
  public:
-  /// Throws std::runtime_error if there is no room; `elsewhere`: the folder used if shared memory has none.
+  /// Throws std::runtime_error with one sentence if there is no room; `elsewhere` is the folder for it if
+  /// shared memory has no room.
   StateFile(std::size_t nodes, const std::filesystem::path& elsewhere);
 
   const std::filesystem::path& path() const { return path_; }

@@ -15,8 +15,9 @@ std::unique_ptr<Backend> make_serial(const System& system, const Integrator& int
 std::unique_ptr<Backend> make_serial_in_double(const System& system, const Integrator& integrator,
                                                double dt_s);
 
-/// The paper's "Multi-thread CPU" as published (Hong et al., Figure 5): one group of springs and nodes per
-/// thread, which computes its springs' forces and adds them to the nodes inside a critical section.
+/// The paper's "Multi-thread CPU" as published (Hong et al., Figure 5): springs and nodes are split into one
+/// group per thread; each thread computes its springs' forces and adds them to the nodes inside a critical
+/// section.
 std::unique_ptr<Backend> make_threads_mutex(const System& system, const Integrator& integrator, double dt_s,
                                             const ExecutionOptions& options);
 

@@ -41,7 +41,8 @@ class ChunkTickets {
   /// Ends all work.
   void close() { change_and_notify(opened_, closed); }
 
-  /// Calls act(ticket) for every chunk it can get, `range` first; returns whether that finished the phase.
+  /// Calls act(ticket) for every chunk that it can get, those of `range` first; returns whether that finished
+  /// the phase.
   template <class Act>
   bool work(std::uint32_t range, Act&& act) {
     const std::uint32_t opened = opened_.load(std::memory_order_acquire);
@@ -55,7 +56,8 @@ class ChunkTickets {
     }
     return false;
   }
-  /// Works until close(). Calls finished() after phases that it ended. Spins `spins` times, then yields.
+  /// Works in every phase until close(). Calls finished() whenever it has finished a phase. Between phases it
+  /// spins `spins` times before it yields its core.
   template <class Act, class Finished>
   void work_until_closed(std::uint32_t range, int spins, Act&& act, Finished&& finished) {
     for (std::uint32_t opened = opened_.load(std::memory_order_acquire); opened != closed;) {
@@ -67,7 +69,8 @@ class ChunkTickets {
       }
     }
   }
-  /// Waits until the phase's chunks, all in work, are done. An interrupted thread may need this one's core.
+  /// Waits until all chunks of the phase are done. They are being processed, so this is short, unless a
+  /// thread was interrupted: it may need this thread's core.
   void wait_until_finished() const {
     while (finished_.load(std::memory_order_acquire) != chunks_) std::this_thread::yield();
   }

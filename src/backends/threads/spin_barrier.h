@@ -24,7 +24,8 @@ class SpinBarrier {
     gain.begin(begin);
   }
 
-  /// Returns when all threads have called it or end_round() as often. Earlier writes are then visible.
+  /// Returns when all threads have called it, or end_round(), as often as this one. Earlier writes are then
+  /// visible.
   void wait() {
     const Arrival mine = arrive();
     if (mine.is_last)
@@ -35,8 +36,8 @@ class SpinBarrier {
 
   /// Synchronises at the end of a round. Meanwhile one thread may take rounds for all: take_round(n), n = 0,
   /// 1, ..., does the work of all threads in the (n + 1)th round after this one, or returns false if none is
-  /// left. Returns the number of these rounds to every thread. `waited`: this thread's waits since the last
-  /// call, apart from here.
+  /// left. Returns the number of these rounds to every thread. `waited`: time that this thread has waited for
+  /// others since the last call, apart from here.
   template <class TakeRound>
   std::size_t end_round(TakeRound&& take_round, TeamGain::Duration waited = {}) {
     TeamGain::Duration::rep longest = longest_wait_.load(std::memory_order_relaxed);
@@ -90,7 +91,8 @@ class SpinBarrier {
     change_and_notify(phase_, phase + 2);
   }
 
-  /// For all threads but the last. Reads the clock only in long waits: small steps last few readings.
+  /// For threads before the last one. Reads the clock only in long waits: a step of the smallest cloths takes
+  /// as long as a few hundred readings.
   unsigned wait_for_others(const Arrival& mine) {
     if (!mine.is_first || !gain_) return wait_for_change(phase_, mine.phase, spins);
     constexpr int first_spins = spins / 10;
@@ -133,7 +135,8 @@ struct Team {
   }
 };
 
-/// Calls act(team) on `threads` OpenMP threads, or as many as OpenMP gives. `gain`: SpinBarrier's arguments.
+/// Calls act(team) on `threads` OpenMP threads, or fewer if OpenMP gives no more. `gain`: SpinBarrier's
+/// further arguments.
 template <class Act, class... Gain>
 void with_team(std::size_t threads, const Act& act, Gain&&... gain) {
   std::optional<SpinBarrier> barrier;

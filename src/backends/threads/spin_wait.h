@@ -53,8 +53,9 @@ T wait_for_change(const std::atomic<T>& value, T old, int spins) {
 }
 
 /// Stores a value and wakes the threads that wait for a change. This thread's earlier writes are visible to
-/// them. Sequentially consistent, because libstdc++ 12 wakes no thread if it sees no sleeper: with a release,
-/// a CPU may look for sleepers before others see the value, and a thread about to sleep would never wake.
+/// them. Sequentially consistent, because libstdc++ 12 wakes no thread if it sees no sleeper: with a mere
+/// release, a CPU may look for sleepers before others see the value, and a thread that is about to sleep
+/// would never be woken.
 template <class T>
 void change_and_notify(std::atomic<T>& value, T now) {
   value.store(now, std::memory_order_seq_cst);
@@ -65,7 +66,8 @@ void change_and_notify(std::atomic<T>& value, T now) {
 /// need, while a barrier waits for all threads and all of their work. One thread writes it at a time.
 class ThreadProgress {
  public:
-  /// Publishes progress `number`, which must not decrease. Earlier writes are visible to its waiters.
+  /// Publishes progress `number`, which must not decrease. Earlier writes are visible to threads that waited
+  /// for it.
   void reach(std::uint64_t number) { reached_.store(number, std::memory_order_release); }
 
   bool has_reached(std::uint64_t number) const { return reached_.load(std::memory_order_acquire) >= number; }

@@ -15,7 +15,8 @@ namespace mssim {
 /// negative, one thread works alone, each time for twice as long, until the team has gained as much as that
 /// time: on a busy machine threads often run simultaneously for some milliseconds, and then do not for many.
 ///
-/// Use one object for all work of one kind: its history outlives a call. One thread calls it at a time.
+/// Use one object for all work of one kind, because its history is worth more than one call. One thread calls
+/// it at a time.
 class TeamGain {
  public:
   using Clock = std::chrono::steady_clock;
@@ -33,7 +34,8 @@ class TeamGain {
   /// The first thread to arrive has waited `wait` for the last one. Short waits may be omitted.
   void add_wait(Duration wait) { waited_ += wait; }
 
-  /// True if the team of `threads` has lost time: one works alone from now on. Reads now() only after a wait.
+  /// If the team of `threads` threads has lost time, one thread works alone from now on: returns true. Reads
+  /// the clock, now(), only after a wait.
   template <class Now>
   bool begins_alone(Duration::rep threads, Now&& now) {
     if (waited_ == Duration::zero()) return false;
@@ -52,7 +54,8 @@ class TeamGain {
     return true;
   }
 
-  /// While one thread is to work alone, calls take_round(n), n = 0, 1, ... until false. Returns their number.
+  /// While one thread is to work alone, calls take_round(n), n = 0, 1, ..., until that returns false because
+  /// no round is left. Returns the number of rounds taken.
   template <class TakeRound>
   std::size_t take_rounds(TakeRound&& take_round) const {
     std::size_t rounds = 0;

@@ -11,8 +11,9 @@
 // carry-less multiplication, which a few CPUs up to about 2013 lack; plain floats for them would take a
 // quarter of the compile time of vector code. No targets beyond AVX3 (lower bits): newer versions of Highway
 // would compile the same code again for Zen 4 and for Sapphire Rapids. On arm64 NEON (4), not Arm's SVE: a
-// vector of a length known only at run time cannot be a struct member, as Lanes requires, and phones' SVE
-// vectors are no longer than NEON's. On other CPUs the compiler's baseline, or plain floats, one lane.
+// vector whose length is known only at run time cannot be a struct member, as Lanes requires, and phones with
+// SVE have vectors of 128 bits, no longer than NEON's. On other CPUs the compiler's baseline, or plain
+// floats, one lane.
 #define HWY_DISABLED_TARGETS ((HWY_AVX3 - 1) | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #if defined(__x86_64__) && !defined(__SSE4_2__)
 #define HWY_BASELINE_TARGETS HWY_SSE4

@@ -41,7 +41,8 @@ HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v, b.v); }
 HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
 HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
 HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
-/// -a, not computed if a multiply-add absorbs it: those negate at no cost, and can read `a` from memory.
+/// -a, not computed if a multiply-add can absorb it: those negate at no cost, and can then read `a` from
+/// memory.
 struct NegatedLanes {
   hn::Vec<FloatTag> v;
   HWY_INLINE operator Lanes() const { return hn::Neg(v); }
@@ -81,7 +82,8 @@ HWY_INLINE Lanes halved(Lanes a) {
 /// division, each correctly rounded, come to 1.49. Step time of 500 x 700 relative to theirs: Sapphire Rapids
 /// 0.74, Zen 4 0.95, Zen 5 1.00 to 1.03. The price: the estimate depends on the CPU, so results are bitwise
 /// identical only between CPUs of the same design (Roots::exact avoids it). Other instruction sets estimate 8
-/// to 12 bits, too few for one step. inverse_length_test.cpp checks every mantissa.
+/// to 12 bits, too few for one step. tests/backends/vectors/inverse_length_test.cpp checks the error for
+/// every mantissa.
 HWY_INLINE Lanes inverse_length(Lanes length_squared) {
   if constexpr (exact_roots) return inverse_sqrt(length_squared);
   const FloatTag d;
@@ -107,7 +109,8 @@ HWY_INLINE Mask below(Index index, std::uint32_t limit) {
   return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
 }
 
-/// Each lane gets the one `before` places earlier in `a`; in each `group` (2^n), `outside` gets `other`.
+/// Rotates: each lane gets the value of the lane `before` places earlier in `a`. In each `group` of lanes, a
+/// power of two, lane `outside` gets the value of `other`.
 HWY_INLINE Lanes from_lane(Lanes a, std::size_t before, std::size_t group, std::size_t outside, Lanes other) {
   const FloatTag d;
   const auto set = [](std::size_t number)

@@ -34,7 +34,8 @@ ValueRule number_between(double low, double high);
 ValueRule whole_number(std::int64_t low, std::int64_t high);
 /// Accepts one whole number, or several different ones separated by commas.
 ValueRule whole_numbers(std::int64_t low, std::int64_t high);
-/// Accepts one of these words, in any case, and replaces the text by it. `what`: kind; `others`: spellings.
+/// Accepts one of these words, in any case, and replaces the text by the word as given here. `what` names
+/// their kind; `others` are alternative spellings.
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others = {});
 
 /// Makes the texts that a shell may complete the value of an argument to.
@@ -53,7 +54,8 @@ class Argument {
   Argument& needs(const Argument& other);
   /// Makes it an error to give this together with `other`.
   Argument& excludes(const Argument& other);
-  /// Has shells complete its value to these words, made only then. A rule that is a list offers its own.
+  /// Has shells complete its value to these words, which are made only for that. A rule that is a list of
+  /// words offers them by itself.
   Argument& offers(OfferedWords words);
 
  private:
@@ -75,7 +77,8 @@ class Arguments {
   Argument add(const std::string& name, std::string& target, const std::string& description,
                const ValueRule& rule = {});
 
-  /// Takes an int or double that `rule` accepts, an optional one, or several. `rule` must fit the type.
+  /// Takes a number that `rule` accepts: an int or a double, an optional one, or several. `rule` must only
+  /// accept numbers of that type.
   template <class Target>
   Argument add_number(const std::string& name, Target& target, const std::string& description,
                       const ValueRule& rule) {

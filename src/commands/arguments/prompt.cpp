@@ -70,7 +70,8 @@ TypedWord typed_word(const CLI::App& program, std::span<const std::string> words
   return typed;
 }
 
-/// Text for man(7), where a plain hyphen is no minus, and a dot at the start of a line begins a request.
+/// Text in the language of man(7), where a plain hyphen is no minus, and a dot at the start of a line begins
+/// a request.
 std::string roff(std::string_view text) {
   std::string escaped = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const char character : text) {
@@ -96,7 +97,8 @@ std::string manual_entries(const CLI::App& command) {
   return entries;
 }
 
-/// The end of a help page: paragraphs, indented commands. With `sections`, words before a colon are headings.
+/// The end of a help page: paragraphs, and indented commands. With `sections`, the words before the colon at
+/// the start of a paragraph are the heading of a section.
 std::string manual_end(const std::string& text, bool sections) {
   std::istringstream lines(text);
   std::string page, line;

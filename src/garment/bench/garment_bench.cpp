@@ -30,7 +30,8 @@ void excite(const System& system, State& state) {
   for (const std::uint32_t pin : system.pins) state.velocity[pin] = {};
 }
 
-/// Appends the stretches of the reference's trajectory to `way`. Returns a reason if it blows up.
+/// Appends the stretches of the reference's trajectory from a start to `way`. Returns a reason if it blows
+/// up.
 std::optional<std::string> follow(Backend& reference, const System& system, const State& start, double dt_s,
                                   std::vector<GarmentStretch>& way) {
   reference.set_state(start);

@@ -32,7 +32,8 @@ inline constexpr int stretch_steps = 5;
 inline constexpr int stretches = verification_steps / stretch_steps;
 
 /// Runs the reference. A draped stretch starts with a wave added to the settled garment's velocities, so that
-/// friction, damping and corrections act. `draped`: a state of the system, at rest and draped.
+/// friction, damping and the correction of elongations act. `draped` is a state of the system, at rest and
+/// draped.
 ///
 /// Stretches are short because the correction of springs and contact have thresholds. A rounding error that
 /// changes such a decision moves a node as far as the law does, and its neighbours follow. Over 100
@@ -56,8 +57,9 @@ inline constexpr int stretches = verification_steps / stretch_steps;
 GarmentReference run_garment_reference(Backend& backend, const System& system, const Integrator& integrator,
                                        double dt_s, const State& draped);
 
-/// Steps the dressing backend, and compares. The position error is the largest that is compared with the
-/// tolerance; the drift is of the sum over all stretches. Leaves the backend in any state.
+/// Steps the dressing backend, and compares. The position error is the largest of those that are compared
+/// with the tolerance; the drift is of the sum over all stretches. Leaves the backend in an unspecified
+/// state.
 Verification verify_garment(Backend& backend, const System& system, const GarmentReference& reference,
                             double dt_s);
 
@@ -67,7 +69,8 @@ std::optional<State> draped_state(const SceneJob& job, const std::function<bool(
 
 /// Dresses the job's garment with the combination's backend and stores the outcome in its row; an earlier
 /// row's outcome is kept. The row fails if a number of the fit is out of bounds or not finite. A published
-/// algorithm gets a note instead: the outcome of a paper's method is a result. Returns false if stopped.
+/// algorithm gets a note instead, because the outcome of a paper's method is a result. Returns false if it
+/// was stopped.
 bool dress_combination(Combination& combination, const SceneJob& job, const BackendInfo& info,
                        const std::function<bool()>& stop);
 

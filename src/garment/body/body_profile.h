@@ -17,7 +17,8 @@ struct LegGap {
   PlanPoint right, left;     ///< middles of the boxes around the parts at lower and higher x
 };
 
-/// The gaps of the longest run of even heights that have one, bottom up, in the unit of the upright surface.
+/// The gaps of the longest run of evenly spaced heights that have one, bottom up. The surface is upright in y
+/// and need not be closed; lengths are in its unit.
 std::vector<LegGap> leg_gaps(const Surface& body);
 
 /// An x between the legs at the highest gap, and at as many consecutive gaps below it as possible.
@@ -26,7 +27,8 @@ double between_legs(const std::vector<LegGap>& gaps);
 /// The measures that a pattern needs of a body, mannequin or scan: a closed surface, m, that is upright in y,
 /// faces +z and has one leg on each side of the plane x = 0. It may consist of several closed parts that
 /// overlap. Only its trunk and legs count (trunk_and_legs): an arm next to the hip does not make it wider.
-/// Measures are of the exact horizontal section of the triangles, including those in its plane.
+/// Measures are of the exact section of the triangles with a horizontal plane, including triangles in the
+/// plane.
 class BodyProfile {
  public:
   /// `name` starts messages of errors. Throws InputError for a surface that is not closed (validate_surface).
@@ -94,7 +96,8 @@ struct Landmark {
   bool by_proportion = false;   ///< not found on the body: a fraction of the crotch's height
 };
 
-/// Measures of a body for trousers. Waist and knee, in ISO 8559-1 at bones, are where the body is narrowest.
+/// Measures of a body for trousers. ISO 8559-1 defines waist and knee by bones, which a surface does not
+/// show: here, the body is narrowest there.
 struct BodyLandmarks {
   Landmark waist;            ///< the smallest girth between hip and chest
   Landmark hip;              ///< the greatest girth between crotch and waist

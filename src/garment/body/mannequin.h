@@ -36,7 +36,8 @@ struct BodyMeasures {
 /// Depth over width of a thigh: a constant from which its width follows.
 inline constexpr double thigh_aspect = 1.1;
 
-/// A horizontal ellipse: its bounding box, m. Tubes interpolate the boxes' edges, so no side overshoots.
+/// A horizontal ellipse, given by its bounding box, m. Tubes interpolate each edge of the boxes, so that no
+/// side overshoots.
 struct EllipseSection {
   double height = 0;  ///< y
   double x_min = 0, x_max = 0;
@@ -55,8 +56,9 @@ EllipseSection section_of_girth(double height, double girth, double aspect, doub
 
 /// Adds to `surface` a closed tube through two or more sections, bottom up: smooth and monotone between
 /// sections (MonotoneCurve), closed by flat ends, oriented outwards. Each section is a ring of `around`
-/// points, a multiple of four. Cells are about `cell_height` high, m, or less between close sections. A
-/// ring's polygon is enlarged to the ellipse's perimeter. The triangles are symmetric in depth and width.
+/// points, a multiple of four. Cells along the tube are about `cell_height` high, m, or finer if sections are
+/// closer. The polygon of a ring is enlarged until its perimeter is the ellipse's. The triangulation is
+/// symmetric in depth and width.
 void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, std::uint32_t around,
               double cell_height);
 

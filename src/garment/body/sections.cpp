@@ -101,7 +101,8 @@ bool are_surely_farther(const PlanPoint& a, const PlanPoint& b, double far) {
   return x * x + z * z > (1 + 1e-9) * far * far;
 }
 
-/// The part of a loop from point `first` to point `last`, around the loop's start if `last` is smaller.
+/// The part of a loop from its point `first` to its point `last`, around the loop's start if `last` is
+/// smaller.
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
@@ -120,7 +121,8 @@ class Outline {
   std::size_t size() const { return points_.size(); }
   const PlanPoint& operator[](std::size_t i) const { return points_[i]; }
   double length(const Stretch& s) const { return between(length_, s); }
-  /// The area between stretch and chord, as a fraction of the loop's; negative if the chord runs outside.
+  /// The area that the stretch and its chord enclose, as a fraction of the loop's; negative if the chord runs
+  /// outside.
   double fraction(const Stretch& s) const {
     return (between(twice_area_, s) + cross(points_[s.last], points_[s.first])) / twice_area_.back();
   }

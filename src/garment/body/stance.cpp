@@ -20,12 +20,14 @@ double misfit(double height) { return std::max({1.0, shortest_person / height, h
 
 constexpr std::array<Vec3d, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
+/// The bounding box of a surface.
 Box<double> box_of(const Surface& surface) {
   Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
   for (const Vec3d& point : surface.points) extend(box, point);
   return box;
 }
 
+/// The body in one possible stance.
 struct Candidate {
   BodyStance stance;
   Surface body;
@@ -83,7 +85,8 @@ std::vector<Candidate> candidates(const Surface& body, const GivenStance& given)
   return all;
 }
 
-/// How much farther the feet reach to +z than to -z from the shins, over their length.
+/// How much farther the feet reach forwards than backwards from the shins, over their length; positive if the
+/// body faces +z.
 double toes_ahead(const Surface& body) {
   const Box<double> box = box_of(body);
   const double height = box.size().y;
@@ -104,7 +107,8 @@ double toes_ahead(const Surface& body) {
   return std::isfinite(fraction) ? fraction : 0;
 }
 
-/// The angle, degrees, between the line through the legs' middles and the sideways axis; the gaps' median.
+/// The angle, in degrees, between the line through the legs' middles and the sideways axis; the median over
+/// the gaps.
 double turned_degrees(const std::vector<LegGap>& gaps) {
   std::vector<double> angles;
   for (const LegGap& gap : gaps)

@@ -52,7 +52,8 @@ Vec3d direction_of(Facing facing);
 /// Whether a body that is upright along `up` can look in this direction.
 bool is_level(Facing facing, UpAxis up);
 
-/// A body's unit and orientation in its file. Patterns need metres, upright in y, facing +z, symmetric in x.
+/// Unit and orientation of a body in its file. Patterns need a body in metres that is upright in y, faces +z
+/// and is about symmetric in x.
 struct BodyStance {
   double unit_m = 1;  ///< metres in one unit of the file
   UpAxis up = UpAxis::y;

@@ -47,6 +47,7 @@ void leave_out_rim(const Surface& surface, std::vector<bool>& stays) {
                                                 [&](std::uint32_t corner) { return is_near[corner]; });
 }
 
+/// Loops of one section that overlap.
 struct Group {
   std::vector<SectionLoop> loops;
   double area = 0;       ///< m^2, of the largest loop
@@ -87,7 +88,8 @@ std::vector<Group> grouped(std::vector<SectionLoop> loops) {
   return groups;
 }
 
-/// A thigh has eight times a hand's section, a trunk six times an arm's; halves of a foot are about equal.
+/// A thigh has eight times the section of a hand, a trunk six times that of an arm; halves of a foot are
+/// about equal.
 constexpr double much_smaller = 0.25;
 
 /// Splits large groups of a single loop at narrow necks into separate groups.
@@ -192,7 +194,8 @@ void keep_above(std::vector<Level>& levels, std::size_t from) {
   }
 }
 
-/// Keeps groups cut off at a neck that hang from no separate part: no limb, or its start, as at shoulders.
+/// Keeps groups cut off at a neck that do not hang from a separate part above: they are no limb, or the start
+/// of one, such as arms at the shoulders.
 void keep_bulges(std::vector<Level>& levels) {
   for (std::size_t i = levels.size(); i-- > 0;)
     for (Group& group : levels[i].groups)
@@ -200,7 +203,8 @@ void keep_bulges(std::vector<Level>& levels) {
         group.kept = i + 1 == levels.size() || !any_overlaps(levels[i + 1], false, group);
 }
 
-/// Whether each triangle stays: as its loop at the nearest level that cuts it, or else as its neighbours.
+/// Whether each triangle stays: as its loop at the level nearest to its middle that cuts it, or as its
+/// neighbours if no level cuts it.
 std::vector<bool> staying(const Surface& surface, const std::vector<Level>& levels) {
   enum class Part : std::uint8_t { unknown, other, kept };
   std::vector<Part> of_triangle(surface.triangles.size(), Part::unknown);

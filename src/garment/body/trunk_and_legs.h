@@ -55,7 +55,8 @@ struct TrunkAndLegs {
 /// `surface` is closed (validate_surface).
 TrunkAndLegs trunk_and_legs(const Surface& surface);
 
-/// A note, or none, about parts of the body that garments ignore, and heights where that is uncertain.
+/// A note about the parts of the body that garments ignore, and the heights where that is uncertain. Empty if
+/// there are none.
 std::string ignored_parts(const TrunkAndLegs& body);
 
 /// A closed line in which a surface intersects a horizontal plane.

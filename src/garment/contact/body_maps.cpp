@@ -32,7 +32,8 @@ SideMap side_map(const Surface& surface, const std::vector<Vec3d>& normals, cons
 
 namespace {
 
-/// Smallest z of a plane's unit normal to the camera: 6 degrees from edge-on, a limb's turn in a pixel there.
+/// Smallest z of a plane's unit normal towards the camera: 6 degrees from edge-on. The face of a limb turns
+/// by about as much within a pixel at the silhouette.
 constexpr double least_facing = 0.1;
 /// n . P of a plane with no point behind it.
 constexpr float beyond_all = -1e30F;
@@ -92,7 +93,8 @@ BodyPixel record(const std::array<float, 4>& front, const std::array<float, 4>& 
   return {{front[0], front[1], front[2], front[3], back[0], back[1], back[2], back[3]}};
 }
 
-/// Gives every empty pixel the planes of a neighbour: of one in its row, else its column, else at a corner.
+/// Gives every empty pixel the planes of a neighbour that is not empty: preferably of one in its row, then in
+/// its column, then at a corner.
 void dilate(std::vector<BodyPixel>& pixels, std::uint32_t columns) {
   const auto wide = static_cast<std::ptrdiff_t>(columns);
   const std::array<std::ptrdiff_t, 8> around{-1, 1, -wide, wide, -wide - 1, -wide + 1, wide - 1, wide + 1};

@@ -14,7 +14,8 @@ namespace mssim {
 
 /// Depth and normal map of a body from one side, row by row.
 struct SideMap {
-  /// m, z of the nearest face at the pixel's centre; without one -infinity in front, +infinity at the back.
+  /// m, z of the nearest face at the pixel's centre; without a body -infinity from the front, +infinity from
+  /// the back.
   std::vector<double> depth;
   /// Unit normal there, interpolated between those of the face's corners; (0, 0, 0) without a body.
   std::vector<Vec3d> normal;
@@ -40,11 +41,13 @@ static_assert(sizeof(BodyPixel) == BODY_FLOATS * sizeof(float));
 /// A body as cloth collides with it: orthographic images from the front (z = +infinity) and the back. Each
 /// pixel holds the tangent plane of the nearest face (Vassilev, Spanlang and Chrysanthou, "Fast cloth
 /// animation on walking avatars", 2001, compare with the depth instead). A point is tested against the two
-/// planes of its pixel, at a cost that no number of triangles changes.
+/// planes of the pixel in which it lies, so that the cost of a test does not depend on the number of
+/// triangles.
 ///
 /// Beyond the silhouette, `dilation` pixels repeat the planes of their neighbours. Otherwise a point that
 /// slides from pixel to pixel there would touch in every other step and chatter. The plane of a face seen
-/// edge-on leans 6 degrees towards the camera, so that points far in front do not count as behind it.
+/// edge-on leans 6 degrees towards the camera, so that points far in front of the body do not count as behind
+/// the plane.
 ///
 /// Limitations of images:
 /// - Each pixel has one interval of depth. The space between the nearest and the farthest face counts as
@@ -69,7 +72,8 @@ class BodyMaps {
   /// frame().rows x frame().columns, row-major (kernels/parameters.h).
   std::span<const BodyPixel> pixels() const { return pixels_; }
 
-  /// A point's (m) pixel; an empty one, without contact, if the point is outside the maps or not finite.
+  /// The pixel in which a point (m) lies; an empty one of the border, without contact, if the point is
+  /// outside the maps or not finite.
   template <class Real>
   const BodyPixel& pixel_at(Real x, Real y) const {
     const auto column = static_cast<std::size_t>(body_column(

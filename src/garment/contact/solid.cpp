@@ -15,7 +15,8 @@ namespace {
 
 constexpr double anywhere = std::numeric_limits<double>::infinity();
 
-/// Starts of other rays, over the distance from the surface: shorter than 1, with ratios no mesh has.
+/// Offsets of the starts of other rays, in units of the distance from the surface: shorter than 1, with
+/// ratios of coordinates that meshes do not have.
 constexpr std::array<Vec3d, 4> moves{
     {{0.137, 0.541, 0.297}, {-0.219, -0.313, 0.613}, {0.331, -0.467, -0.179}, {-0.083, 0.229, -0.733}}};
 

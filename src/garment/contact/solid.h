@@ -15,7 +15,8 @@ namespace mssim {
 /// if the winding number of the part's surface around it is not zero. A ray determines that number, with a
 /// bound of the rounding error of every determinant. If a sign is uncertain, because the ray passes too near
 /// an edge or vertex, the ray starts at another point on the same side: one nearer to the first point than
-/// the surface is. If this fails repeatedly, the sum of all triangles' solid angles decides.
+/// the surface is. If this fails repeatedly, the sum of the solid angles of all triangles decides, which has
+/// no special cases.
 ///
 /// Immutable: threads may use it concurrently.
 class Solid {

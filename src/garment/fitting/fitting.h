@@ -45,7 +45,8 @@ struct DressingFrames {
 DressingResult dress(DressingBackend& backend, const System& system, double dt_s, const SettlingRule& rule,
                      const OnWindow& on_window, const DressingFrames& frames = {});
 
-/// The fit of a dressed garment, measured on its nodes, faces and the body's mesh, not the maps of contact.
+/// The fit of a dressed garment, measured on its nodes and faces and on the body's mesh, not on the maps that
+/// the simulation collides with.
 struct Fit {
   double largest_gap = 0;          ///< m, of all joints
   std::size_t nodes_inside = 0;    ///< of the body
@@ -63,9 +64,11 @@ struct Fit {
   /// Rows of two panels that are sewn to each other at both ends, and those of them that do not go once
   /// around the limb between the panels.
   std::size_t rows = 0, rows_astray = 0;
-  /// Elongation over rest length of structural and shear springs: median, 99 % and 99.9 % quantiles, maximum.
+  /// Elongation over rest length of structural and shear springs: the median, the 99 % and 99.9 % quantiles
+  /// and the maximum.
   double elongation_50 = 0, elongation_99 = 0, elongation_999 = 0, elongation_max = 0;
-  /// Edges of cells that run through a face of another layer (count_crossings), with or without collisions.
+  /// Edges of cells that run through a face of another layer (count_crossings), whether or not the simulation
+  /// has collisions between layers.
   std::size_t crossings = 0;
 };
 
@@ -75,7 +78,8 @@ struct FitBody {
   std::function<std::vector<double>(std::span<const Vec3d> points)> depths;
   /// The middle of the limb around which a point lies, at the point's height.
   std::function<Vec3d(const Vec3d& point)> limb_middle;
-  /// Points' distances from the body, m, hollows bridged between two heights: for cloth that must lie close.
+  /// Distances of points from the body, m, with hollows bridged between two heights, m. Needed for a garment
+  /// with cloth that must lie close.
   std::function<std::vector<double>(std::span<const Vec3d> points, double lowest, double highest)> distances =
       {};
 };

@@ -47,7 +47,8 @@ class ClothClothCollision {
   int threads() const { return threads_; }
 
   /// Finds the contacts and responds, for a step of dt (s), on a copy of the nodes. Several threads call
-  /// NodeState read(node) for all nodes, in any order; one calls write(node, NodeState) for changed ones.
+  /// NodeState read(node) for all nodes, in any order; one calls write(node, NodeState) for those that have
+  /// changed.
   template <class Read, class Write>
   void collide(double dt, const Read& read, const Write& write) {
     const auto nodes = static_cast<std::int64_t>(inverse_mass_.size());
@@ -61,7 +62,8 @@ class ClothClothCollision {
     }
   }
 
-  /// Finds contacts and responds, for dt (s). Throws std::invalid_argument for sizes other than node_mass's.
+  /// Finds the contacts and responds, for a step of dt (s). Throws std::invalid_argument if the size of an
+  /// array is not that of node_mass.
   void collide(const NodeArrays& nodes, double dt);
 
   /// The contacts of the last collide(), before the response.

@@ -14,7 +14,8 @@
 namespace mssim {
 namespace {
 
-/// Two sub-patches with fewer cells get no task of their own, which takes as long as their search.
+/// Two sub-patches with fewer cells than this in all do not get a task of their own: searching them takes
+/// microseconds, as creating a task does.
 constexpr std::uint32_t least_cells_of_task = 1024;
 
 /// The search of boxes reaches a little farther than the comparison of distances, to cover rounding errors.
@@ -65,7 +66,8 @@ bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& tr
   return lowest || highest || leftmost || rightmost;
 }
 
-/// A node's contact with its nearest triangle, if any. outward: 1 if it belongs where the normal is, or -1.
+/// The contact of a node with its nearest triangle, if there is one. outward: 1 if the node belongs on the
+/// side of the panel's normal, else -1.
 std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t node, std::uint32_t nearest,
                                        float outward, const Coordinates& position) {
   const std::uint32_t cell = nearest / 2, row_length = panel.columns - 1;
@@ -247,7 +249,8 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
   const PanelBoxes::Block& nodes = of_nodes.blocks()[node_block];
   const PanelBoxes::Block& cells = of_triangles.blocks()[triangle_block];
   const Box<float>& around = of_triangles.box(triangle_block);
-  // A node belongs to the cell of which it is the lower left one; on the upper and right border, to the last.
+  // A node belongs to the cell whose lower left node it is, or to the last cell on the upper and right
+  // border.
   const std::uint32_t row_end = nodes.row_end + (nodes.row_end + 1 == panel.rows ? 1 : 0);
   const std::uint32_t column_end = nodes.column_end + (nodes.column_end + 1 == panel.columns ? 1 : 0);
   for (std::uint32_t row = nodes.row_begin; row < row_end; ++row)

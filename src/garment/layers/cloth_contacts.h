@@ -95,14 +95,17 @@ struct ClothContact {
 /// nodes of the inner panel on the opposite side of the outer one. The triangle's normal decides the side if
 /// the nearest point is inside the triangle. If it is on an edge or corner, the normals at the nodes decide,
 /// so that a fold does not swap sides. A node beyond the border of a panel (its nearest point is on the
-/// border) is a contact only on the correct side: the panel cannot tell its side, but its rim can touch it.
+/// border) is a contact only on the correct side: the panel cannot tell on which side such a node belongs,
+/// but its rim can still touch it.
 class ClothContactSearch {
  public:
-  /// Searches layer_pairs on `threads` threads. Nodes nearer to a triangle than `reach` (m) are contacts.
+  /// Searches the pairs of layer_pairs on `threads` threads, at least one. Nodes nearer to a triangle than
+  /// `reach` (m, positive) are contacts.
   ClothContactSearch(const Garment& garment, double reach, int threads);
 
-  /// The contacts at these positions, pair by pair, first of the outer panel's nodes, by ascending nodes;
-  /// bitwise identical for every number of threads. Valid until the next call. None if not finite.
+  /// The contacts at these positions, pair by pair, first those of the outer panel's nodes, in ascending
+  /// order of nodes; bitwise identical for every number of threads. Valid until the next call. Positions that
+  /// are not finite have no contacts.
   std::span<const ClothContact> find(const Coordinates& position);
 
  private:

@@ -90,7 +90,8 @@ class PiercedPanel {
     return volume(position_[triangle[0]], position_[triangle[1]], position_[triangle[2]], position_[node]) <=
            0;
   }
-  /// Whether the edge passes on the left of the line from a to b: the opposite of b to a, even if they meet.
+  /// Whether the edge passes on the left of the line from a to b. The result for b to a is always the
+  /// opposite, even if they meet.
   bool passes_left(const Edge& edge, std::uint32_t a, std::uint32_t b) const {
     const double turn =
         volume(position_[std::min(a, b)], position_[std::max(a, b)], position_[edge[0]], position_[edge[1]]);

@@ -31,7 +31,8 @@ void write_garment(hid_t file, const Garment& garment);
 void write_joints(hid_t file, const std::string& particles, const Garment& garment);
 
 /// Reads panels, seams and joints. A trace does not have the settings of the dressing or the length and
-/// strength of joints. Throws Hdf5Error, Hdf5ContentError, and std::invalid_argument for other nodes.
+/// strength of joints. Throws Hdf5Error, Hdf5ContentError, and std::invalid_argument if the garment does not
+/// fit the nodes.
 Garment read_garment(hid_t file, std::size_t nodes);
 
 }  // namespace mssim

@@ -26,7 +26,8 @@ void for_each_cell(const PanelMesh& mesh, Visit visit) {
     for (std::size_t column = 0; column + 1 < mesh.columns; ++column) visit(mesh.node(row, column));
 }
 
-/// Smoothed depth of the body at a panel's heights, m: the maximum within 5 cm up and down, then its mean.
+/// Smoothed depth of the body at the heights of a panel, m, nowhere less than the body's: the maximum within
+/// 5 cm up and down, then its mean over the same range.
 class Profile {
  public:
   Profile(const std::string& panel, const std::function<double(double)>& depth, double sign, double lowest,

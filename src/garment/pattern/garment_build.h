@@ -71,7 +71,8 @@ struct GridLine {
   double second = 0;        ///< fraction of the right boundary's
 };
 
-/// The cells of a piece. Columns are evenly spaced, as are rows between those with given ends.
+/// The cells of a piece. Rows without given ends are evenly spaced between those with given ends; columns are
+/// evenly spaced.
 struct PanelGrid {
   std::uint32_t rows = 0;  ///< of nodes
   std::uint32_t columns = 0;
@@ -152,12 +153,14 @@ std::vector<double> node_masses(const PanelMesh& mesh, const PanelMaterial& clot
 /// m^2, of all cells
 double area_of(const PanelMesh& mesh);
 
-/// z of the body's foremost and hindmost point at a height y, m: any height that a panel reaches.
+/// z of the body's foremost and hindmost point at a height y, m. The functions are valid for every height
+/// that a panel reaches.
 struct BodyDepth {
   std::function<double(double)> front, back;
 };
 
-/// Where a panel starts: before or behind the body, bent around a vertical cylinder, at its drawn height.
+/// Where a panel starts: in front of or behind the body, bent around a vertical cylinder, at the heights at
+/// which it is drawn.
 struct PanelPlacement {
   bool behind = false;
   /// m, x of the pattern's x = 0, by height; its sign is the side of the body

@@ -32,7 +32,8 @@ constexpr Half front_half{true, -0.007, 1.0 / 16, 0, 0.8, -0.009, 0, 0.075, 0.01
 constexpr Half back_half{false, 0.007, 1.0 / 8, 0.005, 1.05, 0.010, 0.015, 0.09, 0.040, 0.62};
 
 /// Stretch of jeans without ease, as a fraction of the body's girth, from thigh to hip and at the waist.
-/// Around a body that curves in both directions, the cloth is too long at the side seams and would stand off.
+/// Around a body that curves in both directions, the cloth is too long at the side seams; without tension it
+/// stands off there.
 constexpr double hip_stretch = 0.031, waist_stretch = 0.006;
 
 constexpr double thigh_below_crotch = 0.01;  // m, of the landmark of the thigh
@@ -117,7 +118,8 @@ class Drafting {
     return girth;
   }
 
-  /// Half of the front or back, m, of jeans around girth, offset and ease, shared as the body's at height y.
+  /// Half of the front or back, m, of jeans with the circumference of girth, offset and ease. Front and back
+  /// have the fractions of the body at the height y.
   double quarter(double y, double girth, double ease) const {
     const double front = m_.front_share ? m_.front_share(y) : 0.5;
     const double share = half_.before ? front : 1 - front;
@@ -130,7 +132,8 @@ class Drafting {
   double centre_bend() const { return crotch_line_ + half_.curve_height; }
   double centre_height() const { return m_.waist_height + half_.raised - centre_bend(); }
 
-  /// x of the centre seam, extended below: vertical up to the bend, then a cubic, as over seat and belly.
+  /// x of the centre seam, extended below: vertical up to the bend, above it a cubic of the height that leans
+  /// more with height, as the body does over seat and belly.
   double centre_x(double y) const {
     const double t = std::max(0.0, (y - centre_bend()) / centre_height());
     return hip_width_ - centre_taken() * t * t * (3 - top_lean + (top_lean - 2) * t);
@@ -138,7 +141,8 @@ class Drafting {
   /// -dx/dy of the centre seam at the waist.
   double centre_lean() const { return top_lean * centre_taken() / centre_height(); }
 
-  /// The upper edge, as long as the waist. It rises to the side, for no notch, at right angles to the seam.
+  /// The upper edge, with the length of the waist. It rises to the side, where front and back would otherwise
+  /// form a notch, and is perpendicular to the centre seam.
   Curve waist(const Vec3d& at_centre) const {
     double width = waist_width_;
     const auto drawn = [&] {
@@ -266,7 +270,8 @@ JeansDraft draft_with(const JeansMeasures& measures, double fork_factor) {
   return {front_outline, back.outline(most)};
 }
 
-/// The factor of the forks' length at which the centre seams fit the body plus ease: deep bodies need more.
+/// The factor of the forks' length for which the centre seams are as long as the body there plus some ease: a
+/// body that is deep for its girth needs longer forks.
 double fork_factor(const JeansMeasures& measures) {
   if (!measures.crotch_length) return 1;
   constexpr double ease = 0.05;  // m, including that of the crotch and the raised back
@@ -282,6 +287,7 @@ double fork_factor(const JeansMeasures& measures) {
 
 double inner_length(const JeansOutline& outline) { return outline.inseam.length() + outline.centre.length(); }
 
+/// The mean length of an outline's inner and outer sides, m.
 double mean_height(const JeansOutline& outline) {
   return 0.5 * (inner_length(outline) + outline.outer.length());
 }
@@ -332,7 +338,8 @@ PatternPiece piece_of(const std::string& name, const JeansOutline& outline, bool
 
 double in_millimetres(double metres) { return std::round(1000 * metres) / 1000; }
 
-/// Ease of jeans at their upper edge, m: less, to hold, if the body hardly widens from there to the hip.
+/// The ease of jeans at their upper edge, m. If the body hardly widens from there to the hip, they must be
+/// narrower to hold.
 double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
   constexpr double usual = 0.01, least = -0.03;  // m
   constexpr double steep = 0.7;                  // m of girth per m of height: `usual` above this
@@ -342,7 +349,8 @@ double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
   return std::clamp(usual + narrower * (widening - steep), least, usual);
 }
 
-/// By how much the trouser leg, straight from hem to knee, must be wider to clear the body's, m.
+/// By how much the trouser leg, straight from hem to knee, must be wider to go around the body's with some
+/// air, m.
 double lack_of_width(const BodyProfile& profile, const JeansMeasures& jeans) {
   constexpr double air = 0.03, step = 0.01;  // m
   double lack = 0;
@@ -397,7 +405,8 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
     for (const bool behind : {false, true}) {
       const std::string name = std::string(behind ? "back " : "front ") + (is_left ? "left" : "right");
       const JeansOutline& outline = behind ? draft.back : draft.front;
-      // Seen from outside, the left leg's outer side is on the right in front, on the left at the back.
+      // Seen from outside, the outer side of the wearer's left leg is on the right in front and on the left
+      // at the back.
       const bool mirror = is_left != behind;
       const double inner = crotch_fraction(outline);
       const GridLine crotch =
@@ -434,7 +443,8 @@ JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& bo
   jeans.waist_height = in_millimetres(body.hip.height + edge * (body.waist.height - body.hip.height));
   jeans.hip_height = in_millimetres(body.hip.height);
   jeans.crotch_height = body.crotch_height;
-  // For the twenty persons of tests/support/persons.csv: 17 fit on openmp, 16 with half this ease.
+  // Chosen for the twenty persons of tests/support/persons.csv: 17 fit on openmp, or 16 with half of this
+  // ease at the thigh.
   jeans.crotch_ease = 0.04;
   jeans.thigh_ease = 0.01;
   jeans.knee_height = in_millimetres(body.knee.height);

@@ -9,7 +9,8 @@
 
 namespace mssim {
 
-/// Measures of jeans, m. Heights are above the floor, on the standing body. Eases are of circumferences.
+/// Measures from which jeans are drafted, m. Heights are above the floor, on the standing body. Eases are for
+/// the whole circumference of waist or hip.
 struct JeansMeasures {
   /// The body's girth (of the convex hull) at a height between thigh and waist.
   std::function<double(double)> girth;
@@ -37,7 +38,8 @@ struct JeansMeasures {
   double body_offset = 0.004;  ///< between body and cloth: both waist and hip grow by 2 pi of it
 };
 
-/// Front or back of a leg as drawn: outer side on the left, x = 0 at the crease, y the height when worn.
+/// The front or back of one leg as drawn: outer side on the left, inner side on the right, x = 0 at the
+/// crease, y the height when worn.
 struct JeansOutline {
   Curve hem, waist;  ///< from the outer side to the inner side
   Curve outer;       ///< the side seam, from hem to waist, smooth from knee to waist
@@ -54,7 +56,8 @@ struct JeansDraft {
 /// from hem to waist, lengths and girths out of range, and measures whose inseams cannot be made equal.
 JeansDraft draft_jeans(const JeansMeasures& measures);
 
-/// Rows and columns of the panels of jeans. Front and back have equally many rows: seams join node to node.
+/// The numbers of rows and columns of the panels of jeans. Front and back have equally many rows, so that
+/// their seams join node to node.
 struct JeansGrid {
   std::uint32_t rows = 0;
   std::uint32_t crotch_row = 0;  ///< ends in the crotch point
@@ -62,14 +65,16 @@ struct JeansGrid {
   std::uint32_t back_columns = 0;
 };
 
-/// A grid of square cells, with nodes within 3 % of `nodes`. Throws InputError beyond 300 to 10 million.
+/// A grid with cells about square, and the number of nodes within 3 % of `nodes`. Throws InputError for fewer
+/// than 300 or more than 10 million nodes.
 JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes);
 
 /// Jeans of four panels ("front left", "back left", "front right", "back right", by the wearer's sides) and
 /// six seams ("outer left", "outer right", "inner left", "inner right", "centre front", "centre back"), of
 /// `cloth`, with about `nodes` nodes. The wearer faces +z, and its left is +x; `leg_axis` is x of its left
-/// leg by height, m, positive. Cloth within 5 cm of the outer seams must lie close to the body, from the
-/// thigh (1 cm below the crotch) up to the higher hip. Throws as draft_jeans and jeans_grid do.
+/// leg by height, m, positive. The cloth within 5 cm of the outer seams must lie close to the body, from the
+/// thigh (1 cm below the crotch) up to the higher of the body's hip and the jeans'. Throws InputError as
+/// draft_jeans and jeans_grid do.
 GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelMaterial& cloth,
                              const std::function<double(double)>& leg_axis);
 

@@ -27,7 +27,8 @@ void require_corner(const PatternPiece& piece, std::string_view corner, const Ve
       piece.name, corner, edge_a, place(a), edge_b, place(b));
 }
 
-/// The outline, counter-clockwise. At corners it has one curve's point: a gap would look like a crossing.
+/// The outline, counter-clockwise. At corners, where curves meet only approximately, it uses one curve's
+/// point; otherwise the gap would look like a crossing.
 std::vector<Segment> outline_of(const PatternPiece& piece) {
   std::vector<Vec3d> points;
   std::vector<PanelEdge> edges;
@@ -135,7 +136,8 @@ LineEnds line_ends(const PatternPiece& piece, std::uint32_t count, const std::ve
   return ends;
 }
 
-/// Throws FoldedPiece unless each cell is convex and counter-clockwise: all corners have positive areas.
+/// Throws FoldedPiece unless the triangles at the four corners of each cell have positive areas: then the
+/// cell is convex and counter-clockwise.
 void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
   for (std::size_t row = 0; row + 1 < mesh.rows; ++row)
     for (std::size_t column = 0; column + 1 < mesh.columns; ++column) {

@@ -83,7 +83,8 @@ void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces);
 void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth);
 
 /// Throws SceneError, which names the place under `pointer`, for a panel without a name, for invalid boundary
-/// curves, and for more than `most_nodes` nodes. build_garment finds errors in cutting and sewing.
+/// curves, and for more than `most_nodes` nodes. build_garment refuses errors that appear only in cutting and
+/// sewing.
 void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,
                   std::uint64_t most_nodes);
 

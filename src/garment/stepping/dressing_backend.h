@@ -29,8 +29,9 @@ class DressingBackend : public Backend {
 /// Whether the integrator can dress garments.
 bool dresses(const Integrator& integrator);
 
-/// Vassilev's Algorithm 1 as a straightforward program: one thread, an array of nodes, a list of springs, six
-/// loops. `system.topology` is a Garment. Throws Unsupported for another integrator than semi-euler.
+/// Algorithm 1 of Vassilev's paper as a straightforward program: one thread, an array of nodes, a list of
+/// springs, six loops. `system.topology` is a Garment. Throws Unsupported for an integrator other than
+/// semi-euler.
 std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s);
 
@@ -60,7 +61,8 @@ struct DressingShape {
 
 /// Algorithm 1 on an OpenCL device (kernels/dressing_step.cl). All steps are queued at once: the host learns
 /// at the end of step() whether seams have closed. Throws Unsupported for an integrator other than
-/// semi-euler, for layers that touch and for too little memory; Unavailable if the driver fails.
+/// semi-euler, for layers that touch each other and if the device's memory is too small; Unavailable if its
+/// driver fails.
 std::unique_ptr<DressingBackend> make_opencl_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, const OpenclDevice& device,
                                                       DeviceMemory memory, const DressingShape& shape);

@@ -35,7 +35,8 @@ void append_row(const GarmentPanel& panel, std::uint32_t row, const GridSpring& 
 
 constexpr std::size_t widest_vector = 16, empty_rows = 2;
 
-/// The direction of a spring in a panel, from the node that owns it. Throws if the stencil has none.
+/// The direction of a spring between two nodes of a panel, from the node that owns it. Throws if the stencil
+/// has none.
 std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::uint32_t& other) {
   if (other < owner) std::swap(owner, other);
   const auto row = [&](std::uint32_t node) {

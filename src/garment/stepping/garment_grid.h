@@ -25,7 +25,8 @@ inline constexpr auto panel_stencil = [] {
   return stencil;
 }();
 
-/// Number of leading directions of limited elongation. Bending springs, two cells long, may bend.
+/// Number of leading directions whose elongation is limited. Bending springs, two cells long, may
+/// change length by bending.
 inline constexpr auto limited_directions = static_cast<std::size_t>(
     std::ranges::count_if(panel_stencil, [](const GridSpring& spring) { return spring.kind != bending; }));
 
@@ -35,7 +36,8 @@ inline constexpr auto limited_directions = static_cast<std::size_t>(
 /// the next. Springs of a line are consecutive, so that a correction propagates along it. Lines of one
 /// direction have no common node, nor have blocks, so that correcting them in parallel gives the same result.
 /// With sweeps that alternate between forwards and backwards, this converges several times as fast as an
-/// order that colours single springs. Throws std::invalid_argument for other springs.
+/// order that colours single springs. Throws std::invalid_argument if the springs are not those of the
+/// panels.
 std::vector<std::uint32_t> correction_order(const Garment& garment, const std::vector<Spring>& springs);
 
 /// Three arrays of floats, one per component.
@@ -74,7 +76,8 @@ struct GarmentGrid {
     float fraction;                   ///< of the edge
   };
 
-  /// Throws Unsupported for rows of springs of different stiffness, std::invalid_argument for other springs.
+  /// Throws Unsupported if springs of one row and direction differ in stiffness, and std::invalid_argument if
+  /// the springs are not those of the panels.
   explicit GarmentGrid(const System& system);
 
   void set_state(const State& state);

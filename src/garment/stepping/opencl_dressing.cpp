@@ -177,7 +177,8 @@ struct OpenclPanels {
   std::vector<cl_int> joint_nodes;    ///< held nodes first
 };
 
-/// panel_stencil for the kernels, without contractions, whose rounding would differ between kernels.
+/// panel_stencil for the kernels, without contractions, which would round differently in kernels of different
+/// shapes.
 std::string stencil_text() {
   std::string rows, columns;
   for (const GridSpring& spring : panel_stencil) {

@@ -43,7 +43,8 @@ struct PublishedDressing {
   bool parallel = false;         ///< the paper's "with parallelization"
 };
 
-/// The TABLE, in the order of all listings; in this header for readers of results, which link no loops.
+/// The TABLE, in the order of all listings. It is in this header because readers of results do not link the
+/// loops.
 inline constexpr auto published_dressings = std::to_array<PublishedDressing>({
     {"algorithm1", "garments, as published: the six loops of Vassilev's Algorithm 1, one after the other"},
     {"algorithm1-simd", "algorithm1 with SIMD instructions for vectors of three components", true},
@@ -51,7 +52,8 @@ inline constexpr auto published_dressings = std::to_array<PublishedDressing>({
     {"algorithm1-threads-simd", "algorithm1-threads with SIMD instructions", true, true},
 });
 
-/// The loops of a row. Throws Unsupported for an integrator other than semi-euler, and for touching layers.
+/// Makes the loops of a row. Throws Unsupported for an integrator other than semi-euler, and for layers that
+/// touch each other.
 using MakePublishedDressing = std::unique_ptr<DressingBackend> (*)(const System& system,
                                                                    const Integrator& integrator, double dt_s,
                                                                    const ExecutionOptions& options);

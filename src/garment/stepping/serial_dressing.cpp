@@ -184,7 +184,8 @@ class SerialDressing final : public DressingBackend {
     second.v -= second_free * impulse * d;
   }
 
-  /// After the correction, which would reopen sewn joints: their ends move as one but for closing the gap.
+  /// Runs after the correction, which would reopen sewn joints: their ends move as one except for closing the
+  /// gap.
   void close_sewn_joints() {
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
       if (sewn_[j] == 0) continue;

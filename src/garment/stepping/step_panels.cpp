@@ -1,4 +1,5 @@
-// Algorithm 1 on vectors of nodes along rows. hwy/foreach_target.h includes it once per instruction set.
+// Algorithm 1 on vectors of nodes along rows. Compiled once per instruction set: hwy/foreach_target.h
+// includes this file again for each.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -84,7 +85,8 @@ HWY_INLINE void compute_forces(const GarmentGrid& grid, const GarmentGrid::Panel
   }
 }
 
-/// The sum of all forces on a vector of nodes: of springs that they own, less those that end at them.
+/// The sum of all forces on a vector of nodes: those of the springs that they own, less those of the springs
+/// that end at them.
 HWY_INLINE Lanes3 force_on(ForceScratch& scratch, std::size_t row, std::size_t column) {
   Lanes3 sum = zero3();
   for (std::size_t d = 0; d < panel_stencil.size(); ++d) {
@@ -98,7 +100,8 @@ HWY_INLINE Lanes3 force_on(ForceScratch& scratch, std::size_t row, std::size_t c
   return sum;
 }
 
-/// Second half of loop 4: contact of a vector of nodes with the body. Returns the nodes that friction holds.
+/// Second half of loop 4: contact of a vector of nodes with the body. Changes `x` and `v`; returns the nodes
+/// that friction holds.
 HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real, Lanes3& x, Lanes3& v) {
   constexpr std::size_t lanes = hn::MaxLanes(FloatTag());
   const hn::RebindToSigned<FloatTag> index_tag;
@@ -113,7 +116,8 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
   const auto column = whole(next.x, frame.left, frame.columns), row = whole(next.y, frame.bottom, frame.rows);
   HWY_ALIGN std::int32_t pixel[lanes];
   hn::Store(hn::Add(hn::Mul(row, hn::Set(index_tag, frame.columns)), column), index_tag, pixel);
-  // Not gathered: a gather accesses the cache per float, not per pixel. Step time: 0.90 to 0.97 (Intel Xeon).
+  // Not gathered: a gather accesses the cache per float, not per pixel. Steps took 0.90 to 0.97 of the time
+  // on an Intel Xeon.
   const BodyPixel* const pixels = maps.pixels().data();
   const TransposedRecords<lanes> planes_of([&](std::size_t i)
                                                MSSIM_INLINE_LAMBDA { return &pixels[pixel[i]].front_x; });
@@ -130,7 +134,8 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
   return hn::And(inside, hn::Gt(after.stuck.v, hn::Zero(FloatTag())));
 }
 
-/// Second half of loop 4 for a row of nodes: contact of moved positions and velocities; sets `free`.
+/// Second half of loop 4 for a row of nodes: applies contact with the body to moved positions and velocities,
+/// and sets `free`.
 HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                                   const StepRule& rule) {
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
@@ -184,7 +189,8 @@ HWY_INLINE Mask is_elongated(Lanes length_squared, Lanes limit) {
   return hn::Gt(elongation_excess(length_squared, limit).v, hn::Zero(FloatTag()));
 }
 
-/// Corrects the springs of a direction between two rows, a vector at a time: no two have a common node.
+/// Corrects the springs of a direction between two rows of nodes, a vector at a time: no two have a common
+/// node.
 HWY_INLINE void correct_between_rows(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                                      std::size_t direction, const CorrectionRule<float>& rule) {
   const auto offset =
@@ -221,7 +227,8 @@ inline void correct_along_row(GarmentGrid& grid, std::size_t at, const Correctio
   grid.velocity.put(at + 1, far - far_free * impulse * d);
 }
 
-/// Corrects the springs along a row: tests vectors, then corrects the too long ones, usually few, in turn.
+/// Corrects the springs along a row: tests a vector of them at once, then corrects those that are too long,
+/// usually few, one after the other.
 HWY_INLINE void correct_row(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                             const CorrectionRule<float>& rule, bool forwards) {
   const std::size_t lanes = lane_count(), vectors = (panel.columns + lanes - 1) / lanes;
@@ -369,6 +376,7 @@ void move(PanelDressing& dressing, const Worker& worker) {
     move_block(grid, grid.blocks[b], Lanes(rule.dt), dressing.system.floor);
 }
 
+/// Collides the layers of the garment.
 void collide_layers(PanelDressing& dressing) {
   GarmentGrid& grid = dressing.grid;
   dressing.layers->collide(

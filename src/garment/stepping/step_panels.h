@@ -27,7 +27,8 @@ struct PanelDressing {
 /// Joints are as few as the rows of a panel, so that one thread suffices.
 void pull_joints(PanelDressing& dressing);
 
-/// After loop 5, which would reopen sewn joints: their ends move as one but to close; held edges keep height.
+/// Runs after loop 5, which would reopen sewn joints: their ends move as one except for closing the gap, and
+/// held edges keep their height.
 void close_sewn_joints(PanelDressing& dressing);
 
 }  // namespace mssim

@@ -27,7 +27,8 @@ struct ExportMesh {
   bool in_double = false;                               ///< precision of positions in the trace and in files
 };
 
-/// The triangles of cloths, of garments and their body, and of bodies' surfaces, without inner nodes.
+/// The triangles of cloths, of garments and their body, and of the surface of bodies; inner nodes are left
+/// out.
 ExportMesh surface_mesh(const TraceContent& content);
 
 /// The mesh with bodies as tetrahedra between all nodes.
@@ -60,7 +61,8 @@ class VtkhdfExport {
   VtkhdfExport(std::filesystem::path file, const ExportMesh& mesh);
   /// Appends a frame of the mesh. Throws WriteError; the object can then only be destroyed.
   void add(const ExportFrame& frame);
-  /// Finishes the file, with a frame or more, and names it; otherwise none remains. Throws WriteError.
+  /// Finishes the file, which must have a frame, and gives it its name. Throws WriteError. Without close() no
+  /// file remains.
   void close();
 
  private:

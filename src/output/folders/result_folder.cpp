@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* provenance_name = "provenance.json";
 constexpr const char* github_name = "github.json";
 
+/// A file that is made from rows.
 struct RowFile {
   const char* name;
   /// Empty if none of the rows belongs in the file.

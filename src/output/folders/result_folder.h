@@ -24,18 +24,21 @@ inline constexpr const char* programs_name = "programs";
 std::vector<std::string> file_stems(std::span<const ResultRow> rows);
 
 /// The results of one run of `mssim bench`: timings.csv, samples.csv, garment.csv for garments,
-/// benchmark.json, provenance.json, output of backends' programs, and tables derived from the rows, NAME.csv
-/// and NAME.md. A folder of `mssim guide` has provenance.json and tables. Holds a lock: one writer at a time.
+/// benchmark.json, provenance.json, output of programs that are backends, and tables derived from the rows,
+/// as NAME.csv and NAME.md. A folder of `mssim guide` has provenance.json and tables. Holds an exclusive
+/// lock: one writer at a time.
 class ResultFolder {
  public:
-  /// Creates the folder and its parents. Throws WriteError, also if any process's ResultFolder has it.
+  /// Creates the folder and its parents. Throws WriteError, also if another ResultFolder, in any process, has
+  /// the folder.
   ResultFolder(std::filesystem::path folder, Provenance provenance, TableMaker tables);
 
   /// Whether an earlier run left rows here.
   bool has_rows() const;
   /// Whether an earlier run left rows or tables.
   bool has_results() const;
-  /// Makes the first write replace an earlier run's results and provenance, which stay until then.
+  /// Makes the first write replace the results of an earlier run, including its provenance. They stay until
+  /// then.
   void replace_results() { replaces_ = true; }
   /// Adds the start of the run whose rows stay to this run's provenance.
   void go_on_with(const Provenance& earlier);
@@ -51,7 +54,8 @@ class ResultFolder {
   /// Writes github.json (github_table()). Throws WriteError.
   void write_for_github(std::span<const ResultRow> rows) const;
 
-  /// Writes tables that do not come from rows: NAME.csv and, with a page, NAME.md. Throws WriteError.
+  /// Writes tables that do not come from rows, as NAME.csv and, if there is a page, NAME.md. Throws
+  /// WriteError.
   void write(std::span<const ResultTable> tables);
 
   /// Writes table2.csv and table2.md. Throws WriteError.
@@ -73,7 +77,8 @@ class ResultFolder {
   bool replaces_ = false;
 };
 
-/// An earlier run's rows, with their samples and dressings; none without timings.csv. Throws CsvError.
+/// The rows that an earlier run left in a folder, with their samples and dressings; none without timings.csv.
+/// Throws CsvError.
 std::vector<ResultRow> read_results(const std::filesystem::path& folder);
 
 }  // namespace mssim

@@ -9,7 +9,8 @@
 namespace mssim {
 
 /// For the terminal: for each method, the longest step that keeps the requested error, or else the most
-/// accurate one, and its cost at that error; the cheapest first. Without points, the reason.
+/// accurate one, and its cost at that error; the cheapest methods first. A method without points has its
+/// reason.
 Table guide_summary(const SceneGuide& guide);
 
 /// The tables of a guide's folder. "guide" has all points and the page; these have no page: "guide-steps" the

@@ -54,7 +54,8 @@ class Painter {
   /// Only the legend, as large as a picture.
   Picture legend() const;
 
-  /// The shot of every picture: all positions with room and, if ground is visible, their shadows.
+  /// The shot of every picture: all positions for which there is room and, if ground is visible, their
+  /// shadows.
   Shot shot() const;
 
  private:
@@ -76,7 +77,8 @@ class Painter {
 /// unknown: if something leaves the picture, the following ones are taken from farther away.
 class PictureFolder {
  public:
-  /// Creates the folder and its parents. Throws WriteError, also if it is not empty or another writer has it.
+  /// Creates the folder and its parents. Throws WriteError, also if the folder is not empty or another writer
+  /// has it.
   PictureFolder(std::filesystem::path folder, TraceContent content, const PictureOptions& options);
   PictureFolder(const PictureFolder&) = delete;
   PictureFolder& operator=(const PictureFolder&) = delete;

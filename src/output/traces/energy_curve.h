@@ -29,7 +29,8 @@ class EnergyCurve {
 
   const std::filesystem::path& name() const { return file_.name(); }
 
-  /// Throws WriteError, and std::invalid_argument for times that do not increase and numbers not finite.
+  /// Throws WriteError; throws std::invalid_argument for a time that does not increase and for numbers that
+  /// are not finite. NAME.part then has the earlier samples.
   void append(const EnergySample& sample);
   /// Gives the file its name. Throws WriteError.
   void close() { file_.move_into_place(); }
@@ -42,9 +43,10 @@ class EnergyCurve {
   double last_time_s_ = 0;
 };
 
-/// The error in a trace's file name, with the remedy; none if it is valid. It must be NAME.h5 with characters
-/// that an XDMF file can name. XDMF readers take the text after ':' as a dataset's path, '|' as the end of a
-/// name, and '\' as a '/' or an escape. Control characters and text that is not UTF-8 are no XML.
+/// The error in a trace's file name, with the remedy; none if it is valid. It must be NAME.h5 with
+/// characters that an XDMF file can name. XDMF readers take the text after ':' as a dataset's path, '|' as
+/// the end of a name, and '\' as a '/' or an escape. Control characters and text that is not UTF-8 are not
+/// valid XML. The folder does not matter.
 std::optional<std::string> trace_name_problem(const std::filesystem::path& trace);
 
 }  // namespace mssim

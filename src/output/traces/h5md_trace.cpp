@@ -14,8 +14,9 @@ struct UnitInfo {
   const char* quantity;
   const char* unit;
 };
-/// In H5MD's notation of units. They are separate, in /parameters/units, because MDAnalysis refuses a `unit`
-/// attribute of fixed length and does not know metres; without any it needs convert_units=False.
+/// In the notation of H5MD's units module. They are separate, in /parameters/units, because MDAnalysis
+/// refuses a `unit` attribute that is a fixed-length string and does not know metres; without any it needs
+/// convert_units=False.
 constexpr auto units = std::to_array<UnitInfo>({
     {"position", "m"},
     {"velocity", "m s-1"},
@@ -142,7 +143,8 @@ constexpr auto observable_kinds = std::to_array<ObservableInfo>({
      [](auto&, const EnergyLosses& losses) { return losses.integration; }},
 });
 
-/// Series of numbers. Their chunks of many frames are rewritten in place at every flush: no deflation.
+/// Series of single numbers. Their chunks hold many frames and are rewritten in place at every flush, which
+/// requires chunks of constant stored size: no deflation.
 Hdf5Dataset create_number_series(hid_t file, const std::string& path, hid_t type) {
   constexpr std::array<hsize_t, 1> none{0}, frames_per_chunk{256};
   return create_dataset(file, path, type, none, true, chunked(frames_per_chunk, Packing::plain));

@@ -85,7 +85,8 @@ std::string xdmf_dataset(std::string_view vector, const XdmfPart& part, std::siz
 std::string xdmf_panel_dataset(const XdmfPart& part);
 inline constexpr const char* xdmf_panel_dataset_of_body = "/xdmf/panel/body";
 
-/// Adds virtual datasets of the first `frames` frames, and panel numbers, to an open trace. Throws Hdf5Error.
+/// Adds the virtual datasets of frames 0 to frames - 1, and the panel numbers, to an open trace. Throws
+/// Hdf5Error.
 void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames);
 
 /// Upper bound of the space that the virtual dataset of one part in one frame takes (measured: 1000 bytes).

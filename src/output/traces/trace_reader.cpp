@@ -21,7 +21,8 @@ std::string_view read_kind(hid_t file) {
   throw Hdf5ContentError("there is none of /particles/cloth, /particles/bodies and /particles/garment");
 }
 
-/// Reads steps and times. The shortest series counts: a run may have ended between writing two of them.
+/// Reads steps and times. The shortest series counts: a run may have ended between writing two of them, or
+/// between a frame's positions and its step.
 void read_series(hid_t file, TraceContent& content) {
   const std::string position = particles_group(content) + "/position",
                     velocity = particles_group(content) + "/velocity";

@@ -45,7 +45,8 @@ TraceContent trace_content_of(const System& system, const TraceHeader& header, c
 /// The group of the particles of a trace, for example /particles/cloth.
 std::string particles_group(const TraceContent& content);
 
-/// [nodes] Mean strain of each node's springs, or 0, at positions ([nodes] m). `content` has rest lengths.
+/// [nodes] The mean strain of the springs at each node for these positions ([nodes] m); 0 for nodes without
+/// springs. `content` must have rest lengths.
 std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions);
 
 /// Thrown for a trace that cannot be read. what() is one sentence with the file, the error and the remedy.

@@ -49,7 +49,8 @@ struct Section {
 /// Longest text of a scene file, in characters.
 inline constexpr std::size_t longest_text = 200;
 
-/// Visits the fields of a JSON object. Fields not marked optional are required; keys not visited are errors.
+/// Visits the fields of one JSON object. Fields not marked optional are required; keys that are not visited
+/// are errors.
 class FieldVisitor {
  public:
   FieldVisitor() = default;
@@ -81,7 +82,8 @@ class FieldVisitor {
                       std::vector<Vec3d>& target) = 0;
   /// One of several sections: the field's text names it, and the object of that name contains it.
   virtual void one_of(const Field& field, std::span<const Section> sections) = 0;
-  /// A list of 1 to `most` objects, each with this description; `fields` visits each, or one without a file.
+  /// A list of 1 to `most` objects. `description` describes one object; `fields` is called for each, or once
+  /// if there is no file.
   virtual void list(const Field& field, Presence presence, std::size_t most, std::string_view description,
                     const FieldList& fields) = 0;
   /// A nested object; `fields` is called only if it is present.
@@ -114,8 +116,9 @@ inline void visit_material(FieldVisitor& fields, SpringMaterial& material, const
                   constant.number == &SpringMaterial::stiffness ? stiffness : from(0, constant.most));
 }
 
-/// Bad input: a scene that cannot be found, read, parsed or built. what() is a sentence with the file, the
-/// place in it (a JSON pointer such as /cloth/rows), value and remedy.
+/// Bad input: a scene that cannot be found, read, parsed or built. what() is one sentence with the file, the
+/// place in it (a JSON pointer such as /cloth/rows), the value and the remedy. Commands print it and exit
+/// with 2.
 struct SceneError : ErrorWith<exit_bad_input> {
   using ErrorWith::ErrorWith;
 };
@@ -127,7 +130,8 @@ struct SceneError : ErrorWith<exit_bad_input> {
 /// A number for an error message, in the fewest digits that read back as the same number.
 std::string shown_number(double number);
 
-/// The height of the floor that a scene file states, m; nothing without one, or if `scene_json` is no scene.
+/// The height of the floor that a scene file states, m; nothing if it states none, or if `scene_json` is not
+/// a scene file.
 std::optional<double> stated_floor(const std::string& scene_json);
 
 /// Assigns the values of a JSON text to the fields, recursively. `file` is the source of the text. Throws

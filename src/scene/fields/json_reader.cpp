@@ -182,7 +182,8 @@ std::size_t count_characters(std::string_view text) {
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-/// Reads an object. Misspelled keys explain missing ones: both are reported at the end, misspelled first.
+/// Reads one object. Misspelled keys explain missing ones, so both are reported at the end, misspelled ones
+/// first.
 class JsonReader final : public FieldVisitor {
  public:
   JsonReader(const std::filesystem::path& file, std::string pointer, const json& value)

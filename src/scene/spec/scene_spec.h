@@ -37,7 +37,8 @@ struct MeshFiles {
   bool operator==(const MeshFiles&) const = default;
 };
 
-/// A closed surface, OBJ or STL, to fill with tetrahedra. Relative paths: from the scene file's folder.
+/// A closed surface in an OBJ or STL file, to be filled with tetrahedra. Relative paths are relative to the
+/// scene file's folder.
 struct SurfaceFile {
   std::string file;
   double unit_m = 1;                  ///< metres in one unit of the file
@@ -46,7 +47,8 @@ struct SurfaceFile {
   bool operator==(const SurfaceFile&) const = default;
 };
 
-/// The shape of another scene's first body: its name, or its file's path, relative to this file's folder.
+/// The shape of another scene's first body: the scene's name, or the path of its file, relative to the scene
+/// file's folder.
 struct ShapeOfScene {
   std::string name;
 
@@ -66,7 +68,8 @@ struct BodySpec {
   double turn_deg = 0;       ///< rotation of the shape about its centre
   Vec3d velocity_m_per_s;    ///< of the centre
   Vec3d spin_rad_per_s;      ///< angular velocity about the centre
-  /// Initial growth rate: every spring acts at once. A node at r from the centre starts with swell * r.
+  /// Initial growth rate, so that every spring is active from the first step on: a node at distance r from
+  /// the centre starts with swell * r outwards.
   double swell_per_s = 0;
 };
 
@@ -138,7 +141,8 @@ struct BuiltScene {
 /// The parts that a scene is built from. All files that its file names have been read, each once, and made
 /// into meshes, or into a measured body and the garment cut for it; none is read again.
 ///
-/// Copies share the meshes. Estimates of memory omit them: drop the parts after the last build.
+/// Copies share the meshes. Estimates of memory do not count them, so drop the parts after the last build of
+/// the scene.
 struct SceneParts {
   SceneCounts counts;                 ///< nodes and springs of the scene
   std::optional<SceneCounts> stated;  ///< nodes and springs that the files state; nothing if they state none
@@ -148,15 +152,18 @@ struct SceneParts {
 
 class FieldVisitor;
 
-/// A kind of scene and its operations; rows in cloth.cpp, bodies.cpp and garment/scene/garment_scene.cpp.
+/// A kind of scene and its operations. The rows are defined next to their specs, in scene/cloth.cpp,
+/// scene/bodies.cpp and garment/scene/garment_scene.cpp.
 struct SceneKind {
   std::string_view name;         ///< value of the file's `kind`, and the key of its section
   std::string_view description;  ///< description of the section in the schema
-  /// Names the section's fields, with targets in spec.content, set to its alternative, which the others need.
+  /// Names the section's fields, with their targets in spec.content, which it first sets to its alternative.
+  /// The functions below need a spec of this alternative.
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
   /// Checks what no single field shows. Throws SceneError.
   void (*check)(const SceneSpec& spec);
-  /// Counts per spring in Hong et al.'s tables, inferred from their numbers; nothing for other kinds.
+  /// Counts per spring in Hong et al.'s tables, inferred from their numbers; nothing for a kind that they do
+  /// not have.
   std::optional<std::uint64_t> published_per_spring;
   /// The files that the section names, relative to the scene file's folder.
   std::vector<std::string> (*files)(const SceneSpec& spec);

@@ -1,5 +1,6 @@
-// x += h v of a substep, for floats, doubles and Lanes. Include it in a namespace with their mul_add, after
-// defining MSSIM_INLINE (the prefix of inline functions). No include guard: it is included several times.
+// x += h v of a substep, for floats, doubles and Lanes. Include it inside a namespace that has mul_add for
+// them, after defining MSSIM_INLINE (the prefix of inline functions). No include guard: it may be included
+// several times.
 
 template <class Real>
 MSSIM_INLINE void carry_sum(Real& x, Real& rest, Real h, Real v) {

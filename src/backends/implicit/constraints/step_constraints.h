@@ -42,8 +42,9 @@ LinearSpring<Real> compliant_spring(const SpringMaterial& material, double rest_
 }
 
 /// The colours of a cloth, in order: springs along rows, then those between the rows of a pair, then bending
-/// springs across rows. So a walk down the rows can execute all colours of a row that do not depend on later
-/// rows (BlockLevel in step_constraints.cpp), and no colour needs its own pass.
+/// springs across rows. In that order a walk down the rows can execute all colours of a row that do not
+/// depend on later rows (BlockLevel in step_constraints.cpp), and no colour needs its own pass over the
+/// cloth.
 enum ClothColour : std::uint8_t {
   structural_from_even_columns,
   structural_from_odd_columns,
@@ -126,7 +127,8 @@ struct QuarteredRows : SmallSteps {
   AlignedArray free;
   std::vector<const float*> free_of_row;  ///< [rows] into `free`; its start if the row has no pin
 
-  /// By GridSpringKind, between free nodes, and to a pin; over a node's mass: impulses are velocities.
+  /// By GridSpringKind, between free nodes and between a free one and a pin; divided by the mass of a node,
+  /// so the impulse on a free end is its change of velocity.
   std::vector<LinearSpring<float>> of_free, of_pinned;
   std::size_t threads = 1;
   std::size_t depth = 1;  ///< substeps per pass over the cloth
@@ -142,7 +144,8 @@ struct QuarteredRows : SmallSteps {
 
 /// Bodies for vectors of `lanes` springs of a colour: the nodes as records (node_arrays.h), renumbered so
 /// that neighbours are near each other (reverse Cuthill-McKee), and the springs interleaved. Unconnected
-/// components are stepped in parts, each of which stays in a thread's cache for all substeps of a call.
+/// components are stepped separately, in parts, each of which stays in a thread's cache for all substeps of a
+/// call.
 struct SpringBatches : SmallSteps {
   /// Springs of a colour with the same constants, in vectors [begin, end) of `springs`.
   struct Batch {
@@ -162,7 +165,8 @@ struct SpringBatches : SmallSteps {
   AlignedArray rest;  ///< [slots / lanes][x y z][lanes] m, rounding errors of x y z (carried_sum-inl.h)
   AlignedArray free;  ///< [slots] 1 if a node may move, 0 for pins and padding
   /// [vectors][3][lanes] offsets of the records of both ends, in units of offset_floats and as std::uint32_t,
-  /// then the stiffness_rest of compliant_spring. The last vector of a batch repeats its last spring.
+  /// then the stiffness_rest of compliant_spring. The last vector of a batch repeats its last spring, which
+  /// writes the same result again.
   AlignedArray springs;
   static constexpr std::size_t offset_floats = record_floats;
   std::vector<Batch> batches;

@@ -39,7 +39,8 @@ Matrix whole_matrix(const StepMatrix& matrix) {
   return whole;
 }
 
-/// Entries of the Cholesky factor of an upper triangle, by rows along the elimination tree (Liu 1990).
+/// The number of entries in the Cholesky factor of a matrix, given its upper triangle: row by row along the
+/// elimination tree (Liu 1990), without storing any.
 std::size_t count_entries(const Matrix& upper) {
   constexpr Index none = -1;
   const auto rows = static_cast<std::size_t>(upper.rows());
@@ -107,7 +108,8 @@ class Dissector {
   }
 
  private:
-  /// Appends a region's parts: components before separators. Returns the last of each separate one.
+  /// Appends the parts of a region: its components before their separator. Returns the last part of each
+  /// component without couplings to the rest of the region.
   std::vector<std::uint32_t> dissect(Rows region, Dissection& into) {
     if (region.empty()) return {};
     if (region.size() <= smallest_) return {append(region, into)};

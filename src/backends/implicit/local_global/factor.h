@@ -20,7 +20,8 @@ namespace mssim {
 /// have no row, so a spring to one adds only to the diagonal. A is positive definite, because masses are
 /// positive and spring constants are not negative.
 struct StepMatrix {
-  /// A spring of two free nodes: -weight at (first, second) and (second, first). Both diagonals include it.
+  /// A spring between two free nodes: -weight at (first, second) and (second, first). Both diagonals already
+  /// include it.
   struct Coupling {
     std::uint32_t first, second;  ///< rows
     double weight;                ///< kg

@@ -1,4 +1,5 @@
-// Steps of fast-springs: forces of whole vectors, products of dense blocks with three vectors at once.
+// Steps of fast-springs with vectors: forces of whole vectors of nodes, and products of dense blocks with
+// three vectors at once.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -40,7 +41,8 @@ HWY_INLINE void add_columns(const float* HWY_RESTRICT panel, std::size_t rows,
   }
 }
 
-/// sums[j][c] = column j of the panel times coordinate c of the solution, over its first `length` floats.
+/// sums[j][c] = column j of the panel times coordinate c of the solution, over its first `length` floats,
+/// whole vectors.
 template <std::size_t columns>
 HWY_INLINE void multiply_columns(const float* HWY_RESTRICT panel, std::size_t rows,
                                  const float* HWY_RESTRICT solution, std::size_t length,

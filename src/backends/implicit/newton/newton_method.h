@@ -23,7 +23,8 @@ struct SolverGoal {
   double rounding_of_motion = 0;  ///< contribution of rounded velocities, relative to sqrt(w . M w)
 };
 
-/// Largest error of a spring's force, in u k L: (k - k L / l) d is rounded at d, 1 / l and two products.
+/// Largest error of a spring's force, in u k L: (k - k L / l) d is rounded at d, 1 / l and the products with
+/// k L and with d.
 inline constexpr double roundings_of_force = 4;
 
 /// The goal of a solver that computes springs in precision Real. Each error below varies from spring to
@@ -124,7 +125,8 @@ struct Solution {
 };
 
 /// Solves A s = e by preconditioned conjugate gradients from s = 0, until sqrt(e . P e) has decreased to
-/// `tolerance` of its initial value. Not solved after most_gradient_iterations or for an indefinite A.
+/// `tolerance` of its initial value. Not solved if that takes more than most_gradient_iterations, or if A is
+/// not positive definite in its precision.
 template <BackwardEulerEquation Equation>
 Solution conjugate_gradients(Equation& equation, double tolerance, SolverWork& work) {
   double left = equation.start_solving();
@@ -160,8 +162,8 @@ void newton_step(Equation& equation, double tolerance, SolverWork& work) {
 /// rounding stops its decrease. The goal is relative to sqrt((w - v) . M (w - v)): no eigenvalue of M^-1 A is
 /// below 1, so the relative error of w - v is not larger, whatever the step, if no spring is compressed. (A
 /// goal relative to the first r would not ensure that: the longer the step, the more of it is due to stiff
-/// springs.) Linear systems are solved to a tolerance relative to the current r (Dembo, Eisenstat and
-/// Steihaug 1982).
+/// springs.) Linear systems are solved to a tolerance relative to the current r (an inexact Newton method:
+/// Dembo, Eisenstat and Steihaug 1982).
 ///
 /// A fraction of s is accepted if it reduces r, or if it does not lead far uphill. Without damping, r is the
 /// gradient with respect to w of (w - v) . M (w - v) / 2 + E(x + dt w), where E is the elastic and

@@ -15,7 +15,8 @@ namespace mssim {
 /// Thrown by a step that was stopped.
 struct GivenUp {};
 
-/// The BackwardEulerEquation (newton_method.h) as plain code: arrays of nodes, and each spring's part of A.
+/// The BackwardEulerEquation (newton_method.h) in a straightforward program: arrays of nodes, and each listed
+/// spring's part of A.
 template <class Real>
 class SpringEquation {
  public:

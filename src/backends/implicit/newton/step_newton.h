@@ -38,7 +38,8 @@ struct VectorEquation {
   /// [chunks] their parts of a sum, for two alternating sums.
   std::array<std::vector<double>, 2> sums;
 
-  /// With at most `thread_count` threads. Set a state first. Slopes beyond `most_kept` bytes are not stored.
+  /// With at most `thread_count` threads. Set a state before the first step. Slopes of more than `most_kept`
+  /// bytes are not stored.
   VectorEquation(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count,
                  const Integrator& method, std::size_t most_kept = most_slope_bytes)
       : nodes(system, lanes),

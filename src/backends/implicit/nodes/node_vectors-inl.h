@@ -1,4 +1,5 @@
-// The walk over node_vectors.h, vector by vector. Compiled once per instruction set: the guard toggles.
+// The walk over the nodes of a cloth or of bodies (node_vectors.h), vector by vector. Compiled once per
+// instruction set, so the guard toggles.
 #if defined(MSSIM_NODE_VECTORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_NODE_VECTORS_INL_H_
 #undef MSSIM_NODE_VECTORS_INL_H_
@@ -28,7 +29,8 @@ HWY_INLINE SlopeLanes keep(Exists exists, const SlopeLanes& slope) {
   return {keep(exists, slope.n), keep(exists, slope.across)};
 }
 
-/// Springs from a vector of nodes to their neighbours in one place of the stencil, i of spring_of_node().
+/// The springs from a vector of nodes to their neighbours in one place of the stencil, the i-th of
+/// spring_of_node().
 template <std::size_t i, class Exists>
 struct RowSprings {
   const SpringLanes& law;  ///< divided by the mass of a node

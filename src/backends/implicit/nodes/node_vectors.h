@@ -13,14 +13,16 @@ namespace mssim {
 
 /// Nodes in the layouts of implicit integrators with vectors: NodeRows for a cloth, NodeSlices for bodies.
 /// They compute with fields, arrays with a vector in space for each node, zero without a node, as in a new
-/// AlignedArray. node_vectors-inl.h walks over the nodes and loads fields at a node or its neighbours.
+/// AlignedArray. The vector code (node_vectors-inl.h) walks over the nodes and loads any field at a node or
+/// at its neighbours.
 
 /// A chunk is a thread's unit of work, with a partial sum of its own: rows of a cloth or slices of bodies.
 /// Chunks, and so the sums over them, depend only on the system: enough to balance the work of one machine's
 /// threads, few enough that adding their sums takes no time.
 inline constexpr std::size_t most_node_chunks = 256;
 
-/// At most most_node_chunks chunks of `count` items, of about equal cost. cost_before(i): of items before i.
+/// Divides `count` items into at most most_node_chunks chunks of about equal cost. cost_before(i): total cost
+/// of the items before the i-th.
 template <class CostBefore>
 std::vector<IndexRange> balanced_node_chunks(std::size_t count, CostBefore cost_before) {
   const std::size_t parts = std::min(count, most_node_chunks);
@@ -91,7 +93,8 @@ struct NodeSlices {
   std::vector<std::uint32_t> record;       ///< [nodes] index of a node's record
   std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
   AlignedArray entries;                    ///< slice_entries()
-  /// [slices][constant_count][lanes] SlicedGraph's; 1 if it moves, else 0; mass, kg, 0 for padding.
+  /// [slices][constant_count][lanes] SlicedGraph's constants; 1 if a node moves, else 0; and mass in kg, 0
+  /// for padding.
   AlignedArray constants;
   std::vector<IndexRange> chunks;  ///< of slices
 

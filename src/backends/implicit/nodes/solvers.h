@@ -14,7 +14,8 @@ namespace mssim {
 
 /// implicit-euler and newton-euler.
 std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s);
-/// Newton's method, until it improves no more. `stop`, called often, may end a step with a useless state.
+/// Newton's method, until it improves no more. If `stop`, which is called often in a step, returns true, the
+/// step ends early; the state is then useless.
 std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
                                                double dt_s, const std::function<bool()>& stop = {});
 std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
