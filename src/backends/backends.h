@@ -33,8 +33,9 @@ struct BackendInfo {
   bool uses_device;              ///< needs an OpenCL device
   /// The stack of its threads, if it creates as many as requested.
   std::optional<ThreadStack> makes_threads;
-  /// Makes a backend for a cloth or bodies and an explicit integrator, at the start state. `system` must
-  /// outlive it. Throws Unavailable or Unsupported. Null if a program steps, or if it only steps garments.
+  /// Makes a backend for a cloth or bodies and an explicit integrator, at the system's start state. `system`
+  /// must outlive it. Throws Unavailable or Unsupported. Null if a program takes its steps, or if it steps
+  /// garments only.
   std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth

@@ -206,7 +206,8 @@ class DeviceQueue {
     return buffer;
   }
 
-  /// The built program; roots and divisions are exact if supported. Throws Unavailable with the first error.
+  /// The built program. Square roots and divisions are correctly rounded if the device supports it. Throws
+  /// Unavailable with the compiler's first error.
   cl::Program build(const std::string& text) const;
 
   void launch(const Launch& launch) const {

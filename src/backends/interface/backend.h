@@ -107,7 +107,8 @@ class Backend {
 
   /// Sets a state of the system's size; pinned nodes must be at their start, at rest.
   virtual void set_state(const State& state) = 0;
-  /// Takes `count` steps of the backend's dt. Callers look for numbers that are not finite.
+  /// Takes `count` steps of the dt given at construction. Does not check for finite numbers: callers do,
+  /// outside timed regions.
   virtual void step(int count) = 0;
   /// The current state, in the scene's node order.
   virtual State state() const = 0;
@@ -116,7 +117,8 @@ class Backend {
   /// Cores of this machine that compute a step; for a discrete device, 1 (the host thread that waits). More
   /// than ExecutionOptions::threads only if a driver cannot be limited.
   virtual int threads() const = 0;
-  /// Whole steps per pass over the state in memory; 0 if every stage makes a pass. Gives the memory traffic.
+  /// Whole steps per pass over the state in memory, if stages overlap; 0 if every stage makes its own pass.
+  /// The memory traffic of a step is derived from it.
   virtual int steps_per_pass() const { return 0; }
   /// Springs whose ends and rest lengths a step reads, if fewer than the system's: alike bodies share them.
   virtual std::optional<std::uint64_t> stored_springs() const { return std::nullopt; }

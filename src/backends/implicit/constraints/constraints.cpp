@@ -139,7 +139,8 @@ std::vector<std::size_t> part_ends(const System& system, const std::vector<std::
   return ends;
 }
 
-/// Cost of a barrier in vectors of springs, 40 ns each on Zen 4: an estimate. On busy machines, see TeamGain.
+/// Cost of a barrier in vectors of springs, which take 40 ns each on Zen 4: an estimate for an idle machine.
+/// On a busy one, TeamGain lets one thread work alone.
 constexpr double barrier_cost = 6;
 
 struct PartCost {
