@@ -121,11 +121,10 @@ struct Combination {
   PackageEnergy energy;
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
-  std::vector<double> sample_seconds,
-      reading_seconds;  ///< in this run: times of samples, and of reading their end states
-  /// Time of reading the state after one step. Measured at the first sample whose state took longer to read
-  /// than its steps took; none before.
-  std::optional<double> step_reading_seconds;
+  std::vector<double> sample_seconds;        ///< for each sample of this run
+  /// For each sample of this run, s: how much longer its end state takes to read than a state after one step;
+  /// 0 if it is read faster than its steps were taken.
+  std::vector<double> postponed_seconds;
   std::optional<SampleEnd> checked;  ///< end of the sample that is to be checked
   /// Compares the windows after this number of steps; empty if the cloth is not in windows or was verified by
   /// an earlier process.
