@@ -239,6 +239,34 @@ TEST(GarmentVerification, AllowsWhatFiveStepsRoundAndOneNodeWhatContactMoves) {
   EXPECT_NEAR(scene.reference.farthest * unit, 2.6e-3, 1e-9);
 }
 
+/// Displaces two thirds of the nodes of a draped garment, m along x.
+class DisplacesMost final : public PassesOn {
+ public:
+  DisplacesMost(std::unique_ptr<DressingBackend> inner, double by) : PassesOn(std::move(inner)), by_(by) {}
+  State state() const override {
+    State state = PassesOn::state();
+    if (state.draped)
+      for (std::size_t i = 0; i < state.position.size(); ++i)
+        if (i % 3 != 0) state.position[i].x += by_;
+    return state;
+  }
+
+ private:
+  double by_;
+};
+
+TEST(GarmentVerification, AllowsHalfOfTheNodesAQuarterOfTheTolerance) {
+  const Jeans& scene = jeans();
+  const double unit = mean_rest_length(scene.system);
+  const auto failure_if_displaced = [&](double share_of_tolerance) {
+    DisplacesMost backend(make_serial_dressing(scene.system, semi_euler, scene.dt_s),
+                          share_of_tolerance * scene.reference.tolerance * unit);
+    return verify_garment(backend, scene.system, scene.reference, scene.dt_s).failure.value_or("");
+  };
+  EXPECT_THAT(failure_if_displaced(0.5), HasSubstr("of half of the nodes"));
+  EXPECT_THAT(failure_if_displaced(0.15), Not(HasSubstr("position error")));
+}
+
 /// A mistake, made in the system that the backend under test steps, and what of it the failure must say.
 struct Mistake {
   std::string name;

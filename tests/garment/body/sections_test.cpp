@@ -278,6 +278,15 @@ TEST_P(PersonsArms, DoNotCountWhereHandsRestAgainstTheHip) {
   }
 }
 
+TEST(TrunkAndLegs, AreFoundInABodyThatHardlyReachesTheMiddle) {
+  // Two posts that a bar of 2 cm joins, beside a third one.
+  Surface body = both(block({-0.3, 0, -0.1}, {-0.1, 1, 0.1}), block({0.1, 0, -0.1}, {0.3, 1, 0.1}));
+  body = both(body, block({-0.2, 0.5, -0.05}, {0.2, 0.52, 0.05}));
+  const TrunkAndLegs found = trunk_and_legs(both(body, block({0.6, 0, -0.1}, {0.8, 1, 0.1})));
+  ASSERT_TRUE(found.left_out);
+  for (const Vec3d& point : found.surface.points) EXPECT_LT(point.x, 0.31);
+}
+
 TEST(TrunkAndLegs, KeepShouldersAndFeet) {
   const Surface person = without_arms();
   // Pads that rise beside the neck, and a foot whose sole is hollow.
