@@ -270,8 +270,8 @@ TEST_P(PersonsArms, DoNotCountWhereHandsRestAgainstTheHip) {
     EXPECT_GT(touched->low, 0.6);
     EXPECT_LT(touched->high, 1.1);
     EXPECT_NO_THROW(validate_surface(profile.trunk_and_legs().surface, "trunk and legs"));
-    // With the hands it would be 1.12 m.
-    for (const double y : {0.82, 0.86, 0.90, 0.95, 1.0, 1.04})
+    // With the hands it would be 1.12 m. At 1.09 m hands nearly touch: what is cut off there leaves spikes.
+    for (double y = 0.72; y < 1.1; y += 0.004)
       EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), fraction * expected.hull_girth(y)) << y;
     for (const int side : {-1, 1})
       EXPECT_NEAR(profile.leg_girth(0.7, side), expected.leg_girth(0.7, side), 0.03) << side;
