@@ -79,7 +79,7 @@ BackendProgram program_at(const std::string& path) {
   return program;
 }
 
-/// As require_instruction_set; none of that name.
+/// Like require_instruction_set, but nothing if there is none of that name.
 std::optional<std::string_view> instruction_set_named(std::string_view name) {
   for (const std::string_view set : instruction_sets())
     if (name == set || name == instruction_set_name(set)) return set;

@@ -29,8 +29,8 @@ inline constexpr int most_threads = 4096;
 /// Largest number of processes.
 inline constexpr int most_ranks = 65536;
 
-/// The instruction set of vector code of this name, its usual one or Highway's: as Highway names it. Throws
-/// UsageError with a list if this CPU has none of that name.
+/// Highway's name of an instruction set of vector code; `name` is that or the usual one (AVX-512 for AVX3).
+/// Throws UsageError with a list if this CPU, or mssim's vector code, has none of that name.
 std::string_view require_instruction_set(const std::string& name);
 
 /// The value of --memory.
@@ -40,8 +40,8 @@ std::string name_of(DeviceMemory memory);
 /// --threads.
 void require_few_threads(int threads, std::string_view asked = {});
 
-/// Completes the options: `instruction_set` is as require_instruction_set returns it. If `threads` is 0,
-/// takes one thread per processor that this process may use, within a container's quota, and has OpenMP
+/// Completes the options. An `instruction_set` becomes Highway's name (require_instruction_set). If `threads`
+/// is 0, takes one thread per processor that this process may use, within a container's quota, and has OpenMP
 /// provide as many, regardless of OMP_DYNAMIC. Throws UsageError if OMP_THREAD_LIMIT is lower, like
 /// require_instruction_set and, unless a launcher starts the processes elsewhere, like require_few_threads.
 ExecutionOptions complete(ExecutionOptions options);
@@ -88,8 +88,9 @@ class BackendChoice {
   /// The rows of these names: first those of the table, in its order, then the others. Throws like require().
   std::vector<const BackendInfo*> require_all(const std::vector<std::string>& names);
 
-  /// `rows`; each that has vector code is preceded by rows for all of `sets` but the best, ascending. Throws
-  /// UsageError like with_fewer_threads.
+  /// `rows`, with additional rows for lesser instruction sets. Each row that has vector code is preceded by
+  /// rows for all of `sets`, which are the best first, but the first; the least comes first. Throws
+  /// UsageError if there are several sets and one of the rows uses processes.
   std::vector<const BackendInfo*> with_lesser_sets(const std::vector<const BackendInfo*>& rows,
                                                    const std::vector<std::string_view>& sets);
 

@@ -18,7 +18,8 @@
 
 namespace mssim {
 
-/// Numbers and names as text, and lists of them; no I/O. Sentences are made with fmt::format(), included.
+/// Numbers and names as text, for messages, tables and files, and lists of any values; no I/O. Sentences are
+/// made with fmt::format(), which this header includes.
 
 /// The shortest decimal text that reads back as the same number, in every locale.
 std::string decimal(double value);
@@ -26,7 +27,8 @@ std::string decimal(double value);
 /// Three significant digits, without an exponent.
 std::string three_digits(double value);
 
-/// Two significant digits, with an exponent if small or large ("2.1e-07"): for different orders of magnitude.
+/// Two significant digits, with an exponent if the number is small or large ("2.1e-07"): for numbers that
+/// differ by orders of magnitude.
 std::string two_digits(double value);
 
 /// With `digits` decimals, rounded, without an exponent.
@@ -35,7 +37,8 @@ std::string fixed_decimal(double value, int digits);
 /// 4188004 as 4,188,004.
 std::string grouped(std::uint64_t number);
 
-/// The text as a number, in every locale, with or without sign; nothing if there is more or it does not fit.
+/// The text as a number, in every locale and with or without a sign; nothing if it has anything besides the
+/// number or does not fit.
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -59,7 +62,7 @@ std::vector<Number> numbers_in(std::string_view text) {
   }
 }
 
-/// `of`, a member or a function, of each element.
+/// Values of `of`, a member or a function, for each element, in order.
 template <class Value, class Range, class Of>
 std::vector<Value> mapped(Range&& range, Of of) {
   std::vector<Value> values;
@@ -67,7 +70,7 @@ std::vector<Value> mapped(Range&& range, Of of) {
   return values;
 }
 
-/// The first element with this value of `of`; null if there is none.
+/// The first element for which `of`, a member or a function, has this value; null if there is none.
 template <class Range, class Value, class Of>
 auto found_in(Range& range, const Value& value, Of of) {
   const auto found = std::ranges::find(range, value, of);
@@ -137,14 +140,16 @@ void append_sentence(std::string& note, std::string_view sentence);
 /// The text in lower case (A to Z only), in every locale.
 std::string to_lower(std::string_view text);
 
-/// Arbitrary text for a message: one line of UTF-8, control characters escaped, of about `length` bytes.
+/// Arbitrary text for an error message: on one line, valid UTF-8 without control characters (they are
+/// escaped), cut to about `length` bytes.
 std::string printable(std::string_view text, std::size_t length = 80);
 
 /// Arbitrary text (a file's name, an argument) as a name for files: valid UTF-8 without control characters.
 /// Each byte of invalid UTF-8 or of a control character is written as \xHH; the rest is unchanged.
 std::string escaped(std::string_view text);
 
-/// Whether a line has text: a letter, a digit or a byte beyond ASCII. Drawn frames have none.
+/// Whether a line has text: a letter, a digit or a byte beyond ASCII. Lines of frames that programs draw have
+/// none.
 bool has_words(std::string_view line);
 
 /// The text as one word of a shell command: in single quotes unless all its characters are plain.
@@ -156,10 +161,12 @@ std::size_t width_of(std::string_view text);
 /// The longest prefix of UTF-8 text that fits into `width` columns.
 std::string_view clipped(std::string_view text, std::size_t width);
 
-/// `text` in lines of at most `width` characters or one word; lines after the first begin with `indent`.
+/// `text` in lines of at most `width` characters, broken between words; lines after the first begin with
+/// `indent`. A word longer than a line stays whole.
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent);
 
-/// A bar of up to `width` characters for a fraction, in eighths with UTF-8, else of #; visible above zero.
+/// A bar of at most `width` characters for a fraction from 0 to 1, in eighths of a character with UTF-8, else
+/// of whole #. Any value above zero is visible.
 std::string bar(double fraction, std::size_t width, bool utf8);
 
 /// The text without the byte-order mark that some editors and spreadsheets put before UTF-8.

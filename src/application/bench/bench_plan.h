@@ -35,11 +35,11 @@ struct BenchOptions {
   ExecutionOptions execution;
   std::vector<int>
       threads;  ///< backends that have threads also get a row for each that is less than execution's
-  /// Of backends with vector code; these also get a row for each of them but the best.
+  /// Backends with vector code also get a row for each of these but the best; empty: the best one only.
   std::vector<std::string> instruction_sets;
   std::optional<int> rounds;  ///< none: the usual number, or as many as the budget allows
   std::optional<double> time_budget_s;
-  std::optional<double> fps;   ///< none: single frames are not timed
+  std::optional<double> fps;   ///< frames per second of simulated time; none: single frames are not timed
   std::optional<int> windows;  ///< none: only cloths that do not fit are verified in windows
   bool dry_run = false;
   BenchOutput output;
