@@ -78,7 +78,8 @@ constexpr const BackendInfo& only_row(BackendRole role) {
 static_assert(std::ranges::count(table, BackendRole::baseline, &BackendInfo::role) == 1 &&
               std::ranges::count(table, BackendRole::best_of_host, &BackendInfo::role) == 1);
 
-/// Throws Unavailable if the system cannot create the backend's threads, or the row fixes too many.
+/// Throws Unavailable if the system cannot create the threads that the backend would create, or if the row
+/// fixes more threads than make sense on this machine (thread_excess).
 void require_threads(const BackendInfo& backend, const ExecutionOptions& options) {
   if (backend.threads > 0)
     if (const auto excess = thread_excess(backend.threads))

@@ -40,7 +40,8 @@ struct BackendInfo {
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth
   MemoryUse mesh_memory;  ///< for bodies
-  /// Approximate time of an explicit step on two cores over `serial`'s, for plans (results/table1, table3).
+  /// Approximate time of a step of a cloth or of bodies with an explicit integrator on two cores, relative to
+  /// `serial`: for plans (results/table1, results/table3).
   double step_share = 1;
   BackendRole role = BackendRole::as_published;
   /// Makes a backend that dresses a garment; null if it does not implement Algorithm 1.
@@ -56,9 +57,9 @@ struct BackendInfo {
   /// The program that takes its steps. It must outlive the row.
   const BackendProgram* program = nullptr;
   int threads = 0;  ///< fixed by the row; 0: the number requested
-  /// Fixed by the row, Highway's name; empty: the requested one.
+  /// Instruction set that the row fixes, by Highway's name; empty: the requested one.
   std::string_view instruction_set = {};
-  bool in_double = false;  ///< it is make_reference(), for explicit integrators
+  bool in_double = false;  ///< steps as make_reference() does, with explicit integrators only
   bool each_body = false;  ///< one backend per body of the scene; the bodies take a step in turn
   /// The double-precision counterpart of `make_dressing`, against which its garments are verified.
   std::unique_ptr<DressingBackend> (*make_dressing_reference)(const System& system,
@@ -79,7 +80,8 @@ BackendInfo own_backend(const BackendProgram& program);
 /// The TABLE of backends, in the order of all listings and results. A new backend is one row in backends.cpp.
 std::span<const BackendInfo> backends();
 
-/// The TABLE of published_dressing.h as rows for garments, with the role `as_published`.
+/// The rows of the TABLE of published dressings (garment/stepping/published_dressing.h), in its order. They
+/// step only garments, and have the role `as_published`.
 std::span<const BackendInfo> garment_backends();
 
 /// The instruction sets of vector code (has_vectors) that this CPU supports, by Highway's names, the best
@@ -102,7 +104,8 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
 /// Why the row steps neither cloths nor bodies with this integrator; empty if it may.
 std::string unsupported_reason(const BackendInfo& backend, const Integrator& integrator);
 
-/// Makes the backend for any system. Throws Unavailable, Unsupported or BackendFailure.
+/// Makes the backend for any system. `system` must outlive it. Throws Unavailable, Unsupported or
+/// BackendFailure.
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& options);
@@ -148,8 +151,9 @@ inline bool steps_bodies(const BackendInfo& backend) {
 std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options);
 
 /// The integrator in double precision on one thread, at the system's start: the reference for verifying every
-/// timed row. Solvers of implicit integrators iterate until they improve no more; if `stop` returns true, a
-/// long step ends with a useless state. `system` must outlive it. Throws Unsupported for a garment.
+/// timed row. Solvers of implicit integrators iterate until they improve no more; a long step ends when
+/// `stop` returns true, and the state is then useless. `system` must outlive it. Throws Unsupported for a
+/// garment.
 std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s,
                                         const std::function<bool()>& stop = {});
 
@@ -157,7 +161,8 @@ std::unique_ptr<Backend> make_reference(const System& system, const Integrator& 
 MemoryUse reference_memory(const Integrator& integrator, bool grid);
 
 /// Runs mssim as another process for try_driver (devices/drivers.h) with these arguments: makes the backend
-/// for a small system, and ends with exit code 0 even if that throws: the requester then throws the same.
+/// for a small system, and ends with exit code 0 even if that throws: the requesting process then throws the
+/// same.
 [[noreturn]] void run_driver_trial(std::span<char*> arguments);
 
 }  // namespace mssim

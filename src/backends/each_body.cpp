@@ -9,6 +9,7 @@
 namespace mssim {
 namespace {
 
+/// A body as a system of its own.
 struct OneBody {
   System system;
   std::vector<std::uint32_t> scene_node;  ///< [nodes] ascending

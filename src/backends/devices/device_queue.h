@@ -41,9 +41,10 @@ std::string slices_program_text(std::size_t slice_nodes, int lanes, std::initial
 ///
 /// In shared memory, on a device that shares the host's memory, the array is in aligned host memory and is
 /// never copied; if the device supports it, it is fine-grained shared virtual memory, and changing hands
-/// needs no command in the queue: a step of hybrid on bodies38233 takes 0.8 of the time. On a device with its
-/// own memory the array is there, and the driver copies it when the host maps or unmaps it. In copied memory
-/// there are two arrays, one on the device and one on the host; mapping and unmapping transfer explicitly.
+/// needs no command in the queue. With PoCL, such commands took a fifth of a step of hybrid on bodies38233.
+/// On a device with its own memory the array is there, and the driver copies it when the host maps or unmaps
+/// it. In copied memory there are two arrays, one on the device and one on the host; mapping and unmapping
+/// are the explicit transfers between them.
 template <class T>
 class OpenclBuffer {
  public:
@@ -66,7 +67,8 @@ class OpenclBuffer {
       aligned(memory_.get());
       if (alignment == huge_page) wish_for_huge_pages(memory_.get(), bytes);
     }
-    // A buffer made from shared virtual memory is that memory (OpenCL 3.0, clCreateBuffer).
+    // A buffer made from shared virtual memory is that memory (The OpenCL Specification, 3.0,
+    // clCreateBuffer).
     if (memory_ && exchange_ != Exchange::copies) {
       buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory_.get());
     } else {
@@ -128,7 +130,8 @@ class OpenclBuffer {
     return {static_cast<T*>(clSVMAlloc(context(), flags, bytes, 0)),
             [context](T* memory) { clSVMFree(context(), memory); }};
   }
-  /// The driver's memory, if vectors can be loaded from it: not every driver aligns as OpenCL requires.
+  /// The driver's memory, if vectors can be loaded from it: not every driver gives the alignment that OpenCL
+  /// requires.
   static T* aligned(void* memory) {
     constexpr std::uintptr_t vector_bytes = 64;
     if (reinterpret_cast<std::uintptr_t>(memory) % vector_bytes != 0)
@@ -179,7 +182,8 @@ struct Launch {
   WorkItems items;
 };
 
-/// A device as one backend uses it: arrays, programs, and a queue of launches. All may throw cl::Error.
+/// A device as used by one backend: arrays that host and device use in turn, programs, and a queue of
+/// launches in order. All functions may throw cl::Error.
 class DeviceQueue {
  public:
   DeviceQueue(const OpenclDevice& device, DeviceMemory memory)
@@ -235,7 +239,8 @@ class DeviceQueue {
   bool runs_on_host() const { return device_.type == OpenclDeviceType::cpu; }
 
  private:
-  /// Launches between two waits for an empty queue, rare enough to cost nothing: a limit for drivers.
+  /// Launches between two waits for an empty queue: waits are rare enough to cost nothing, and a driver never
+  /// has more unfinished commands than this.
   static constexpr std::size_t longest_queue = 256;
 
   OpenclDevice device_;
@@ -244,7 +249,8 @@ class DeviceQueue {
   cl::CommandQueue commands_;
 };
 
-/// Takes some steps and returns to `start`: drivers finish compiling at a kernel's first launch.
+/// Takes some steps and then returns to `start`: drivers finish compiling at a kernel's first launch with a
+/// range.
 template <class Stepped>
 void warm_up(Stepped& backend, const State& start, int steps) {
   const CompileTimer timer;

@@ -72,7 +72,8 @@ Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
   return answer;
 }
 
-/// Queries each driver separately; registers those that survive in `folder`, and returns how others ended.
+/// Queries each driver separately; registers the surviving ones in `folder`, and returns how the others
+/// ended.
 std::vector<std::string> keep_survivors(const std::vector<RegisteredDriver>& drivers,
                                         const std::filesystem::path& folder) {
   std::vector<std::string> troubles;
@@ -140,6 +141,7 @@ OpenclDevice described(cl_device_id id, const std::string& platform, int number)
           .id = id};
 }
 
+/// Adds the devices of a platform to the offer.
 void take_devices(const cl::Platform& platform, const std::string& pocl_failure, OpenclOffer& offer) {
   const std::string name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
   const auto driver = [&] { return fmt::format("the OpenCL driver \"{}\"", name); };

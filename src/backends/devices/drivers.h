@@ -26,7 +26,8 @@ const OpenclOffer& opencl_offer();
 /// Disables trials in another process: this process is itself one that drivers may crash.
 void rely_on_opencl_drivers();
 
-/// This machine's device that `wanted` names (choose_opencl_device). Throws Unavailable if there is none.
+/// The device of this machine that `wanted` names (choose_opencl_device). Throws Unavailable if there is
+/// none.
 OpenclDevice find_opencl_device(std::string_view wanted);
 /// The device that options.device names; if it is a CPU, part_of() it with options.threads.
 OpenclDevice device_for(const ExecutionOptions& options);
@@ -53,7 +54,8 @@ inline constexpr std::string_view driver_trial_word = "--driver-trial";
 DriverTrial driver_trial_from(std::span<char*> arguments);
 
 /// Tries it, once per process and unless this process is itself a trial (rely_on_opencl_drivers). Throws
-/// Unavailable, with its last words, if the driver crashed or took half an hour, and Interrupted.
+/// Unavailable if the driver crashed the other process or did not finish in half an hour; the sentence has
+/// the driver's last words. Throws Interrupted.
 void try_driver(const DriverTrial& trial, const OpenclDevice& device);
 
 /// Adds the time for which it lives to compile_seconds().

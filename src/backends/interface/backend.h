@@ -32,7 +32,8 @@ struct Communication {
   double packing = 0;
   double bytes = 0;     ///< sent per step by the process that sends most
   double messages = 0;  ///< sent per step by that process
-  /// Half of a small message's round-trip time to a neighbour, s, over the slowest link; nothing without one.
+  /// Half of the round-trip time of a message of a few bytes to a neighbour, s, over the slowest link;
+  /// nothing if there is no neighbour.
   std::optional<double> latency_s;
   std::optional<double> bytes_per_second;  ///< of large messages to a neighbour, over the slowest link
 
@@ -61,7 +62,7 @@ struct ExecutionOptions {
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
   DeviceMemory memory = DeviceMemory::shared;  ///< for backends that use a device
   Roots roots = Roots::fast;
-  std::string instruction_set = {};       ///< Highway's name of that of vector code; empty: the best
+  std::string instruction_set = {};       ///< of vector code, by Highway's name; empty: the best
   std::string scene = {};                 ///< the scene's name, for users' programs
   std::filesystem::path scene_file = {};  ///< the scene's file, for users' programs
   int ranks = 0;                          ///< processes of a program with ranks; 0: as many as threads
@@ -97,7 +98,8 @@ inline double require_uniform_mass(const System& system) {
 /// Whether the system is stepped with Algorithm 1 (garment/stepping/).
 inline bool is_garment(const System& system) { return std::holds_alternative<Garment>(system.topology); }
 
-/// A running simulation. All calls block until their work is done, so they can be timed.
+/// A running simulation. All calls block until their work is done, so a caller may read the clock around
+/// them.
 class Backend {
  public:
   Backend() = default;
@@ -120,7 +122,8 @@ class Backend {
   /// Whole steps per pass over the state in memory, if stages overlap; 0 if every stage makes its own pass.
   /// The memory traffic of a step is derived from it.
   virtual int steps_per_pass() const { return 0; }
-  /// Springs whose ends and rest lengths a step reads, if fewer than the system's: alike bodies share them.
+  /// Springs whose ends and rest lengths a step reads from memory, if fewer than the system's: identical
+  /// bodies can share theirs.
   virtual std::optional<std::uint64_t> stored_springs() const { return std::nullopt; }
   /// Do the steps run on this machine's CPU and memory, with whose peaks the roofline compares?
   virtual bool runs_on_host() const { return true; }
@@ -130,11 +133,13 @@ class Backend {
   virtual std::string reason_not_to_time() const { return {}; }
   /// Why it uses more CPUs than requested, if it does.
   virtual std::string reason_for_excess() const { return "the driver of " + device() + " cannot divide it"; }
-  /// Costs of communication since the last call; nothing with one process or if a program reports none.
+  /// Costs of communication since the last call; nothing if there is only one process or a program does not
+  /// report them.
   virtual std::optional<Communication> communication() { return std::nullopt; }
   /// Called before an idle period. The backend must not consume CPU time until its next call.
   virtual void rest() {}
-  /// Ends the backend's program, if any, and returns its last output. Only end() may be called afterwards.
+  /// Ends the backend's program, if it has one, and returns its last output. Only end() may be called
+  /// afterwards.
   virtual std::string end() { return {}; }
   /// CPU time so far of the process that takes the steps, s.
   virtual double processor_seconds() const {
@@ -184,11 +189,13 @@ class WindowBackend : public Backend {
 };
 
 /// Moves positions back along the velocities, from those that an integrator `seconds` ahead uses to those of
-/// the state. A node that has just touched the floor (its height in m) and would move below it is put on it.
+/// the state. A node that this would move below the floor (its height in m), because it has just touched it,
+/// is put on the floor.
 void move_back(State& state, double seconds, double floor);
 
 /// Adapts `backend`, whose stages see positions integrator.ahead of a step ahead of the state's: moves states
-/// along their velocities on the way in, and back on the way out. `system` must outlive it. Else returns it.
+/// along their velocities on the way in, and back on the way out. `system` must outlive it. An integrator
+/// that is not ahead leaves the backend unchanged.
 std::unique_ptr<Backend> step_ahead(std::unique_ptr<Backend> backend, const System& system,
                                     const Integrator& integrator, double dt_s);
 

@@ -261,6 +261,7 @@ std::string kernel_text(const StoredStage& stage, const MeshText& mesh) {
   return text.str();
 }
 
+/// The common text followed by a kernel for each stage.
 std::string with_kernels(std::string text, const Integrator& integrator, const MeshText& mesh) {
   for (std::size_t number = 0; number < integrator.stage_count; ++number) {
     const StoredStage stage{integrator, number, Storage::separate};
@@ -319,7 +320,8 @@ std::string mesh_program_text(const Integrator& integrator, int lanes) {
 }
 
 std::size_t alike_slice_lanes(int lanes) {
-  // If a work-item owns one node, slices of as many bodies as CPU vectors have lanes leave few lanes empty.
+  // If a work-item owns one node, slices of as many bodies as vectors on CPUs have lanes leave few lanes
+  // empty.
   return lanes > 1 ? static_cast<std::size_t>(lanes) : 16;
 }
 

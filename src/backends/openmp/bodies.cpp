@@ -10,7 +10,8 @@
 namespace mssim {
 namespace {
 
-/// Cost of a chunk, some microseconds, in entries or springs of all lanes, unless that makes too many chunks.
+/// Cost of a chunk, in entries of slices or in springs of all lanes, unless that makes too many chunks: some
+/// microseconds.
 constexpr std::size_t chunk_cost = 1024;
 
 /// Minimum number of chunks per thread: awake threads can then take over small parts of a sleeping thread's
@@ -39,7 +40,8 @@ std::vector<IndexRange> balanced_chunks(const std::vector<std::uint32_t>& first_
 constexpr std::size_t node_cost = 2;
 
 /// Springs per spin of a waiting thread: a spin takes 35 ns on an Intel Xeon, a vector of springs 5. A thread
-/// that slept must wake up before another has finished both shares, which it would otherwise keep.
+/// that slept while another one did its share must wake up before the other thread has finished both shares;
+/// otherwise that one would keep doing both.
 constexpr std::size_t springs_a_spin = 4;
 
 /// Limit of spinning: about a tenth of a millisecond.

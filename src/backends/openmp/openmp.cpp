@@ -20,7 +20,8 @@ namespace {
 
 /// The narrowest kernel that needs no more vectors for the springs of these bodies than `best`, rounds as
 /// often, and has `roots`: seven bodies leave nine of 16 lanes empty. On two Zen 4 cores, bodies20587, AVX2
-/// instead of AVX-512: 0.75 of the time with one thread, 0.57 to 0.70 with two.
+/// instead of AVX-512: 0.75 of the time with one thread and 0.57 to 0.70 with two, although AVX2's code uses
+/// roots and divisions.
 StepKernel<BodyLanes> narrowest_kernel(const std::vector<StepKernel<BodyLanes>>& kernels,
                                        const StepKernel<BodyLanes>& best,
                                        const std::vector<AlikeBodies>& bodies, Roots roots) {
@@ -44,7 +45,8 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
   }
   const std::vector<StepKernel<BodyLanes>> kernels = step_kernels<BodyLanes>(integrator);
   StepKernel<BodyLanes> abreast = kernel_named(kernels, instruction_set);
-  // A vector of springs takes a third of two entries of slices, which compute twice but fill all lanes.
+  // A vector of springs takes a third of the time of two entries of slices, which compute each spring twice
+  // but leave no lane empty.
   constexpr double lanes_per_body = 3;
   if (const auto alike = alike_bodies_for(system, abreast.lanes, lanes_per_body)) {
     if (roots) abreast = narrowest_kernel(kernels, abreast, *alike, *roots);

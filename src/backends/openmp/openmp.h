@@ -10,23 +10,26 @@ namespace mssim {
 
 /// The harness's own multi-threaded CPU code for cloths and bodies: vectors over bands of a cloth (BandGrid)
 /// or over bodies (SlicedBodies, BodyLanes), fused stages, columns or slices distributed over OpenMP threads,
-/// bitwise identical for every number of threads. Uses options.instruction_set or else the best one with
-/// options.roots; for alike bodies a narrower one that needs no more vectors. Throws Unsupported for a
-/// garment, for bodies with springs of different materials at a node, and for more nodes than the layout can
-/// number.
+/// bitwise identical for every number of threads. Uses options.instruction_set, or if that is empty the best
+/// one with options.roots; for alike bodies a narrower one that needs no more vectors. Throws Unsupported for
+/// a garment, for bodies with springs of different materials at a node, and for more nodes than the layout
+/// can number, and Unavailable if the instruction set has no code here with options.roots.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 
 /// The instruction sets for which its vector code is compiled and which this CPU supports, by Highway's
 /// names, the best first. The order of every sum is the scene's (a column's nodes from the top, a body's
-/// neighbours by their number), independent of lanes. So, with exact roots (has_exact_roots), all that fuse
-/// multiply-adds (AVX2, NEON) are bitwise identical, as are all that round twice (SSE4, plain floats).
+/// neighbours by their number), independent of lanes. So, of those with exact roots (has_exact_roots), all
+/// that fuse multiply-adds (AVX2, NEON) are bitwise identical, and so are all that round twice (SSE4, plain
+/// floats).
 std::vector<std::string_view> openmp_instruction_sets();
 
-/// Whether that instruction set's code has exact roots (Roots::exact), not from the CPU's estimate.
+/// Whether that instruction set's code computes roots exactly (Roots::exact) instead of from the CPU's
+/// estimate.
 bool has_exact_roots(std::string_view instruction_set);
 
-/// make_openmp for one of those instruction sets, however wide. Throws std::invalid_argument for another.
+/// make_openmp with the vector code for one of those instruction sets, however wide. Throws
+/// std::invalid_argument if it is not among them.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options, std::string_view instruction_set);
 

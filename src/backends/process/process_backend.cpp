@@ -58,7 +58,8 @@ using namespace std::chrono_literals;
 
 /// Time for a program to end after it was asked to.
 constexpr std::chrono::milliseconds patience = 2s;
-/// Time after a program has closed its connection, in which it prints the reason, or its launcher learns it.
+/// Time after a program has closed its connection: it may still print the reason, and a launcher takes
+/// seconds to learn that its remote processes have ended.
 constexpr std::chrono::milliseconds patience_for_reasons = 8s;
 /// Maximum number of a program's answers to `prepare`.
 constexpr int most_lines = 100;
@@ -75,7 +76,8 @@ std::string last_line(std::string_view output) {
   return "";
 }
 
-/// Calls `work`. Throws BackendFailure for failures with files, sockets or processes of this program.
+/// Calls `work`. A failure with files, sockets or processes concerns only this program: throws BackendFailure
+/// for it.
 template <class Work>
 std::invoke_result_t<Work> failing_alone(const Work& work) {
   try {
@@ -204,7 +206,8 @@ class ProcessBackend final : public WindowBackend {
     }
   }
 
-  /// Ends the program and throws BackendFailure: its name, this predicate and, if asked, its last output.
+  /// Ends the program and throws BackendFailure: its name, this predicate and, if requested, the last line of
+  /// its output.
   [[noreturn]] void fail(const std::string& predicate, bool with_last_line = false, bool late = false) const {
     const std::string output = process_->end(0ms).output;
     std::string sentence = program_.name + ' ' + predicate;

@@ -27,7 +27,8 @@ struct BackendProgram {
   /// It runs in several processes (--ranks), and builds its parts of a cloth from the scene file.
   bool in_ranks = false;
   int ranks = 0;  ///< processes set by its name, as in mpi:4; 0: --ranks
-  /// Supports `restart` and `get ROW COLUMN ROWS COLUMNS` of docs/protocol.md; only with ranks.
+  /// It supports the requests `restart` and `get ROW COLUMN ROWS COLUMNS` of docs/protocol.md; only with
+  /// ranks.
   bool has_windows = false;
 };
 

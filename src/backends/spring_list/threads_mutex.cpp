@@ -15,8 +15,9 @@ namespace mssim {
 namespace {
 
 /// Springs that a thread computes per critical section. The paper does not state how many springs one lock
-/// covers; with one, nearly all time would be spent on locking (and the paper's speed-up of 3 to 4.6 on four
-/// cores would be impossible), so a thread computes a block that fits its first-level cache.
+/// covers; with one spring per lock nearly all time would be spent on locking (and the paper's speed-up of 3
+/// to 4.6 on four cores would be impossible), so a thread computes a block, small enough for its first-level
+/// cache.
 constexpr std::size_t block_springs = 512;
 
 /// Its threads sleep between calls and end in rest().

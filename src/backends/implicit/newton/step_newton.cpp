@@ -1,4 +1,5 @@
-// The threads of a step, which run newton_method.h, and the equation's functions for a chunk of nodes.
+// The threads of a step, each running the methods of newton_method.h, and the equation's functions for a
+// chunk of nodes.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -304,7 +305,8 @@ class TeamEquation {
   /// The sum of act(chunk) over all chunks of all threads, when all have called it.
   template <class Act>
   double sum_over_chunks(Act&& act) {
-    // A thread still adding this sum may overlap with one that writes the next sum's parts, but no later one.
+    // A thread still adding this sum may overlap with one that writes the next sum's parts, but not the one
+    // after.
     std::vector<double>& sums = shared_.sums[sums_++ % 2];
     for (std::size_t chunk = begin_; chunk < end_; ++chunk) sums[chunk] = act(shared_.nodes.chunks[chunk]);
     barrier_.wait();
