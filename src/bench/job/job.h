@@ -62,7 +62,8 @@ struct BenchSettings {
   int rounds = 0;                   ///< an upper limit if there is a deadline
   std::optional<int> windows = {};  ///< number of windows in which a cloth is verified instead of as a whole
   double sample_seconds = 0.1;      ///< target length of a sample
-  std::optional<double> fps = {};   ///< also times single frames of this rate, timed_frames of each row
+  /// Frames per second of simulated time, of which timed_frames are also timed for each row; none: no frames.
+  std::optional<double> fps = {};
   std::optional<ReferenceCache> references = {};  ///< none: references are not kept for later runs
   /// Rows of an earlier process of the same program that verified every combination. If set, only samples are
   /// taken, of the combinations that these rows verify.
@@ -72,7 +73,7 @@ struct BenchSettings {
 /// Frames of a row that are timed: the 99th percentile is the third largest.
 inline constexpr int timed_frames = 300;
 
-/// Steps of a frame, at least 1.
+/// Steps of `dt_s` (s) in a frame of 1 / `fps` s of simulated time, rounded; at least 1.
 inline int steps_of_frame(double fps, double dt_s) {
   return static_cast<int>(std::clamp(std::round(1 / (fps * dt_s)), 1.0, 1e9));
 }
@@ -97,7 +98,7 @@ struct SceneJob : BenchSettings {
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   /// Approximate share of the time before the rounds in the whole; for the progress only.
   double preparation = 0.3;
-  std::filesystem::path root = "/";     ///< of the files in which the system tells energies
+  std::filesystem::path root = "/";     ///< for PackageEnergy
   std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
 };
 
@@ -106,7 +107,7 @@ struct Combination {
   ResultRow row;
   const Integrator* integrator = nullptr;
   bool on_host = true;
-  bool in_double = false;  ///< so that the bytes of a step are not those of the roofline
+  bool in_double = false;  ///< its steps move more bytes than the roofline counts, so it gets none
   int steps_per_pass = 0;
   std::optional<std::uint64_t> stored_springs;
   const State* start = nullptr;         ///< start state of every sample of a round
@@ -117,11 +118,11 @@ struct Combination {
   int steps = 1;                        ///< in a sample
   int most_steps = max_sample_steps;    ///< per sample, so that its end can be compared with the reference
   std::vector<double> processors;       ///< processor seconds per second, for each sample of this run
-  std::vector<double> joules;           ///< per step, for each sample of this run, if the system tells
+  std::vector<double> joules;           ///< J per step, for each sample of this run, if the system tells
   PackageEnergy energy;
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
-  std::vector<double> sample_seconds;        ///< for each sample of this run
+  std::vector<double> sample_seconds;        ///< wall time of each sample of this run
   /// For each sample of this run, s: how much longer its end state takes to read than a state after one step;
   /// 0 if it is read faster than its steps were taken.
   std::vector<double> postponed_seconds;
@@ -131,8 +132,9 @@ struct Combination {
   std::function<Verification(WindowBackend& backend, int steps)> compare_windows;
 };
 
-/// Makes the backend; if that is impossible, the row's status has the reason. `start`: start state of its
-/// samples; must outlive the combination.
+/// Makes the backend and takes one step, for PreparationCosts; if that is impossible, the row's status has
+/// the reason. Only one may be made at a time, because MemoryPeak measures the process. `start`: start state
+/// of its samples; must outlive the combination.
 Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
                              const State& start);
 
@@ -169,9 +171,9 @@ void calibrate(Combination& combination, const SceneJob& job);
 std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
                                 std::optional<std::size_t> first);
 
-/// Times job.fps frames one after the other, each by itself. Returns to the start of samples before a frame
-/// would simulate further than samples may. Ends without a result if `stop` returns true. The row fails if
-/// the result is not finite, or if the backend's program fails.
+/// Times timed_frames frames of 1 / job.fps s of simulated time one after the other, each by itself. Returns
+/// to the start of samples before a frame would simulate further than samples may. Ends without a result if
+/// `stop` returns true. The row fails if the result is not finite, or if the backend's program fails.
 void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop);
 
 /// Fails the combination if its samples show that steps are not taken while the clock runs, but when the
@@ -186,7 +188,7 @@ void summarise(ResultRow& row, const ResultRow* serial);
 /// less time than the clock resolves. The first one makes a row fail that was ok.
 void require_finite(ResultRow& row);
 
-/// Adds medians of the other costs of this run's samples to the row: processors, and communication.
+/// Adds medians of the other costs of this run's samples to the row: processors, energy, and communication.
 void summarise_costs(const Combination& combination, ResultRow& row);
 
 }  // namespace mssim

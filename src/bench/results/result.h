@@ -77,13 +77,14 @@ struct MeasuredCosts {
       link_gigabytes_per_second;
 };
 
-/// Costs of a row before its first sample.
+/// Costs of a row before it is verified: of its set-up and its first step (MemoryPeak). Empty if they were
+/// not measured.
 struct PreparationCosts {
   std::optional<double> setup_s, compile_s, first_step_ms;
   std::optional<std::uint64_t> peak_memory_bytes;
 };
 
-/// Times of single frames, after the samples.
+/// Times of single frames, measured after the samples: percentiles. Empty without --fps.
 struct FrameTimes {
   std::optional<std::uint64_t> frame_steps;
   std::optional<double> frame_p50_ms, frame_p95_ms, frame_p99_ms;
