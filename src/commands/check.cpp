@@ -58,7 +58,8 @@ bool can_step(const SceneSize& size, const Integrator& integrator, const Backend
 }
 
 /// A row for each integrator and backend that can step the scene: the largest stable dt, the memory of a
-/// bench with all processors, and the expected times of a bench and a run of default length.
+/// bench of this combination with all processors, and the expected times of a bench and a run of default
+/// length.
 Table combination_table(const PreparedScene& scene, const SceneSize& size, const ModeBound& modes) {
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
   Table table;
@@ -86,7 +87,8 @@ std::vector<const Integrator*> usual_integrators() {
   return mapped<const Integrator*>(comparison_of_suite("").integrators, find_integrator);
 }
 
-/// A warning about default integrators with which the scene may blow up, by a safe limit; or empty.
+/// A warning about the default integrators with which the scene may blow up, according to a limit on the safe
+/// side. Empty if there is none.
 std::string warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
   std::vector<std::string_view> unstable;
   double smallest = scene.dt_s;

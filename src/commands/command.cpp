@@ -63,7 +63,8 @@ constexpr std::string_view exit_codes =
     "input; 3 a requested device or program is missing; 4 a file could not be\n"
     "written, or a trace could not be read.";
 
-/// mssim's first argument when a shell asks for completions of the last word that follows (src/completion).
+/// mssim's first argument when a shell asks what may stand in the place of the last of the words that follow
+/// (src/completion).
 constexpr std::string_view complete_word = "--complete";
 
 /// A user may name a scene without --scene before it.

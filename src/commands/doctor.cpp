@@ -39,7 +39,8 @@ std::string gigabytes(std::uint64_t bytes) {
   return fmt::format("{:.3g} GB", static_cast<double>(bytes) * 1e-9);
 }
 
-/// The finding that `look` completes; if it throws, the thing is missing; its sentence says the remedy.
+/// The finding that `look` completes; if it throws, the thing is missing, and the exception's sentence says
+/// how to get it.
 Checkup looked_at(std::string item, std::string use, const std::function<void(Checkup& finding)>& look) {
   Checkup finding{.item = std::move(item), .use = std::move(use)};
   try {

@@ -56,7 +56,8 @@ int add(const HistoryOptions& options) {
   return exit_ok;
 }
 
-/// The tables of all machines: for a terminal each below its name, else in one, with a first column of names.
+/// The tables of all machines: for a terminal each below the machine's name, else in one, with the name as
+/// the first column.
 std::string to_text(const std::vector<MachineHistory>& machines, double threshold, ListingFormat format) {
   std::string text;
   Table all;

@@ -149,7 +149,7 @@ Table list_claims(const ListOptions& /*options*/) {
   return table;
 }
 
-/// The TABLE of what can be listed: a table, or the schema of a JSON file as it is.
+/// The TABLE of what can be listed: a table, or the schema of a JSON file, which is printed as it is.
 struct Listed {
   std::string_view name;
   Table (*list)(const ListOptions& options);

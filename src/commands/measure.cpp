@@ -125,8 +125,9 @@ ordered_json garment_for(const BodyFile& body, const ordered_json& garment) {
   return changed;
 }
 
-/// The mass of a node is proportional to the area of its cell, smaller in smaller jeans of as many nodes; dt
-/// is proportional to the root of the mass. Rounds down to two digits, at most the template's dt.
+/// The mass of a node is proportional to the area of its cell, which is smaller in smaller jeans of as many
+/// nodes; dt is proportional to the square root of the mass. Rounds down to two digits, and never exceeds the
+/// template's tested dt.
 double shorter_dt(double dt_s, const JeansMeasures& jeans, double hip_girth) {
   const JeansMeasures reference;
   constexpr double reference_hip = 0.98;

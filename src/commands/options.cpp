@@ -34,7 +34,8 @@ std::vector<std::size_t> all_of(std::size_t frames) {
   return list;
 }
 
-/// Length of the first name or file in the text. A file, of a scene or backend, is a path that exists.
+/// Length of the first name or file in the text. Files of scenes and of backends are recognised in the same
+/// way: a path that exists.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;

@@ -27,17 +27,20 @@ struct FrameOptions {
 /// Declares --frames and --time; returns --time. `options` must outlive the parsing.
 Argument declare_frames(Arguments& arguments, FrameOptions& options);
 
-/// The numbers of the chosen frames in a trace with these times; by default all. Throws UsageError.
+/// The numbers of the chosen frames in a trace with these times; all if neither option is given. Throws
+/// UsageError.
 std::vector<std::size_t> chosen_frames(const FrameOptions& options, const std::vector<double>& times_s);
 
 /// Parses --frames: frame numbers from 0, ranges and `last`, separated by commas ("0,10-20,last"), or only
 /// `all`. Throws UsageError, also for a frame that a trace of `frames` frames does not have.
 std::vector<std::size_t> listed_frames(const std::vector<std::string>& words, std::size_t frames);
 
-/// The frame nearest to a time, s. Throws UsageError for one after the last frame by more than its interval.
+/// The frame nearest to a time, s. Throws UsageError for a time that is after the last frame by more than
+/// the interval before it.
 std::size_t frame_at(double time_s, const std::vector<double>& times_s);
 
-/// `count` of `frames`, evenly spread from first to last (of one, the last); all if there are no more.
+/// `count` of `frames`, evenly spread from the first to the last (of one, the last); all if there are no
+/// more.
 std::vector<std::size_t> spread_over(const std::vector<std::size_t>& frames, std::size_t count);
 
 /// Default size of single pictures.
@@ -55,14 +58,16 @@ struct PictureChoice {
 void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::string& usual_size,
                       std::optional<Argument> needed = {});
 
-/// Options of pictures drawn by `threads` threads. `usual_size` is WIDTHxHEIGHT. Throws UsageError.
+/// The options of pictures that are drawn by `threads` threads. `usual_size` is WIDTHxHEIGHT. Throws
+/// UsageError.
 PictureOptions picture_options(const PictureChoice& choice, const std::string& usual_size, int threads);
 
 /// "WIDTHxHEIGHT" as two whole numbers from 1 to `most`; none for any other text.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_view text, std::uint32_t most);
 
-/// The scenes or backends in one argument. A comma separates two, unless it is part of the path of an
-/// existing file: from left to right, the longest is taken. Empty names are ignored.
+/// The scenes in one argument of --scene, or the backends in one of --backend. A comma separates two, unless
+/// it is part of the path of an existing file: from left to right, the longest such path is taken. Empty
+/// names between commas are ignored.
 std::vector<std::string> names_and_files_in(std::string_view argument);
 
 /// The names of the scenes that come with mssim. Throws SceneError.
@@ -89,8 +94,8 @@ Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
 void declare_listing_format(Arguments& arguments, ListingFormat& target);
 
 /// Declares --threads, --ranks, --launcher, --device, --memory, --roots and --instruction-set. If `threads`
-/// and `sets` are given, --threads and --instruction-set take several values into them. All must outlive the
-/// parsing.
+/// is given, --threads takes several numbers into it; if `sets` is given, --instruction-set takes several
+/// names into it. All must outlive the parsing.
 void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads = nullptr,
                        std::vector<std::string>* sets = nullptr);
 

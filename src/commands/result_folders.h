@@ -10,7 +10,7 @@ namespace mssim {
 
 /// Result folders as arguments of a command.
 
-/// Declares DIR, which may be several and is required. `target` must outlive the parsing.
+/// Declares DIR, which is required and may be given several times. `target` must outlive the parsing.
 void add_result_folders(Arguments& arguments, std::vector<std::string>& target);
 
 /// Reads the result folders that the given ones stand for, and what the papers say. Damaged parts are

@@ -38,6 +38,7 @@ const CLI::App& command_of(const CLI::App& app) {
   return parsed.empty() ? app : *parsed.back();
 }
 
+/// The command as a user types it.
 std::string typed_name(const CLI::App& command) {
   return command.get_parent() ? "mssim " + command.get_name() : "mssim";
 }
@@ -81,7 +82,7 @@ std::string subject_of(std::string_view message) {
   return std::string(message.substr(0, message.find_first_of(": ")));
 }
 
-/// Message for a missing argument, with what it needs.
+/// Message for a missing option or argument, with the value that it needs.
 std::string missing(const std::string& name, const CLI::App& command) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return name + " is missing";
