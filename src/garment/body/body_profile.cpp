@@ -53,7 +53,8 @@ class Half {
   double covered_ = 0;
 };
 
-/// The gap between the legs at this height; none without a division into two halves of about equal width.
+/// The gap between the legs at this height; none if the section does not divide into two halves of about
+/// equal width.
 std::optional<LegGap> leg_gap(const Surface& body, double height) {
   constexpr double least_gap = 1e-3;  // of the section's width: more than gaps by rounding
   // Width over that of the wider half; hands and objects next to the body are narrower.
@@ -81,7 +82,8 @@ std::optional<LegGap> leg_gap(const Surface& body, double height) {
 
 using Corners = std::array<Vec3d, 3>;
 
-/// Calls `visit` with a triangle's corners in `coordinate` = `value`, and points where edges cross it.
+/// Calls `visit` with each corner of a triangle in the plane of constant `coordinate` = `value`, and with
+/// each point in which an edge passes through that plane.
 template <class Visit>
 void cut(const Corners& corners, double Vec3d::*coordinate, double value, const Visit& visit) {
   const auto [low, high] =

@@ -193,7 +193,8 @@ class Tube {
 
 double between(double from, double to, double fraction) { return from + (to - from) * fraction; }
 
-/// Sections of the torso and the leg at x > 0. Values without a measure are in proportion to the reference.
+/// Sections of the torso and of the leg at x > 0. Values that the measures do not give are in proportion to
+/// the reference body's.
 class Figure {
  public:
   explicit Figure(const BodyMeasures& measures) : m_(measures) {
@@ -270,7 +271,8 @@ class Figure {
     double fraction;      ///< of the way from the crotch up to the hip
     double width, depth;  ///< fractions of the hip's
   };
-  /// Wide near the crotch, without a dent above the thighs; deep only higher up: nothing hangs over them.
+  /// Wide near the crotch, so that the outline has no dent between thighs and hip; deep only higher up, so
+  /// that belly and seat do not hang over the thighs.
   static constexpr std::array<SeatPart, 6> seat{{{0, 0.45, 0.30},
                                                  {0.05, 0.70, 0.43},
                                                  {0.12, 0.83, 0.55},
@@ -326,6 +328,7 @@ class Figure {
   double thigh_axis_ = 0;  ///< x of the leg's middle at the thigh's height
 };
 
+/// The sections mirrored in x.
 std::vector<EllipseSection> mirrored(std::vector<EllipseSection> sections) {
   for (EllipseSection& section : sections) {
     std::swap(section.x_min, section.x_max);

@@ -81,7 +81,8 @@ void measure_side_distance(const CloseCloth& close, const std::vector<Vec3d>& po
   fit.side_distance_height = points[static_cast<std::size_t>(farthest - distances.begin())].y;
 }
 
-/// Whether the spring's elongation counts: it spans one cell. Bending springs, two cells long, may bend.
+/// Whether the elongation of a spring of the 12-neighbour stencil counts: it spans a single cell. Bending
+/// springs, two cells long, may change length by bending.
 bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
   const GarmentPanel& panel = garment.panel_of(spring.first);
   const std::uint32_t first = spring.first - panel.first_node, second = spring.second - panel.first_node;
@@ -191,6 +192,7 @@ constexpr Diagnosis pierced{"the body comes through", "a larger skin_m or more n
 constexpr Diagnosis stretched{"the cloth is stretched",
                               "a wider garment (hip_ease_m, waist_ease_m) or stiffer cloth"};
 
+/// Units of a number.
 struct Unit {
   double per_unit;          ///< factor to the unit at the end of the number's name
   std::string_view spoken;  ///< unit in a sentence, with a leading space

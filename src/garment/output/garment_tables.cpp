@@ -36,7 +36,8 @@ std::optional<double> ms_per_iteration(const DressingRecord& dressing) {
 /// A line of a table: backend and integrator.
 using Line = std::pair<std::string, std::string>;
 
-/// The table's layout: columns of scenes, by vertices; lines of combinations that have dressed any scene.
+/// The layout of the table. Its columns are scenes, by number of vertices; its lines are combinations that
+/// have dressed any scene.
 struct Layout {
   explicit Layout(Rows all) : rows(std::move(all)) {
     for (const ResultRow* row : rows) {

@@ -22,10 +22,12 @@
 namespace mssim {
 namespace {
 
-/// Radius of curvature, as of a limb, down to which no face may let the body through: sagitta h^2 / 8 r.
+/// Radius of curvature down to which cloth, around a limb for example, must not let the body through the
+/// faces between its nodes: their sagitta is h^2 / 8 r.
 constexpr double least_curvature_radius_m = 0.04;
 
-/// A trouser leg starts this far outside the leg's middle: its halves are not drawn across the other leg.
+/// A trouser leg starts this far outside the leg's middle. From there, its halves close around the leg and
+/// are not drawn across the other leg.
 constexpr double beside_the_leg_m = 0.01;
 
 /// JSON pointers to a garment's pieces and jeans in its scene file.
@@ -101,7 +103,8 @@ OfHeight remembered(OfHeight function) {
   };
 }
 
-/// A body's measures for patterns, stored by height: mirrored panels and a second cut ask for them again.
+/// The measures of a body that patterns need, stored by height: mirrored panels, and a second cut with
+/// another offset, ask for the same heights again.
 struct AskedMeasures {
   const BodyProfile& profile;
   OfHeight girth = remembered([&of = profile](double y) { return of.hull_girth(y); });
@@ -159,6 +162,7 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, d
   if (garment.pieces) append_pieces(*garment.pieces, garment.cloth, pattern);
   GarmentBuild build = cut_and_placed(spec, pattern, body, jeans);
   const double cell = widest_mean_cell(pattern, build);
+  // Distance of the maps from the body: skin, and the sagitta of a face as wide as a cell.
   return {std::move(build), garment.skin_m + cell * cell / (8 * least_curvature_radius_m)};
 }
 
@@ -248,7 +252,8 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
   fields.one_of({"correction", "Section that describes the correction of over-elongated springs."}, sections);
 }
 
-/// Maps of the body for each layer. If layers touch, outer ones lie further out by the thickness beneath.
+/// The maps of the body for each layer. If layers touch, an outer one's lie further out by the thickness of
+/// those beneath.
 std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
                                                              const Surface& body, double offset) {
   std::uint32_t outermost = 0;
@@ -381,7 +386,8 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 /// pattern does not fit together.
 ///
 /// The built scene has the panels at rest around the body, and the maps of the body that they collide with.
-/// Its note names ignored parts of the body. Throws SceneError if the garment starts below the floor.
+/// Its note names the parts of the body that they ignore. Deterministic. Building it throws SceneError if the
+/// garment starts below the floor.
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));

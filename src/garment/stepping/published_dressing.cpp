@@ -96,7 +96,8 @@ ThreadSafeOrder thread_safe_order(std::size_t nodes, std::size_t count, std::siz
   return order;
 }
 
-/// Large enough for an iteration of a `parallel for`, small enough to give many threads work for small jeans.
+/// Large enough to be worth an iteration of a `parallel for`, and small enough to give many threads work for
+/// small jeans.
 constexpr std::size_t springs_of_a_batch = 128, joints_of_a_batch = 16;
 
 template <class Vector, bool parallel>
