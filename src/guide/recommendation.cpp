@@ -83,7 +83,8 @@ struct ErrorRange {
   std::optional<double> to;
 };
 
-/// Logarithm of the costs of `winner` over `other` at an error: infinite if one fails, negative if both do.
+/// Advantage in cost of `other` over `winner` at an error, as the logarithm of the ratio. If only one of them
+/// keeps the error, it is infinite, and negative if that is `winner`; it is negative, too, if neither does.
 double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winner, const GuidedMethod& other,
                     double error) {
   const auto mine = cost_at_error(points, other, error), its = cost_at_error(points, winner, error);
@@ -122,6 +123,7 @@ std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const G
   return ranges;
 }
 
+/// At most three ranges, in words.
 std::string in_words(std::span<const ErrorRange> ranges) {
   constexpr std::size_t most = 3;
   std::vector<std::string> texts;
@@ -219,7 +221,8 @@ std::string integrators_of(std::span<const Compared> compared) {
   return listed(mapped<std::string>(compared, &Compared::integrator));
 }
 
-/// Compares the order of integrators by time per step with that at the requested error; or empty.
+/// Compares the order of the integrators by time per step with that at the requested error; empty if fewer
+/// than two were measured.
 std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
   std::vector<Compared> all;
   for (const std::string_view name : paper_integrators) {
