@@ -58,7 +58,8 @@ struct PngWriter {
   ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
-/// Whether libpng wrote everything. Errors return here by longjmp: no variable in between has a destructor.
+/// Whether libpng wrote everything. On an error it returns here by longjmp, so no variable in between may
+/// have a destructor.
 bool write_png(png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_IHDR(png, info, picture.width, picture.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,

@@ -14,7 +14,8 @@ namespace mssim {
 /// Version of the lines of a history file that this mssim writes, and the only one that it reads.
 inline constexpr std::uint32_t history_version = 1;
 
-/// A line of a history file, a JSON object, without its line feed. Texts are cut to what reads back.
+/// A line of a history file, a JSON object, without its line feed. Texts are cut to the length that reads
+/// back.
 std::string history_line(const HistoryEntry& entry);
 
 /// The entries of a text with a JSON object per line (JSON Lines); empty lines are ignored. `file` is the

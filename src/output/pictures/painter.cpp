@@ -25,7 +25,8 @@ Vec3d normal_of(const Triangle& triangle, const std::vector<Vec3d>& points) {
   return size > 0 ? (1 / size) * normal : Vec3d{};
 }
 
-/// Sets of corners [3 triangle + corner] of one point: a node's, connected across edges that bend little.
+/// Sets of corners [3 triangle + corner] that share a point: corners at a node that are connected across
+/// edges that bend little.
 DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::vector<Vec3d>& start) {
   const double least_cosine = std::cos(40 * std::numbers::pi / 180);
   DisjointSets corners(3 * triangles.size());
