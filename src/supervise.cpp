@@ -113,14 +113,16 @@ struct Stat {
     if (file == nullptr) return;
     text[std::fread(text, 1, sizeof text - 1, file)] = 0;
     std::fclose(file);
-    // The name, in parentheses, may have any characters. The state is next; the times come 14 words later.
+    // The name, in parentheses, may contain any characters. The state is the first word after it; the times
+    // of children that were waited for are words 14 and 15.
     if (const char* rest = std::strrchr(text, ')'))
       std::sscanf(rest, ") %c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %lu %lu", &state, &parent,
                   &waited_user, &waited_system);
   }
 };
 
-/// Adds a process's children: from its threads' lists or, without those in the kernel, from a scan of all.
+/// Adds the children of a process: from the lists of its threads, or from a scan of all processes if the
+/// kernel was built without those lists.
 void add_children(pid_t process, Processes& all) {
   bool listed = false;
   char path[64];
@@ -182,7 +184,8 @@ void pause_all(pid_t program) {
   for (int looks = 0; looks < 500 && !all_rest(); ++looks) ::nanosleep(&look, nullptr);
 }
 
-/// CPU time of the program and its descendants: of living ones by their clocks, and of reaped ones.
+/// CPU time of the program and its descendants: of living ones by their clocks, and of those that were waited
+/// for.
 double processor_seconds() {
   rusage waited{};
   ::getrusage(RUSAGE_CHILDREN, &waited);
@@ -201,7 +204,8 @@ double processor_seconds() {
   return sum;
 }
 
-/// Sum of the largest resident memory of each living process of the program and its descendants.
+/// Sum of the largest resident memory that each living process of the program and its descendants has had,
+/// bytes; 0 if the system does not tell.
 std::uint64_t peak_bytes() {
   const Processes& living = descendants();
   std::uint64_t sum = 0;
@@ -217,7 +221,8 @@ std::uint64_t peak_bytes() {
   return sum;
 }
 
-/// Whether the program has ended. It stays unreaped, so that its group's number is kept; orphans are reaped.
+/// Whether the program has ended. It is not reaped yet, so that its group's number is not reused; its ended
+/// orphans are.
 bool has_ended(pid_t program) {
   while (true) {
     siginfo_t info{};
@@ -228,7 +233,8 @@ bool has_ended(pid_t program) {
 }
 
 /// Kills all descendants until none is left. Returns how the program ended. When a child dies, its children
-/// become ours and the next scan finds them: a scan after each death, and one per second for any missed.
+/// become ours and the next scan finds them: one scan after each death, and one per second in case a scan
+/// missed some.
 int end_all(pid_t program, int deaths) {
   static Processes children;
   int ending = 0;

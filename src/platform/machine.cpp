@@ -176,7 +176,8 @@ void add_group(ContainerLimits& limits, const Dialect& dialect, const fs::path& 
   take_least(limits.memory_left, bytes - std::min(bytes, in_use - files));
 }
 
-/// A line "NAME: NUMBER kB" of a file of /proc, in bytes.
+/// The number of a line "NAME NUMBER kB" of a file of /proc, in bytes; `name` ends in a colon. Nothing if
+/// there is no such line.
 std::optional<std::uint64_t> bytes_in(const char* file, std::string_view name) {
   std::ifstream in(file);
   for (std::string key; in >> key;) {
@@ -203,7 +204,8 @@ std::string in_gigabytes(std::uint64_t bytes, int digits) {
 }
 
 constexpr const char* spin_variable = "GOMP_SPINCOUNT";
-/// Tens to hundreds of microseconds, by the CPU's pause. The sign, only this program's, shows a restart.
+/// Tens to hundreds of microseconds, depending on the CPU's pause instruction. The sign, which only this
+/// program writes, shows that it restarted itself.
 constexpr std::string_view short_spins = "+1000";
 
 /// OMP_STACKSIZE as libgomp reads it, in bytes; nothing if it is unset or not a size.

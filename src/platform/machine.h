@@ -34,7 +34,8 @@ class OnAllProcessCpus {
   bool changed_ = false;
 };
 
-/// Launch policy for std::async: in a new thread, or, if the system refuses one, in the waiting one.
+/// Launch policy for std::async: in a new thread, or, if the system refuses one, in the thread that waits for
+/// the result.
 inline constexpr std::launch as_the_system_can = std::launch::async | std::launch::deferred;
 
 /// Calls `work` with 0 to `count` - 1, at most `at_once` at the same time. Throws what `work` throws.
@@ -45,7 +46,8 @@ void for_each_at_once(std::size_t count, std::size_t at_once, const std::functio
 struct ContainerLimits {
   std::optional<double> processors;           ///< CPU seconds per second
   std::optional<std::uint64_t> memory_bytes;  ///< the limit
-  /// Bytes of it not in use; the page cache counts as unused, because the kernel releases it first.
+  /// Bytes of it that are not in use; the page cache counts as unused, because the kernel releases it before
+  /// it refuses memory.
   std::optional<std::uint64_t> memory_left;
 };
 
@@ -63,8 +65,8 @@ std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t a
 /// Compares with the memory available now (available_memory), bytes.
 std::optional<std::string> memory_shortage(std::uint64_t needed);
 
-/// The highest rise of this process's resident memory since construction, at which free memory of the heap is
-/// returned to the system. One at a time: the system knows one peak of a process.
+/// The highest rise of this process's resident memory since construction, which returns free memory of the
+/// heap to the system. Only one may live at a time: the system knows one peak of a process.
 class MemoryPeak {
  public:
   MemoryPeak();
@@ -115,7 +117,8 @@ std::optional<std::string> thread_shortage(int threads, ThreadStack stack);
 /// step would take as long as the system needs to run them all. Nothing if they do.
 std::optional<std::string> thread_excess(int threads);
 
-/// Threads for a parallel region: `wanted` (0: OpenMP's default), or as many as the system allows.
+/// Threads for a parallel region whose result does not depend on their number: `wanted` (0: OpenMP's
+/// default), or fewer if the system allows only those.
 int openmp_team(int wanted);
 
 /// Wall time since construction, from a monotonic clock.
@@ -128,7 +131,8 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// What decides how an output stream is written; texts are environment variables, empty if unset.
+/// The facts that decide how an output stream is written; the texts are environment variables, empty if
+/// unset.
 struct StreamFacts {
   bool is_terminal = false;
   int columns = 0;  ///< of the terminal; 0 if unknown
@@ -149,7 +153,8 @@ Terminal terminal_with(const StreamFacts& facts);
 /// The capabilities of a descriptor in this environment. Only this function inspects a stream's type.
 Terminal terminal_of(int descriptor);
 
-/// Highway's name of an instruction set as people know it: "AVX-512" for "AVX3"; others are unchanged.
+/// The usual name of an instruction set that Highway names: "AVX-512" for "AVX3". Highway's other names are
+/// the usual ones, and unchanged.
 std::string_view instruction_set_name(std::string_view highway_name);
 
 /// What a backend says that it ran on, as people know it: "cpu AVX-512" for "cpu AVX3", and "PoCL on MODEL"

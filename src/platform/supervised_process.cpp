@@ -45,7 +45,8 @@ std::string why_not_started(const SupervisedProgram& program, const SupervisorAn
   }
 }
 
-/// Starts the supervisor with its end of the channel as descriptor 3; it closes other descriptors itself.
+/// Starts the supervisor with only its end of the channel, as descriptor 3; the supervisor closes other
+/// inherited descriptors itself.
 pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   // The system would report this like a missing program.
   if (::access("/dev/null", R_OK | W_OK) != 0) fail(program, "/dev/null cannot be opened" + reason(errno));
@@ -184,7 +185,8 @@ bool SupervisedProcess::ask(SupervisorRequest request, SupervisorAnswer& answer)
   return hear(answer);
 }
 
-/// Waits for data from the supervisor, and continues it if the program stopped it. False without data.
+/// Waits for data from the supervisor, and continues it if it was stopped: the program could send signals to
+/// its parent. False if there is none in time.
 bool SupervisedProcess::says_something() const {
   constexpr std::chrono::milliseconds look{500};
   for (std::chrono::milliseconds waited{0}; waited < supervisor_patience; waited += look) {

@@ -39,7 +39,7 @@ struct SupervisorAnswer {
   int value = 0;
   double processor_seconds = 0;  ///< with done and ended
   std::size_t output_bytes = 0;  ///< with ended
-  std::uint64_t peak_bytes = 0;  ///< with done, of peak_memory
+  std::uint64_t peak_bytes = 0;  ///< with done, after peak_memory; 0 if unknown
 };
 
 /// Maximum size of the output that is kept.
@@ -52,7 +52,8 @@ struct SupervisedProgram {
   std::vector<std::string> environment;  ///< NAME=VALUE, added to mssim's; replaces variables of that name
   std::filesystem::path folder;          ///< working directory
   std::vector<int> cpus;                 ///< logical CPUs that it is bound to; empty: those of mssim
-  /// Files and folders to remove if mssim ends before the program (SIGKILL). Else the caller removes them.
+  /// Files and folders that are removed, with their contents, if mssim ends before the program does, for
+  /// example by SIGKILL. Otherwise the caller removes them.
   std::vector<std::filesystem::path> removed = {};
 };
 
@@ -64,7 +65,8 @@ struct ProgramEnd {
   std::string trouble;  ///< why its end is unknown: end of a sentence that begins with its name
 };
 
-/// A sentence without its subject: "ended with exit code 3", "was ended by signal 11 (Segmentation fault)".
+/// End of a sentence that begins with the program's name: "ended with exit code 3", "was ended by signal 11
+/// (Segmentation fault)".
 std::string describe(const ProgramEnd& end);
 
 /// An untrusted program that runs in parallel with mssim: it and all its descendants are gone when this
@@ -79,17 +81,20 @@ class SupervisedProcess {
   /// Kills all of it at once.
   ~SupervisedProcess();
 
-  /// Stops all its processes, also those that left its group, until resume(). No effect after its end.
+  /// Stops all its processes, including those that left its group, until resume(). No effect once it has
+  /// ended.
   void pause();
   void resume();
 
   /// Becomes readable when the program and all its descendants are gone; poll it, do not read it.
   int end_descriptor() const { return channel_.get(); }
 
-  /// Resumes the program, gives it `patience` to end, then kills it. Later calls return the same result.
+  /// Gives the program `patience` to end by itself (resumed, if it was paused), then kills all of it. Later
+  /// calls return the same result.
   const ProgramEnd& end(std::chrono::milliseconds patience);
 
-  /// CPU time of the program so far, s: living processes by their clocks, reaped ones in ticks of 0.01 s.
+  /// CPU time of the program so far, s: of its living processes by their clocks, and of ended ones if their
+  /// parents have waited for them (in clock ticks, 0.01 s).
   double processor_seconds() const;
   /// Sum of the largest resident memory that each of its living processes has had, bytes; nothing once it has
   /// ended, or if the system does not tell.
