@@ -11,7 +11,8 @@
 namespace mssim {
 namespace {
 
-/// A rank's columns of a cloth and their ghost columns, with openmp's walk and bitwise identical results.
+/// The columns of a cloth that one rank steps, and their neighbouring ghost columns, with openmp's walk and
+/// bitwise identical results.
 class ClothPiece final : public Piece {
  public:
   ClothPiece(const Session& session, const RankJob& job)
@@ -92,7 +93,7 @@ class ClothPiece final : public Piece {
   std::size_t chosen_steps(const Session& session, const RankJob& job) {
     const Integrator& integrator = *job.integrator;
     const auto& cloth = std::get<ClothSpec>(job.scene.content);
-    // A host's ranks share its last-level cache.
+    // The cloth's columns per host of this run, approximately: a host's ranks share its last-level cache.
     const auto ranks_on_host = static_cast<std::size_t>(session.ranks_on_host());
     const std::size_t columns_on_host = columns_ * ranks_on_host / static_cast<std::size_t>(ranks_);
     const GridPatch on_host{cloth.rows, std::max(1U, static_cast<std::uint32_t>(columns_on_host)),

@@ -108,7 +108,8 @@ void check_mpi(int result, const char* action) {
 }
 
 Session::Session(int* argc, char*** argv) {
-  // Open MPI (4, 5) leaves 4 MB behind for each killed rank: in a folder in shared memory that mssim removes.
+  // Open MPI (4 and 5) leaves 4 MB of shared memory behind for each killed rank: in a folder that mssim
+  // removes, if it is in this machine's shared memory.
   if (const std::string folder = variable("MSSIM_MEMORY_FOLDER");
       folder.starts_with("/dev/shm/") && ::access(folder.c_str(), W_OK) == 0)
     for (const char* name : {"OMPI_MCA_btl_vader_backing_directory", "OMPI_MCA_btl_sm_backing_directory"})

@@ -68,7 +68,8 @@ class CopiesPiece final : public Piece {
 constexpr std::size_t nodes_at_once = std::size_t{1} << 18;
 constexpr int state_tag = 2;
 
-/// The file of a state, [2: positions, velocities][nodes] vectors, in memory. mssim made it, in its size.
+/// The file of a state, [2: positions, velocities][nodes] vectors, mapped into memory. mssim made it and does
+/// not change its size.
 class MappedState {
  public:
   MappedState(const std::filesystem::path& file, std::size_t nodes) : nodes_(nodes) {
@@ -134,7 +135,8 @@ struct Message {
   Vec3d* velocities() { return vectors.data() + nodes; }
 };
 
-/// Calls `pass` with rank, runs and message for every message between rank 0 and a rank by this process.
+/// Calls `pass` for every message between rank 0 and a rank that involves this process, with the rank, the
+/// runs and the message.
 template <class RunsOf, class Pass>
 void for_each_message(const Session& session, const RunsOf& runs_of, const Pass& pass) {
   for (int rank = 0; rank < session.ranks(); ++rank) {
@@ -157,7 +159,8 @@ void exchange(const Session& session, Message& message, int rank, const Start& s
   session.wait({&request, 1}, std::array{rank});
 }
 
-/// Writes the ranks' nodes into a file: runs_of(rank) gives a rank's nodes, `own` is the state of this one's.
+/// Writes the ranks' own nodes into the file of a state of `nodes` nodes: runs_of(rank) gives the nodes of a
+/// rank, `own` is the state of this rank's.
 template <class RunsOf>
 void gather(const Session& session, const std::filesystem::path& file, std::size_t nodes,
             const RunsOf& runs_of, const State& own) {

@@ -38,7 +38,8 @@ class Filling {
     for (std::size_t i = 0; i < bodies.size(); ++i)
       give(bodies[i], static_cast<std::size_t>(rank_of[i]), weights[i]);
   }
-  /// Fills ranks up to one level, most room first: a body continues in the next rank. No part is too small.
+  /// Fills the ranks up to one level, those with most room first: a body continues in the next rank when one
+  /// is full. No part is too small.
   void divide(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
     std::size_t together = 0;
     for (const std::size_t body : bodies) together += nodes[body];
@@ -86,6 +87,7 @@ class Filling {
   }
 };
 
+/// A node and the rank that needs it.
 using RankAndNode = std::pair<int, std::uint32_t>;
 
 /// Sorted, without duplicates.
