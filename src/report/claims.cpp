@@ -74,7 +74,8 @@ bool has_threads(const PaperLegend& legend, std::string_view backend) {
   return found && found->has_threads;
 }
 
-/// Whether the row ran on the claim's hardware. OpenCL on this CPU is not a GPU, one thread is not several.
+/// Whether the row ran on the hardware that the claim is about. OpenCL on this CPU is not a GPU, and one
+/// thread is not several.
 bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& legend,
                 const Provenance& provenance) {
   return row && (row->threads > 1 || !has_threads(legend, row->backend)) &&
@@ -87,7 +88,8 @@ std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
   return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low};
 }
 
-/// Ratios of a test, for scenes and integrators with both times. `ratio`: of a scene and two integrators.
+/// The ratios of a test, for each scene and integrator with both times. `ratio` takes a scene and the
+/// integrators of `fast` and `slow`.
 template <class Scenes, class Ratio>
 auto ratios_of(const ClaimTest& test, const PaperLegend& legend, const Scenes& scenes, Ratio ratio) {
   std::vector<typename decltype(ratio(scenes.front(), std::string(), std::string()))::value_type> all;
@@ -199,6 +201,7 @@ JudgedClaim judge_rows(const Claim& claim, const Measured& measured, std::string
   return judged;
 }
 
+/// The shipped garments in the rows, each once.
 std::vector<PaperScene> shipped_garments(RowPointers rows) {
   std::vector<PaperScene> scenes;
   for (const ResultRow* row : rows)

@@ -19,7 +19,8 @@ struct GuideLine {
   std::vector<const GuidePoint*> points;
 };
 
-/// By how bad points are: those that diverged come last, then the more expensive ones.
+/// Less for a better point: one that did not diverge is better than one that did; otherwise the cheaper one
+/// is.
 std::pair<bool, double> badness_of(const GuidePoint& point) {
   return {point.diverged, point.wall_s_per_s.value_or(std::numeric_limits<double>::infinity())};
 }
@@ -93,6 +94,7 @@ Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::s
   return chart;
 }
 
+/// Rings around the points of the front.
 void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   Series front{.name = "on the front", .origin = Origin::reference, .mark = PointMark::ring};
   for (const GuideLine& line : lines)
@@ -102,7 +104,8 @@ void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   if (!front.x.empty()) work.series.push_back(std::move(front));
 }
 
-/// Lines error ~ step^p for the orders p of the integrators, from a point low on the right, seldom taken.
+/// Reference lines error ~ step^p for the orders p of the chart's integrators. They start at one point low on
+/// the right, where long steps seldom have small errors.
 void add_orders(Chart& steps) {
   const auto range = range_of(steps);
   if (!range) return;
@@ -160,7 +163,8 @@ std::string reason_of(const FoundGuide& guide, const std::string& scene, const s
   return integrator;
 }
 
-/// Adds what the chart of work and precision omits: backends, steps of diverged points, points left out.
+/// Adds what the chart of work and precision does not draw: backends, steps of diverged points, and points
+/// that are left out.
 void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene,
                  const std::vector<GuideLine>& lines) {
   std::vector<std::string> crosses, without;

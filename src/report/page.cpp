@@ -31,7 +31,8 @@ struct HtmlBlock {
   std::string operator()(const Table& table) const { return html_of(table); }
 };
 
-/// Style of a report: light and dark, narrow and wide, on paper (A4). Wide tables scroll.
+/// Style of a report: light and dark, narrow and wide, on paper (A4). Wide tables scroll on a screen, and
+/// have smaller text on paper.
 constexpr std::string_view page_style = R"(
 :root { color-scheme: light dark; --text: #1b1f24; --back: #ffffff; --dim: #57606a; --line: #d0d7de; --fill: #f3f5f7;
   --no: #a40e26; }

@@ -16,9 +16,11 @@
 
 namespace mssim {
 
-/// An HTML page about result folders: read_report_folder() reads each, even damaged; report_page() makes it.
+/// One HTML page about result folders: read_report_folder() reads each, even if damaged, and report_page()
+/// makes the page.
 
-/// A row of guide.csv (docs/guide.md): cost and error of a step or, without one, why a method has no points.
+/// A row of guide.csv (docs/guide.md): cost and error of one step size or, without a step, why a method has
+/// no points.
 struct GuidePoint {
   std::string scene{}, integrator{}, backend{};
   std::optional<double> dt_s{};
@@ -58,7 +60,8 @@ struct FoundPicture {
   std::string png;  ///< bytes
 };
 
-/// What a report shows of a result folder. Missing or damaged parts become sentences, never errors.
+/// Everything that a report shows of a result folder. Missing or damaged parts become sentences, never
+/// errors.
 struct ReportFolder {
   std::string name;                 ///< as given
   std::vector<ResultRow> rows;      ///< the readable ones; without any samples if those are damaged
@@ -76,7 +79,7 @@ struct ReportFolder {
 /// The folder itself if it has a timings.csv or a guide.csv; otherwise its subfolders that have one, by name.
 std::vector<std::filesystem::path> result_folders(const std::filesystem::path& folder);
 
-/// Throws LaterFormatError for a folder that a later mssim wrote.
+/// Reads what a folder has. Throws LaterFormatError for a folder that a later mssim wrote.
 ReportFolder read_report_folder(const std::filesystem::path& path);
 
 /// Parses an energy curve, which may begin with comment lines; none if the text is not one.
@@ -107,7 +110,8 @@ struct Claim {
   std::optional<ClaimTest> test;  ///< none if no rows can decide it
 };
 
-/// The claims of published/claims.json in the data folder. Throws SceneError and std::runtime_error.
+/// The claims of published/claims.json in the data folder (in the repository, results/published). Throws
+/// SceneError if the file is invalid, and std::runtime_error if the folder or the file is missing.
 std::vector<Claim> published_claims();
 
 /// Parses the claims in the text of a file. Throws SceneError.
@@ -135,8 +139,8 @@ struct ReportInput {
 /// A self-contained page: no network, no script, no other file. The element "mssim-data" has the data as
 /// JSON: {made_by, folders: [{name, problems, claims: [{name, outcome, published, measured}], findings:
 /// [{is_warning, sentence}], timings: [a row of timings.csv], provenance: as in provenance.json, or null}]};
-/// folders of guides also have guide: [a row of guide.csv, with the columns that charts show]. A history: [a
-/// line of its file].
+/// folders of guides also have guide: [a row of guide.csv, with the columns that charts show]. A history is
+/// history: [a line of its file].
 std::string report_page(const ReportInput& input);
 
 /// A page with tables about a folder.

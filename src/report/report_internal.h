@@ -14,7 +14,8 @@ namespace mssim {
 
 /// The parts of a report page: claims, findings, charts, and HTML.
 
-/// The exponent p of y ~ x^p, by least squares on logarithmic axes, of positive values; none for one x.
+/// The exponent p of y ~ x^p by least squares on logarithmic axes; none for fewer than two different x. All
+/// values must be positive.
 std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
 
 /// Outcome of a claim, judged by rows.
@@ -44,11 +45,13 @@ struct Finding {
   std::string sentence;
 };
 
-/// Findings about devices, rows not verified or without time, and speed-ups whose interval includes 1.
+/// Findings about devices, rows that are not verified or have no time, and speed-ups whose interval includes
+/// 1. None without rows.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
 
 /// Name of a backend on an OpenCL device ("" for none): "opencl on the CPU", "opencl, DEVICE". `family`
-/// decides its look in charts: OpenCL on a GPU shares the published GPU's, on the CPU it has its own.
+/// decides its look in charts: OpenCL on a GPU shares that of the published GPU, OpenCL on the CPU has its
+/// own.
 struct BackendLook {
   std::string name, family;
 };
@@ -84,7 +87,8 @@ inline constexpr std::string_view how_to_read_times =
 /// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);
 
-/// Charts; those without values are left out. `id`: prefix of ids. Each names its processor, if known.
+/// Charts. `id` is the prefix of their ids, so that those of several folders differ. Charts without values
+/// are left out. Each names its processor, if known.
 
 /// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
 std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
@@ -95,7 +99,8 @@ std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLe
 std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                    const std::string& id);
 
-/// Time per step of the first integrator against nodes, per kind of scene with several sizes, with slopes.
+/// Time per step of the first integrator against nodes, for each kind of scene with at least two sizes, with
+/// the slope of every line.
 std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
                                   std::span<const PublishedTable> published, const Provenance& provenance,
                                   const std::string& id);
@@ -108,7 +113,8 @@ std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenan
 Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
                   std::span<const PublishedTable> published);
 
-/// A dot per backend on the largest scene with a roofline, first integrator, below roofs from the timings.
+/// One dot per backend on the largest scene with a roofline, with the first integrator, below the roofs that
+/// follow from the timings.
 std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                     const std::string& id);
 
@@ -118,10 +124,12 @@ std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportIn
 std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
                                       const std::string& id);
 
-/// Gives each backend the same look in every chart, unless the chart has its own families.
+/// Gives each backend the same look in every chart, whatever the other backends, unless the chart has its own
+/// families.
 std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend);
 
-/// Total energy against time, with the reference curve, if any, whose scene begins the curve's name.
+/// Total energy against time, with the reference curve of the scene with whose name the curve's name begins,
+/// if any.
 Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> references, const std::string& id);
 
 /// The charts of a scene of a guide: work and precision (Hairer, Norsett and Wanner, Solving Ordinary
@@ -132,7 +140,8 @@ std::vector<Chart> guide_charts(const FoundGuide& guide, const PaperLegend& lege
                                 const Provenance& provenance, const std::string& scene,
                                 const std::string& id);
 
-/// Per scene and integrator of a machine's history: times per step by commit, from 1; a ring begins a level.
+/// For each scene and integrator of a machine's history: times per step by commit, counted from 1, with a
+/// ring where a level begins.
 std::vector<Chart> history_charts(const MachineHistory& machine, const std::string& id);
 
 /// The values of a chart with has_one_place(), as a table; references are left out.
@@ -140,10 +149,12 @@ Table values_of(const Chart& chart);
 /// Whether all values of a chart over whole numbers, such as nodes, are at one of them.
 bool has_one_place(const Chart& chart);
 
-/// Escapes any text for elements and quoted attributes: all text that is not written in the program.
+/// Escapes any text (a file's name, a scene's, a message) for elements and quoted attributes. All text of a
+/// page passes through it or is written in the program.
 std::string html_text(std::string_view text);
 
-/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds), closed ones.
+/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that is
+/// not closed, or is followed by a blank, is plain text.
 std::string html_prose(std::string_view text);
 
 /// A table in its own box, which scrolls if the page is narrower. The first column names the rows.

@@ -161,7 +161,8 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
   return paragraph(text) + html_of(table);
 }
 
-/// Outcomes of all folders: a line for each claim that any of them can test, a column for each folder.
+/// The outcomes of all folders: a line for each claim that any of them decides or leaves undecided, a column
+/// for each folder.
 std::string outcomes_of(const ReportInput& input) {
   Table table{{{"what the paper says"}, {"where"}}, {}};
   std::map<const Claim*, std::vector<Cell>> outcomes;
@@ -221,7 +222,8 @@ std::vector<ResultRow> with_samples(const ReportFolder& folder) {
   return rows;
 }
 
-/// The changes between two folders, as in `mssim compare`, or why none are known; else empty.
+/// The changes from the first of two folders to the second, as in `mssim compare`, or why they cannot be
+/// compared; empty unless there are two folders.
 std::string changes_section(const ReportInput& input) {
   if (input.folders.size() != 2) return {};
   const ReportFolder &base = input.folders[0], &next = input.folders[1];
@@ -245,6 +247,7 @@ std::string changes_section(const ReportInput& input) {
 
 // Tables
 
+/// The rows of the largest scene of each kind.
 std::vector<const ResultRow*> headline_rows(RowPointers rows) {
   std::map<ContentKind, const ResultRow*> largest;
   for (const ResultRow* row : rows) {
@@ -420,7 +423,8 @@ std::string history_section(const ReportInput& input) {
 
 // Guides
 
-/// Splits a guide's page before each heading of this level; the first part comes before, without a heading.
+/// Splits the page of a guide before each heading of this level; the first part is what comes before, without
+/// a heading.
 std::vector<Document> parts_of(const Document& page, int level) {
   std::vector<Document> parts(1);
   for (const auto& block : page) {
