@@ -23,13 +23,14 @@ bool is_web_results(const std::filesystem::path& path);
 /// if they were a folder's. Throws UsageError for a damaged or made-up file: rows whose numbers do not follow
 /// from their samples.
 MeasuredRun read_web_results(const std::filesystem::path& file);
-/// The same of a text; `file` is for messages.
+/// Reads the rows of such a file's text; `file` is for messages. Throws like read_web_results.
 MeasuredRun parse_web_results(const std::filesystem::path& file, const std::string& text);
 
 /// Serves what `make_page` makes on this machine's loopback address until an ending signal, or with `once`
-/// until it has taken a result. Makes the page when it has the port. `taken` gets the text of each result
-/// that the page sends, and returns what to answer; what it throws is answered as an error. Port 0: any free
-/// one. Calls `ready` with the address. Throws UsageError if the port is taken.
+/// until it has taken a result. Calls `make_page` as soon as it has the port, so that a taken port is told
+/// first. `taken` gets the text of each result that the page sends, and returns what to answer; what it
+/// throws is answered as an error. Port 0: any free one. Calls `ready` with the address. Throws UsageError if
+/// the port is taken.
 void serve_page(const std::function<std::string()>& make_page, int port, bool once,
                 const std::function<std::string(const std::string& text)>& taken,
                 const std::function<void(const std::string& address)>& ready);

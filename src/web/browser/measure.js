@@ -151,7 +151,7 @@ class Session {
       this.notes.push(this.lost);
       this.show(this);
     });
-    // Of the progress: about how many seconds the parts take on a fast computer.
+    // For the progress: about how many seconds the parts take on a fast computer.
     this.integrators = data.integrators.filter(({name}) => options.integrators.includes(name));
     this.scenes = data.scenes.filter(({name}) => options.scenes.includes(name));
     this.verifying = (scene, integrator) => 0.2 + 5e-5 * scene.nodes * integrator.stages.length;
