@@ -69,6 +69,7 @@ struct DressingPhase {
   float friction;
 };
 
+/* Constants of a dressing and of its layout, for all its kernels. */
 struct DressingParameters {
   struct Surroundings surroundings; /* its floor */
   struct DressingPhase seaming;     /* before the seams are closed */
@@ -103,13 +104,14 @@ struct DressingBlock {
   int first_pixel;
 };
 
+/* A joint: a node, drawn to the point `fraction` of the way from `first` to `second` (garment_laws.h). */
 struct DressingJoint {
-  int node;
+  int node; /* offsets of the three nodes */
   int first;
   int second;
   float fraction;
-  float length; /* m */
-  float strength;
+  float length;   /* m, of the seam that the joint represents */
+  float strength; /* factor of the seam force */
 };
 
 /* Progress of a dressing. */

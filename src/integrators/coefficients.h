@@ -15,6 +15,7 @@ namespace mssim {
 template <class Real>
 using Coefficients = std::array<std::array<std::array<Real, max_terms>, max_assignments>, max_stages>;
 
+/// The coefficients of an explicit integrator for steps of dt_s (s).
 template <class Real>
 Coefficients<Real> coefficients_of(const Integrator& integrator, double dt_s) {
   Coefficients<Real> result{};

@@ -73,8 +73,10 @@ struct Integrator {
   double ahead = 0;
 };
 
+/// Whether a solver computes its steps, not stages.
 constexpr bool is_implicit(const Integrator& integrator) { return integrator.solver != Solver::none; }
 
+/// Numbers, names and pairs of slots. position_slot and velocity_slot: the two slots of a pair.
 constexpr std::size_t index(Slot slot) { return static_cast<std::size_t>(slot); }
 constexpr std::size_t index(Pair pair) { return static_cast<std::size_t>(pair); }
 inline constexpr std::array<std::string_view, slot_kinds> slot_names{
@@ -83,12 +85,14 @@ constexpr std::string_view name_of(Slot slot) { return slot_names[index(slot)]; 
 constexpr Slot position_slot(Pair pair) { return static_cast<Slot>(2 * index(pair)); }
 constexpr Slot velocity_slot(Pair pair) { return static_cast<Slot>(2 * index(pair) + 1); }
 
+/// Number of terms before the one with coefficient zero.
 constexpr std::size_t term_count(const Assignment& assignment) {
   std::size_t count = 0;
   while (count < max_terms && assignment.terms[count].coefficient != 0) ++count;
   return count;
 }
 
+/// Number of assignments before the one without terms.
 constexpr std::size_t assignment_count(const Stage& stage) {
   std::size_t count = 0;
   while (count < max_assignments && term_count(stage.assignments[count]) > 0) ++count;
@@ -110,6 +114,7 @@ constexpr bool writes(const Stage& stage, Slot slot) {
   return false;
 }
 
+/// Does the stage write a slot of the pair?
 constexpr bool writes(const Stage& stage, Pair pair) {
   return writes(stage, position_slot(pair)) || writes(stage, velocity_slot(pair));
 }
@@ -125,6 +130,7 @@ constexpr bool reads(const Stage& stage, Slot slot) {
   return false;
 }
 
+/// Does any stage read or write the pair in memory?
 constexpr bool touches(const Integrator& integrator, Pair pair) {
   for (std::size_t s = 0; s < integrator.stage_count; ++s)
     for (const Slot slot : {position_slot(pair), velocity_slot(pair)})

@@ -20,6 +20,7 @@ inline Vec3<Real> mul_add(Real a, const Vec3<Real>& b, const Vec3<Real>& c) {
   return a * b + c;
 }
 
+/// The functions that the laws need for a number, each operation correctly rounded.
 template <class Real>
 inline Real square_root(Real a) {
   return std::sqrt(a);
@@ -38,6 +39,7 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
 #define MSSIM_LAW_INLINE inline
 #include "laws/laws-inl.h"
 
+/// Whether all constants are equal.
 template <class Real>
 inline bool operator==(const SpringConstants<Real>& a, const SpringConstants<Real>& b) {
   bool equal = true;

@@ -32,6 +32,7 @@ MSSIM_LAW_INLINE SpringConstants<Real> constants_from(const Make& make, const Fr
   return {MSSIM_SPRING_CONSTANTS(MSSIM_MADE)};
 #undef MSSIM_MADE
 }
+/// A spring with such constants, and its stiffness times rest length made in the same way.
 template <class Real, class Make, class... From>
 MSSIM_LAW_INLINE LinearSpring<Real> spring_from(const Make& make, const From&... from) {
   return {constants_from<Real>(make, from.constants...), static_cast<Real>(make(from.stiffness_rest...))};

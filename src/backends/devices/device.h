@@ -11,6 +11,7 @@
 
 namespace mssim {
 
+/// The type that a driver states for its device.
 enum class OpenclDeviceType : std::uint8_t { cpu, gpu, other };
 
 /// How a device's kernels can use host memory.

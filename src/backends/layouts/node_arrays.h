@@ -14,6 +14,7 @@
 
 namespace mssim {
 
+/// The least multiple of `multiple`, which must be positive, that is at least `value`.
 constexpr std::size_t round_up(std::size_t value, std::size_t multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }

@@ -31,6 +31,7 @@ HWY_INLINE NodeLanes nodes_of(const float* column, std::ptrdiff_t row) {
   const float* nodes = column + row * row_floats();
   return {load3(nodes), load3(nodes + row_floats() / 2)};
 }
+/// Writes nodes to a row of such a column.
 HWY_INLINE void store_nodes(const NodeLanes& nodes, float* column, std::ptrdiff_t row) {
   float* to = column + row * row_floats();
   store3(to, nodes.x);
@@ -134,6 +135,7 @@ struct BegunSpring {
   Lanes closing, inverse_length;
 };
 
+/// Begins the spring between two nodes.
 HWY_INLINE BegunSpring begin_spring(const NodeLanes& node, const NodeLanes& other) {
   const Lanes3 d = node.x - other.x;
   return {d, dot(node.v - other.v, d), inverse_length(dot(d, d))};

@@ -57,6 +57,7 @@ HWY_INLINE Lanes inverse_sqrt(Lanes a) { return hn::Div(hn::Set(FloatTag(), 1.0F
 /// Whether multiply-adds are rounded once. If they are rounded twice, results differ.
 constexpr bool fuses = HWY_NATIVE_FMA != 0;
 
+/// Whether inverse_length() is a root and a division, each correctly rounded.
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
 constexpr bool exact_roots = false;
 #else

@@ -2,6 +2,7 @@
 // them, after defining MSSIM_INLINE (the prefix of inline functions). No include guard: it may be included
 // several times.
 
+/// Adds h v to one component, as below.
 template <class Real>
 MSSIM_INLINE void carry_sum(Real& x, Real& rest, Real h, Real v) {
   const Real moved = mul_add(h, v, rest);

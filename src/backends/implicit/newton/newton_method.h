@@ -113,6 +113,7 @@ struct SolverWork {
   }
 };
 
+/// Largest number of iterations of conjugate gradients for a linear system.
 inline constexpr int most_gradient_iterations = 1000;
 /// Across springs that a step compresses, A is not the Jacobian, and convergence is linear: a cloth whose
 /// nodes move up to five rest lengths per step needs up to 94 iterations to 1e-5, and more to 1e-12.

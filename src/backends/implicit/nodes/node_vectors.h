@@ -124,6 +124,7 @@ void write_fields(const Nodes& nodes, const State& state, AlignedArray& x, Align
   }
 }
 
+/// Reads a state from fields of positions (m) and velocities (m/s).
 template <class Nodes>
 State read_fields(const Nodes& nodes, const AlignedArray& x, const AlignedArray& v) {
   State state{std::vector<Vec3d>(nodes.nodes), std::vector<Vec3d>(nodes.nodes)};
