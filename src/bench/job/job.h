@@ -177,7 +177,10 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
 void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop);
 
 /// Fails the combination if its samples show that steps are not taken while the clock runs, but when the
-/// state is requested: the more steps there were, the longer reading it then takes.
+/// state is requested: the more steps there were, the longer reading it then takes. The criterion: reading a
+/// sample's end takes longer than reading a state after one step, by more than the sample itself took (low
+/// end of the median's interval). Needs at least three samples of more than one step. Cloths in windows are
+/// not examined.
 void require_prompt_steps(Combination& combination);
 
 /// Computes all values that follow from the row's samples. `serial`: the baseline's row of the same
