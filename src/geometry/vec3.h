@@ -17,6 +17,7 @@ struct Vec3 {
   constexpr bool operator==(const Vec3&) const = default;
 };
 
+/// Scalar and vector product.
 template <class Real>
 constexpr Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -27,6 +28,7 @@ constexpr Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// The vector of double precision, its Euclidean length, and whether it has only finite components.
 using Vec3d = Vec3<double>;
 
 inline double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }

@@ -62,6 +62,7 @@ class Hdf5Handle {
   hid_t identifier_ = -1;
 };
 
+/// Handles by kind of object.
 using Hdf5File = Hdf5Handle<H5Fclose>;
 using Hdf5Group = Hdf5Handle<H5Gclose>;
 using Hdf5Dataset = Hdf5Handle<H5Dclose>;
@@ -81,6 +82,7 @@ void reserve_room(hid_t file, const std::filesystem::path& name, std::size_t byt
 /// A new group; its parent groups must exist.
 Hdf5Group create_group(hid_t parent, const std::string& path);
 
+/// A new attribute of the object: a string, a number, or an array of numbers.
 void write_attribute(hid_t object, const std::string& name, std::string_view text);
 void write_attribute(hid_t object, const std::string& name, double value);
 void write_attribute(hid_t object, const std::string& name, std::int64_t value);

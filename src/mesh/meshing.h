@@ -168,6 +168,7 @@ struct ShapePoints {
   Surface surface;
   std::vector<Vec3d> interior;
 };
+/// Makes these points. Throws InputError for parameters out of range.
 ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
 
 /// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add

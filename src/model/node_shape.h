@@ -19,6 +19,7 @@ struct NodeShape {
   bool in_panels = false;               ///< sheets are a garment's panels, possibly with a body
 };
 
+/// The shape of a system's nodes.
 NodeShape shape_of(const Topology& topology);
 
 /// Throws std::invalid_argument, with the violated rule of traces, unless there are nodes and they are either

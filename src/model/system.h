@@ -37,6 +37,7 @@ struct SpringConstantInfo {
   std::string_view key, sentence;    ///< in scene files and their schema
   double most;                       ///< maximum in a scene file
 };
+/// The TABLE of a spring's constants, in the order of SpringMaterial.
 inline constexpr auto spring_constants = std::to_array<SpringConstantInfo>({
     {&SpringMaterial::stiffness, "stiffness", "N/m", "N m-1", "stiffness_n_per_m",
      "Force per lengthening, N/m.", 1e9},
@@ -54,6 +55,7 @@ struct GridSpringKindInfo {
   std::string_view name;
   double length_squared;
 };
+/// The TABLE of kinds of cloth springs, by GridSpringKind.
 inline constexpr std::array<GridSpringKindInfo, 3> grid_spring_kinds{{
     {"structural", 1},
     {"shear", 2},

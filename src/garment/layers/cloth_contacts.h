@@ -27,6 +27,7 @@ std::vector<PanelPair> layer_pairs(const Garment& garment);
 /// The coordinates of all nodes: x, y, z, each [nodes] m.
 using Coordinates = std::array<std::span<const float>, 3>;
 
+/// The position of a node, m.
 inline Vec3<float> point_of(const Coordinates& position, std::uint32_t node) {
   return {position[0][node], position[1][node], position[2][node]};
 }

@@ -53,6 +53,7 @@ class Curve {
 enum class PanelEdge : std::uint32_t { bottom, top, left, right };
 inline constexpr std::array<std::string_view, 4> panel_edge_names{"bottom", "top", "left", "right"};
 
+/// The name of a boundary in scene files.
 inline std::string name_of(PanelEdge edge) {
   return std::string(panel_edge_names.at(static_cast<std::size_t>(edge)));
 }

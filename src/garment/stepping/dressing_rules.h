@@ -26,6 +26,8 @@ struct PhaseRule {
   Real friction;
 };
 
+/// While draping, damping and gravity of the scene, and the friction of `rules`; while the seams close, those
+/// of `rules` for seaming, without friction.
 template <class Real>
 PhaseRule<Real> phase_rule(const System& system, const DressingSettings& rules, bool draping) {
   if (draping)
@@ -42,6 +44,7 @@ struct CorrectionRule {
   Real rate_per_s;  ///< see elongation_impulse
 };
 
+/// The rule for steps of dt_s (s); rate 0 without the bounded correction.
 template <class Real>
 CorrectionRule<Real> correction_rule(const DressingSettings& rules, double dt_s) {
   const bool bounded = rules.correction == VelocityCorrection::bounded;
@@ -61,6 +64,7 @@ struct ClosingRule {
   Real speed;  ///< m/s
 };
 
+/// The rule for steps of dt_s (s).
 template <class Real>
 ClosingRule<Real> closing_rule(const DressingSettings& rules, double dt_s) {
   return {static_cast<Real>(rules.closing_share / dt_s), static_cast<Real>(rules.closing_speed)};
@@ -86,6 +90,7 @@ struct AtJoint {
   T node, first, second;
 };
 
+/// The vector from the node to the point `fraction` of the way from first to second: a gap (m), or its rate.
 template <class Real>
 Vec3<Real> joint_gap(const AtJoint<Vec3<Real>>& at, Real fraction) {
   return joint_gap(at.node, at.first, at.second, fraction);

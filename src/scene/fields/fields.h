@@ -35,9 +35,11 @@ struct Range {
   bool minimum_excluded = false;
   double maximum = 0;
 };
+/// Ranges up to `maximum`: with `minimum`, and without it.
 constexpr Range from(double minimum, double maximum) { return {minimum, false, maximum}; }
 constexpr Range above(double minimum, double maximum) { return {minimum, true, maximum}; }
 
+/// Whether a field may be missing.
 enum class Presence { required, optional };
 
 /// One of several alternative sections of an object.

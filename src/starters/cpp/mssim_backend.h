@@ -41,6 +41,7 @@
 
 namespace mssim_backend {
 
+/// x, y (up) and z; and one vector per node.
 using Vector = std::array<double, 3>;
 using Vectors = std::vector<Vector>;  ///< [nodes]
 
@@ -55,6 +56,7 @@ struct Unavailable : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The floor: its height, and restitution and friction of a bounce.
 struct Floor {
   double height = 0;  ///< m
   double restitution = 0;
