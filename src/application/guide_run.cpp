@@ -93,7 +93,7 @@ std::unique_ptr<ResultFolder> result_folder(const GuideOptions& options, const P
   return folder;
 }
 
-/// Those that were asked for by name and cannot run here.
+/// Throws Unavailable for a backend that was requested by name and cannot run here.
 void require_available(const GuideOptions& options, const std::vector<const BackendInfo*>& backends,
                        const ExecutionOptions& execution) {
   if (options.backends.empty()) return;

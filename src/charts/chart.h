@@ -16,6 +16,7 @@ enum class Origin { measured, published, reference };
 /// Mark on single points, or in place of them; larger than points and in the colour of the text.
 enum class PointMark { none, ring, square, cross };
 
+/// A line of a chart, or its points: values y over x, in the units of the axes, and their look.
 struct Series {
   std::string name{};  ///< in the legend
   Origin origin = Origin::measured;
@@ -36,6 +37,7 @@ struct Series {
   }
 };
 
+/// An axis: its label and scale.
 struct Axis {
   std::string label;  ///< with the unit: "time per step (ms)"
   bool logarithmic = false;
@@ -43,6 +45,7 @@ struct Axis {
   bool ticks_at_values = false;
 };
 
+/// Whether the points of a series are joined.
 enum class ChartForm { lines, points };
 
 /// A chart as data. A value that is not finite, or not positive on a logarithmic axis, is left out, and lines
@@ -61,6 +64,7 @@ struct Chart {
   std::vector<std::string> remarks{};
 };
 
+/// A chart as an element for an HTML page.
 struct DrawnChart {
   /// An <svg> element without width and height, so that the page sets its size: 480 units wide, text of 14
   /// units. Text and axes have the colour of the page's text (currentColor), for light and dark pages. Empty
@@ -74,6 +78,7 @@ struct DrawnChart {
 /// an id or a number of values that breaks the rules above.
 DrawnChart draw_svg(const Chart& chart);
 
+/// An interval with both ends, in the unit of its axis.
 struct Interval {
   double low, high;
 };

@@ -25,6 +25,7 @@ struct PlottedPoint {
   bool after_gap = false;  ///< values between the point before and this one were left out
 };
 
+/// The values of a chart that can be drawn.
 struct PlottedValues {
   std::vector<std::vector<PlottedPoint>> series;  ///< one for each series of the chart, in its order
   std::vector<std::string> notes;                 ///< what was left out, one sentence per series
@@ -48,7 +49,7 @@ std::vector<std::size_t> looks_of(std::span<const Series> series, std::span<cons
 /// longer text ends in "…".
 std::string shown_text(std::string_view text, std::size_t most);
 
-/// The same text on at most three lines, broken at spaces if possible.
+/// Text like that of shown_text, on at most three lines of `most` letters, broken at spaces if possible.
 std::vector<std::string> shown_lines(std::string_view text, std::size_t most);
 
 /// The part of an axis that a chart shows.

@@ -64,6 +64,7 @@ std::string png_of(const Picture& picture);
 /// that write text on pictures (sheets with captions, legends, colour bars) do so; this checks in advance.
 void require_font();
 
+/// A picture of a sheet and the text below it; empty: none.
 struct CaptionedPicture {
   Picture picture;
   std::string caption;

@@ -26,8 +26,10 @@ enum class ClaimOutcome : std::uint8_t {
   not_testable,  ///< required rows or devices are missing
 };
 
+/// The outcome in words: "held", "not testable here".
 std::string_view name_of(ClaimOutcome outcome);
 
+/// A claim with the outcome that the rows of a folder give it.
 struct JudgedClaim {
   const Claim* claim = nullptr;
   ClaimOutcome outcome = ClaimOutcome::not_testable;

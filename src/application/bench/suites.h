@@ -42,6 +42,7 @@ struct Suite {
 /// The suite that `mssim guide` measures, with its own kind of table.
 inline constexpr std::string_view guide_suite = "guide";
 
+/// The TABLE of suites, in the order of listings.
 std::span<const Suite> suites();
 
 /// The papers' names from the tables of backends, integrators and suites.

@@ -40,7 +40,7 @@ ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<O
 
 /// Makes the texts that a shell may complete the value of an argument to.
 using OfferedWords = std::function<std::vector<std::string>()>;
-/// Of each argument that offers some.
+/// The offered words of each argument that has some.
 using OffersOfOptions = std::map<const CLI::Option*, OfferedWords>;
 
 /// A declared argument: an option, a flag, or a positional argument.

@@ -30,6 +30,7 @@ enum class ColourBy : std::uint8_t {
   strain   ///< mean strain of the springs at each node
 };
 
+/// How pictures are drawn: from where, how large, what colours mean, and by how many threads.
 struct PictureOptions {
   ViewDirection view;
   std::uint32_t width = 960, height = 720;  ///< pixels, up to most_picture_pixels

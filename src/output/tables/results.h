@@ -174,7 +174,7 @@ std::string_view opencl_device(const ResultRow& row);
 
 /// Whether the row's OpenCL device is the machine's processor.
 bool is_this_processor(const ResultRow& row, const Provenance& provenance);
-/// The same for a device by its name.
+/// Whether an OpenCL device, by its name, is the machine's processor.
 bool is_this_processor(std::string_view device, const Provenance& provenance);
 
 /// Median ms per step of a row that counts, otherwise none.

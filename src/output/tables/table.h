@@ -152,7 +152,7 @@ std::string markdown(const Document& document);
 /// letters beyond Latin-1; others become their code points.
 std::string latex_text(std::string_view text);
 
-/// The same for text with the marks of a Document.
+/// Text with the marks of a Document as LaTeX; otherwise like latex_text.
 std::string latex_prose(std::string_view text);
 
 /// The page as LaTeX for a paper that loads booktabs, siunitx and graphicx: a float for each table, the other
