@@ -376,8 +376,8 @@ class WebGpuBackend {
     this.odd = 0;
     await this.device.queue.onSubmittedWorkDone();
   }
-  /** Submissions take at most about a fifth of a second: drivers end those that take seconds. Short calls overstate a step's time,
-   *  so a submission only grows from call to call. */
+  /** Submissions take at most about a fifth of a second: drivers end those that take seconds. Short calls that the clock resolves
+   *  overstate a step's time, so a submission only grows from call to call. */
   async step(count) {
     const before = performance.now();
     for (let left = count; left > 0; left -= this.batch) {
