@@ -418,7 +418,7 @@ Clock::duration expected_frames(const SceneJob& job, const std::vector<Combinati
   double seconds = 0;
   for (const Combination& combination : combinations)
     if (combination.backend)
-      seconds += timed_frames * steps_of_frame(*job.fps, job.dt_s) * combination.step_seconds;
+      seconds += combination.step_seconds * timed_frames * steps_of_frame(*job.fps, job.dt_s);
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 

@@ -371,11 +371,17 @@ PackageEnergy::PackageEnergy(const fs::path& root) {
 }
 
 std::optional<double> PackageEnergy::joules() {
-  double sum_uj = 0;
-  for (Counter& counter : counters_) {
+  // All are read before one is stored, so that their intervals stay alike if one cannot be read.
+  std::vector<double> all_uj;
+  for (const Counter& counter : counters_) {
     const std::vector<std::int64_t> now = numbers_in(counter.file);
     if (now.empty()) return std::nullopt;
-    const double last_uj = std::exchange(counter.last_uj, static_cast<double>(now[0]));
+    all_uj.push_back(static_cast<double>(now[0]));
+  }
+  double sum_uj = 0;
+  for (std::size_t i = 0; i < counters_.size(); ++i) {
+    Counter& counter = counters_[i];
+    const double last_uj = std::exchange(counter.last_uj, all_uj[i]);
     sum_uj += counter.last_uj - last_uj + (counter.last_uj < last_uj ? counter.range_uj : 0);
   }
   return counters_.empty() ? std::nullopt : std::optional(1e-6 * sum_uj);

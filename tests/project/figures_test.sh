@@ -159,11 +159,11 @@ for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies
 without_gpu = [machine for machine in machines if machine != gpu]
 assert {cpus(f"results/table1/{machine}") for machine in without_gpu} == {2}
 readme.append(f"Of {len(claims)} claims in both papers, {len(testable)} can be decided by a ratio of times.")
-readme.append("Held without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
-readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
+readme.append("Held, of those that a machine's rows decide: without a GPU " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each;")
+readme.append(f"on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
 slower = [machine for machine in machines if outcome(locks, machine)["outcome"] == "not held"]
-readme.append(f"made some cloth slower on {len(slower)} of {len(machines)} machines")
+readme.append(f"made at least one cloth slower than one thread does, on {len(slower)} of {len(machines)} machines")
 readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`, a plain spring list (Zen 4, as in the chart)")
 peers = {threads: rows(f"results/peers/zen4/{threads}/peers.csv") for threads in ("1-thread", "2-threads")}
 times_of = lambda table: {(row["scene"], row["peer"]): float(row["ms_per_step"]) for row in table if row["status"] == "ok"}
@@ -255,6 +255,29 @@ papers.append(f"In the published tables a step of midpoint takes {cost('midpoint
               f"Runge-Kutta {cost('rk4')} times.")
 sums = [row for row in rows("results/table2/table2.csv")]
 papers.append(f"All {len(sums)} counts of nodes and of springs agree")
+
+
+# The example of what bench prints.
+example = "results/table1/zen4"
+with open("docs/bench.md") as file:
+    text = file.read()
+where = f"[{example}](../{example}) (AMD EPYC, Zen 4, two threads, {when(example)})"
+if where not in text:
+    failures.append(f"docs/bench.md should have: {where}")
+lines = re.findall(r"^    .*✓.*$", text, re.MULTILINE)
+shown = {(row["integrator"], row["backend"]): row for row in rows(f"{example}/timings.csv") if row["scene"] == "cloth40k"}
+integrator = None
+for line in lines:
+    cells = line.split()
+    if (cells[0], "serial") in shown:
+        integrator = cells.pop(0)
+    row = shown[integrator, cells[0]]
+    ms, low, high, speedup = (digits(float(row[column])) for column in ("ms_per_step", "ms_per_step_low", "ms_per_step_high",
+                                                                        "speedup_vs_serial"))
+    if cells[1:5] != [ms, f"{low}–{high}", "✓", f"{speedup}×"]:
+        failures.append(f"docs/bench.md: {integrator}, {cells[0]} should have {ms}, {low}–{high}, {speedup}×: {line}")
+if len(lines) != 10:
+    failures.append(f"docs/bench.md: the example of {example} has {len(lines)} rows with ✓, not 10")
 
 
 used = set()

@@ -49,12 +49,13 @@ SampleTime time_sample(Combination& combination, int steps) {
     backend.step(1);  // wakes threads and caches up
     restart(combination);
   }
-  const double processor_before = backend.processor_seconds();
   combination.energy.joules();
+  // Read last before the steps and first after them: reading the counters of energy takes CPU time.
+  const double processor_before = backend.processor_seconds();
   // No clock resolves less than 1 ns.
   const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));
-  const std::optional<double> joules = combination.energy.joules();
-  return {wall_s, backend.processor_seconds() - processor_before, joules};
+  const double processor_s = backend.processor_seconds() - processor_before;
+  return {wall_s, processor_s, combination.energy.joules()};
 }
 
 /// Description of a row beyond its names.
@@ -298,7 +299,11 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
 
 void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop) {
   const int steps = steps_of_frame(job.fps.value(), job.dt_s);
-  const int at_a_stretch = std::max(1, combination.most_steps / steps);
+  const int at_a_stretch = combination.most_steps / steps;
+  if (at_a_stretch == 0)
+    return append_sentence(combination.row.note,
+                           fmt::format("frames of {} are not timed: samples of this row end after {}",
+                                       pluralize(steps, "step"), pluralize(combination.most_steps, "step")));
   std::vector<double> frames_ms;
   attempt(combination, [&] {
     while (frames_ms.size() < timed_frames) {

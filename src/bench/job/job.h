@@ -172,8 +172,9 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
                                 std::optional<std::size_t> first);
 
 /// Times timed_frames frames of 1 / job.fps s of simulated time one after the other, each by itself. Returns
-/// to the start of samples before a frame would simulate further than samples may. Ends without a result if
-/// `stop` returns true. The row fails if the result is not finite, or if the backend's program fails.
+/// to the start of samples before a frame would simulate further than samples may; if even the first one
+/// would, the row has a note instead. Ends without a result if `stop` returns true. The row fails if the
+/// result is not finite, or if the backend's program fails.
 void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop);
 
 /// Fails the combination if its samples show that steps are not taken while the clock runs, but when the
