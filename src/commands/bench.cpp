@@ -83,22 +83,7 @@ std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const
     const std::string text = row_table(pointers, provenance, terminal);
     return text + remarks(pointers, text, provenance, terminal.width);
   }
-  return text_of(table_of(pointers_to(rows), {"scene",
-                                              "nodes",
-                                              "springs_published",
-                                              "integrator",
-                                              "backend",
-                                              "threads",
-                                              "ms_per_step",
-                                              {"low", "ms_per_step_low"},
-                                              {"high", "ms_per_step_high"},
-                                              {"speedup", "speedup_vs_serial"},
-                                              "paper_ms",
-                                              {"roofline", "roofline_fraction"},
-                                              "position_error",
-                                              "verified",
-                                              "status"}),
-                 format);
+  return text_of(printed_table(pointers_to(rows)), format);
 }
 
 /// The rows of scenes whose structure is shown but which are not timed; empty in the format `github`, which

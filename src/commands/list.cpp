@@ -9,11 +9,13 @@
 #include "application/console.h"
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
+#include "backends/described/backend_description.h"
 #include "backends/devices/drivers.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "integrators/all_integrators.h"
-#include "output/tables/table.h"
+#include "output/folders/history_file.h"
+#include "output/tables/results.h"
 #include "report/report.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
@@ -163,7 +165,11 @@ constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"devices", list_devices},
                                                  {"claims", list_claims},
                                                  {"schema", nullptr, scene_schema},
-                                                 {"claims-schema", nullptr, claims_schema}});
+                                                 {"claims-schema", nullptr, claims_schema},
+                                                 {"backend-schema", nullptr, description_schema},
+                                                 {"bench-schema", nullptr, bench_schema},
+                                                 {"history-schema", nullptr, history_schema},
+                                                 {"timings-schema", nullptr, timings_schema}});
 
 int run_list(const ListOptions& options) {
   require_device(options.execution, table_backends());
@@ -180,7 +186,7 @@ std::function<int()> declare_list(Arguments& arguments) {
   arguments
       .add("WHAT", options->subject,
            "What to list: " + listed(known, "or") +
-               "; the schemas are JSON Schemas of scene files and of claims.json",
+               "; a schema is a JSON Schema, that of scene files unless it is named after another file",
            one_of("word", known))
       .required();
   declare_listing_format(arguments, options->format);

@@ -53,7 +53,7 @@ are mine run --backend min
 are "$({ names_of suites && echo tables; } | grep ^t)" bench --suite t
 are "$({ names_of suites && echo tables; })" bench --suite ""
 are "$(printf '%s\n' csv json table)" list scenes --format ""
-are backends list back
+are "$(printf '%s\n' backend-schema backends)" list back
 
 # Files and folders where a value is one, also after a comma. bash takes = and : for words.
 are "$(printf '%s\n' few few.json fewer.json fewer-folders)" run --trace few

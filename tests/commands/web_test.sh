@@ -25,6 +25,9 @@ chromium=$(command -v chromium) || {
 }
 python3 "$2/tests/commands/web.py" "$chromium" page.html . || fail "the page in the browser"
 
+/usr/bin/python3 -W ignore "$2/tests/support/check_json.py" "$2/docs/schemas/web-results.schema.json" result.json \
+  --maps environment,backend_programs,scenes_fnv1a_64 --wrong mssim_web_results=2 || fail "result.json by its schema"
+
 # What it saved, beside a folder.
 ends 0 report result.json lost.json without.json "$2/results/table1/zen5" --no-runs --out report.html
 grep -q 'webgpu, ' report.html || fail "the report does not name the device"

@@ -79,7 +79,7 @@ application           text platform integrators garment/contact model mesh garme
 application/bench     text platform integrators scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/windows bench/job bench output/tables garment/output output/traces output/folders application
 web                   text platform integrators model scene/spec scene bench/machine bench/results bench/verification bench/job output/tables output/folders application application/bench
 commands/arguments    text
-commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench output/tables output/folders output/traces output/pictures output/exports report application application/bench web commands/arguments
+commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices backends/described garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench output/tables output/folders output/traces output/pictures output/exports report application application/bench web commands/arguments
 main.cpp              platform commands
 ask_opencl.cpp        backends/devices
 supervise.cpp         platform

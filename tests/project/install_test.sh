@@ -22,6 +22,7 @@ diff "$place/scenes" <("$1" list scenes --format csv)
 "${run[@]}" "$place/second/bin/mssim" new-backend mine --language c++ --out "$place" >"$place/commands" 2>&1
 cmp "$place/mssim_backend.h" "$place/second/include/mssim_backend.h"
 cmp "$place/second/share/mssim/python/mssim_backend.py" "$2/src/starters/python/mssim_backend.py"
+cmp "$place/second/share/mssim/schemas/bench.schema.json" <("$1" list bench-schema)
 # What shells and man look for.
 share=$place/second/share
 cmp "$share/man/man1/mssim.1" <("$1" help --manual)

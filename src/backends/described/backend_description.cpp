@@ -131,6 +131,12 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   return program;
 }
 
+std::string description_schema() {
+  Description description;
+  return json_schema("Backend of mssim", "Describes a program that is a backend, whose name is the file's.",
+                     [&](FieldVisitor& fields) { visit(fields, description); });
+}
+
 BackendProgram read_description(const fs::path& file) {
   try {
     return parse_description(file, read_file(file, largest_description_bytes));

@@ -17,4 +17,7 @@ BackendProgram parse_description(const std::filesystem::path& file, const std::s
 /// Reads and checks a description. Throws SceneError.
 BackendProgram read_description(const std::filesystem::path& file);
 
+/// The JSON Schema of descriptions, committed as docs/schemas/backend.schema.json.
+std::string description_schema();
+
 }  // namespace mssim

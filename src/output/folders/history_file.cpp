@@ -84,6 +84,12 @@ std::string history_line(const HistoryEntry& entry) {
       .dump();
 }
 
+std::string history_schema() {
+  HistoryEntry entry;
+  return json_schema("A line of a history", "What mssim history add appends to a file, on a line of its own.",
+                     [&](FieldVisitor& fields) { visit_entry(fields, entry, ""); });
+}
+
 std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::string_view text) {
   std::vector<HistoryEntry> history;
   text = without_byte_order_mark(text);

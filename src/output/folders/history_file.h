@@ -18,6 +18,9 @@ inline constexpr std::uint32_t history_version = 1;
 /// back.
 std::string history_line(const HistoryEntry& entry);
 
+/// The JSON Schema of a line, committed as docs/schemas/history.schema.json.
+std::string history_schema();
+
 /// The entries of a text with a JSON object per line (JSON Lines); empty lines are ignored. `file` is the
 /// source of the text. Throws SceneError and InputError, one sentence with file, line, place, value and
 /// remedy, for a line that is damaged or has another version.

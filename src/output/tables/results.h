@@ -31,11 +31,13 @@ std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows);
 struct RowColumn {
   Column head;
   std::function<Cell(const ResultRow&)> value;
+  const ResultColumn* source = nullptr;  ///< the column of timings.csv, if it is one
 
   /// A column of timings.csv, optionally under another name. Throws std::invalid_argument if there is no such
   /// column.
   RowColumn(const char* name) : RowColumn(name, name) {}
   RowColumn(const char* name, std::string_view column);
+  RowColumn(const ResultColumn& column);
   RowColumn(Column column, std::function<Cell(const ResultRow&)> cell)
       : head(std::move(column)), value(std::move(cell)) {}
 };
@@ -50,6 +52,13 @@ Table table_of(RowPointers rows, const std::vector<RowColumn>& columns);
 
 /// The columns of timings.csv and a line for each row; missing values are empty.
 Table timings_table(std::span<const ResultRow> rows);
+
+/// The columns that mssim bench prints for programs, and a line for each row; without rows, no columns.
+Table printed_table(RowPointers rows);
+
+/// The JSON Schemas of these two tables, committed as docs/schemas/timings.schema.json and bench.schema.json.
+std::string timings_schema();
+std::string bench_schema();
 
 /// timings.csv; numbers read back unchanged. Throws std::invalid_argument for a number that is not finite.
 std::string timings_csv(std::span<const ResultRow> rows);

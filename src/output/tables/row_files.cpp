@@ -55,6 +55,72 @@ struct Place {
   }
 };
 
+const ResultColumn& column_named(std::string_view name) {
+  const ResultColumn* found = found_in(result_columns, name, &ResultColumn::name);
+  if (found == nullptr) throw std::invalid_argument("timings.csv has no column " + std::string(name));
+  return *found;
+}
+
+/// The type of a column's values in JSON, and their bounds.
+ordered_json type_of(const ResultColumn& column) {
+  if (column.is_hash) return {{"type", {"string", "null"}}, {"pattern", "^[0-9a-f]{16}$"}};
+  return std::visit(
+      []<class Value>(Value ResultRow::*) -> ordered_json {
+        if constexpr (std::same_as<Value, std::string>) return {{"type", "string"}};
+        if constexpr (std::same_as<Value, bool>) return {{"type", "boolean"}};
+        if constexpr (std::same_as<Value, double>) return {{"type", "number"}};
+        if constexpr (std::same_as<Value, std::optional<double>>) return {{"type", {"number", "null"}}};
+        if constexpr (std::same_as<Value, std::optional<std::uint64_t>>)
+          return {{"type", {"integer", "null"}}, {"minimum", 0}};
+        return {{"type", "integer"}, {"minimum", 0}};
+      },
+      column.value);
+}
+
+/// The JSON Schema of a table of these columns, which are all of timings.csv.
+std::string rows_schema(std::string_view title, std::string_view description,
+                        const std::vector<RowColumn>& columns) {
+  ordered_json names = ordered_json::array(), properties = ordered_json::object();
+  for (const RowColumn& column : columns) {
+    const ResultColumn& source = *column.source;
+    names.push_back(column.head.name);
+    ordered_json& property = properties[column.head.name];
+    property = {
+        {"description", fmt::format("{}{}{}", source.meaning, source.unit.empty() ? "" : "; ", source.unit)}};
+    property.update(type_of(source));
+  }
+  return json_text({{"$schema", "http://json-schema.org/draft-07/schema#"},
+                    {"title", title},
+                    {"description", description},
+                    {"type", "array"},
+                    {"items",
+                     {{"type", "object"},
+                      {"additionalProperties", false},
+                      {"required", names},
+                      {"properties", properties}}}});
+}
+
+std::vector<RowColumn> all_columns() { return {result_columns.begin(), result_columns.end()}; }
+
+const std::vector<RowColumn>& printed_columns() {
+  static const std::vector<RowColumn> columns{"scene",
+                                              "nodes",
+                                              "springs_published",
+                                              "integrator",
+                                              "backend",
+                                              "threads",
+                                              "ms_per_step",
+                                              {"low", "ms_per_step_low"},
+                                              {"high", "ms_per_step_high"},
+                                              {"speedup", "speedup_vs_serial"},
+                                              "paper_ms",
+                                              {"roofline", "roofline_fraction"},
+                                              "position_error",
+                                              "verified",
+                                              "status"};
+  return columns;
+}
+
 /// Files of older programs, which end after this number of columns or more, are read too.
 constexpr std::size_t oldest_columns = 24;
 
@@ -119,11 +185,13 @@ std::vector<Aggregate> aggregates_of(std::span<const double> samples_ms) {
 
 }  // namespace
 
-RowColumn::RowColumn(const char* name, std::string_view column) : head{name} {
-  const auto found = std::ranges::find(result_columns, column, &ResultColumn::name);
-  if (found == result_columns.end())
-    throw std::invalid_argument("timings.csv has no column " + std::string(column));
-  value = [found](const ResultRow& row) { return cell_of(row, *found); };
+RowColumn::RowColumn(const ResultColumn& column)
+    : head{std::string(column.name)},
+      value([&column](const ResultRow& row) { return cell_of(row, column); }),
+      source(&column) {}
+
+RowColumn::RowColumn(const char* name, std::string_view column) : RowColumn(column_named(column)) {
+  head.name = name;
 }
 
 std::vector<Column> heads_of(const std::vector<RowColumn>& columns) {
@@ -146,13 +214,23 @@ Table table_of(RowPointers rows, const std::vector<RowColumn>& columns) {
 }
 
 Table timings_table(std::span<const ResultRow> rows) {
-  Table table;
-  for (const ResultColumn& column : result_columns) table.columns.push_back({std::string(column.name)});
-  for (const ResultRow& row : rows) {
-    std::vector<Cell>& cells = table.rows.emplace_back();
-    for (const ResultColumn& column : result_columns) cells.push_back(cell_of(row, column));
-  }
+  const std::vector<RowColumn> columns = all_columns();
+  Table table{heads_of(columns), {}};
+  for (const ResultRow& row : rows) table.rows.push_back(cells_of(row, columns));
   return table;
+}
+
+Table printed_table(RowPointers rows) { return table_of(rows, printed_columns()); }
+
+std::string timings_schema() {
+  return rows_schema("Rows of mssim bench",
+                     "The columns of timings.csv, as the page of mssim report has them in mssim-data.",
+                     all_columns());
+}
+
+std::string bench_schema() {
+  return rows_schema("Output of mssim bench --format json", "A row for each timed combination.",
+                     printed_columns());
 }
 
 std::string timings_csv(std::span<const ResultRow> rows) { return table_csv(timings_table(rows)); }

@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""check_json.py SCHEMA[#DEFINITION] FILE [--lines] [--optional KEY,...] [--maps KEY,...] [--wrong PATH=VALUE]...
+
+The JSON in FILE is valid by the schema, and damaged JSON is not: without a member, with an additional one, or with a value of another
+type. With --lines each line is a document. --optional names members that may be missing, --maps those whose own members have any name.
+--wrong names values of the right type that are not valid, as JSON. By Debian's own interpreter, for which python3-jsonschema gets installed.
+"""
+import argparse
+import copy
+import json
+import pathlib
+import sys
+
+import jsonschema
+
+
+def other_type(value):
+    """A value of a type that no schema allows in place of this one."""
+    if isinstance(value, bool):
+        return 7
+    return [] if isinstance(value, dict) else True if isinstance(value, (str, int, float)) else {}
+
+
+def shortened(value):
+    """The same with at most two elements in each list, because every value is damaged on its own."""
+    if isinstance(value, list):
+        return [shortened(element) for element in value[:2]]
+    return {key: shortened(member) for key, member in value.items()} if isinstance(value, dict) else value
+
+
+def damages(value, arguments, path=()):
+    """Each way to damage a document: the path to a value, and its damage."""
+    def with_change(change):
+        changed = copy.copy(value)
+        change(changed)
+        return changed
+
+    if path:
+        yield path, other_type(value)
+    if isinstance(value, dict):
+        if not path or path[-1] not in arguments.maps:
+            yield path, with_change(lambda changed: changed.update(surprise=1))
+            for key in value.keys() - arguments.optional:
+                yield path, with_change(lambda changed, key=key: changed.pop(key))
+    for key, member in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        yield from damages(member, arguments, (*path, key))
+
+
+def path_of(text):
+    """"rows/0/ratio": the keys and indices on the way to a value."""
+    return tuple(int(word) if word.isdigit() else word for word in text.split("/"))
+
+
+def damaged(document, path, damage):
+    """The document with that damage."""
+    if not path:
+        return damage
+    changed = copy.copy(document)
+    changed[path[0]] = damaged(changed[path[0]], path[1:], damage)
+    return changed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("schema")
+    parser.add_argument("file")
+    parser.add_argument("--lines", action="store_true")
+    for name in ("optional", "maps"):
+        parser.add_argument(f"--{name}", type=lambda words: set(words.split(",")), default=set())
+    parser.add_argument("--wrong", action="append", default=[])
+    arguments = parser.parse_args()
+    path, _, definition = arguments.schema.partition("#")
+    schema = json.loads(pathlib.Path(path).read_text())
+    jsonschema.Draft7Validator.check_schema(schema)
+    resolver = jsonschema.RefResolver(pathlib.Path(path).resolve().as_uri(), schema)
+    if definition:
+        schema = {"$ref": f"#/definitions/{definition}"}
+    validator = jsonschema.Draft7Validator(schema, resolver=resolver)
+
+    text = pathlib.Path(arguments.file).read_text()
+    problems = []
+    for document in map(json.loads, text.splitlines() if arguments.lines else [text]):
+        if not document:
+            problems.append("holds nothing")
+        problems += [f"{error.json_path}: {error.message[:300]}" for error in validator.iter_errors(document)]
+        small = shortened(document)
+        wrong = [(path_of(place), json.loads(value)) for place, _, value in (words.partition("=") for words in arguments.wrong)]
+        problems += [f"/{'/'.join(map(str, place))} may be {json.dumps(damage)[:300]}"
+                     for place, damage in [*damages(small, arguments), *wrong] if validator.is_valid(damaged(small, place, damage))]
+    sys.exit("\n".join(f"{arguments.file} by {arguments.schema}: {problem}" for problem in problems) or 0)
+
+
+if __name__ == "__main__":
+    main()
