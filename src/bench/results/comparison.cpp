@@ -79,7 +79,7 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
   add(sentences, "the CPU", cpu_of(before.machine, generations), cpu_of(now.machine, generations));
   add(sentences, "the compiler", before.build.compiler, now.build.compiler);
   add(sentences, "the build type", before.build.build_type, now.build.build_type);
-  add(sentences, "the compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
+  add(sentences, "the list of compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
   add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
   for (const SceneHash& scene : before.scenes)
     if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);

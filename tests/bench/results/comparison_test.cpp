@@ -188,7 +188,8 @@ TEST(Comparability, SaysWhatDiffers) {
       differences(made_up_provenance(), other),
       ElementsAre("the CPU was A Processor with 2 logical CPUs and is A Processor with 4 logical CPUs",
                   "the compiler was GNU 12 and is Clang 14", "the build type was Release and is Debug",
-                  "the compiler flags was \"-O3\" and is \"-O0\"", "the number of threads was 2 and is 3"));
+                  "the list of compiler flags was \"-O3\" and is \"-O0\"",
+                  "the number of threads was 2 and is 3"));
   other = made_up_provenance();
   other.machine.cpu_model = "Another";
   EXPECT_THAT(differences(other, made_up_provenance()),
