@@ -241,6 +241,10 @@ PaperFile artifact_of(const ReportFolder& folder, const ReportInput& input, cons
   for (const ResultRow& row : folder.rows)
     for (std::size_t i = 0; i < row.samples_ms.size(); ++i)
       minutes += row.samples_ms[i] * row.sample_steps[i] / 60000;
+  // Lists of names, which are longer than a line.
+  std::string breakable;
+  for (const char character : latex_prose("`" + command + "`"))
+    breakable += character == ',' ? std::string(",\\allowbreak{}") : std::string(1, character);
   std::string text = latex(environment_of(folder), prefix + "artifact", "");
   text += paragraph(
       "Commands",
@@ -249,7 +253,7 @@ PaperFile artifact_of(const ReportFolder& folder, const ReportInput& input, cons
           std::string(provenance.build.dirty ? "; the program that was measured had uncommitted changes"
                                              : "") +
           ":\n\\begin{quote}\\raggedright\n" + latex_prose("`git checkout " + provenance.build.commit + "`") +
-          "\\\\\n" + latex_prose("`" + command + "`") + "\n\\end{quote}\n" +
+          "\\\\\n" + breakable + "\n\\end{quote}\n" +
           (minutes > 0 ? "The timed samples alone took \\qty{" + three_digits(minutes) +
                              "}{\\minute}; warm-up and verification come on top."
                        : std::string()));
@@ -277,6 +281,7 @@ constexpr std::string_view preamble =
 \usepackage{graphicx}
 \usepackage{siunitx}
 \sisetup{mode=match, reset-text-family=false, reset-text-series=false}
+\setlength{\emergencystretch}{3em} % names of backends and scenes are not hyphenated
 \begin{document}
 )";
 

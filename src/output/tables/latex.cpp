@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <sstream>
 #include <utility>
 
 #include "output/tables/table.h"
@@ -162,23 +164,33 @@ std::string cell_words(std::string_view text) {
   return result + latex_text(words);
 }
 
-/// A cell, or the head of a column: of several lines, they are stacked.
-std::string cell_of(std::string_view text, bool right) {
-  constexpr TextSpelling spelling{cell_words, code_text, marked, "\\\\"};
-  const std::string cell = spelled(text, spelling);
-  return text.find('\n') == std::string_view::npos
+/// A cell, or the head of a column (column_of). Of several lines, they are stacked in one that breaks none.
+std::string cell_of(std::string_view text, const std::string& column) {
+  constexpr TextSpelling stacked{cell_words, code_text, marked, "\\\\"},
+      broken{cell_words, code_text, marked, "\\newline "};
+  const bool breaks_lines = column.size() > 1;
+  const std::string cell = spelled(text, breaks_lines ? broken : stacked);
+  return breaks_lines || text.find('\n') == std::string_view::npos
              ? cell
-             : fmt::format("\\shortstack[{}]{{{}}}", right ? 'r' : 'l', cell);
+             : fmt::format("\\shortstack[{}]{{{}}}", column, cell);
 }
 
-/// A column for tabular. One of long texts breaks its lines (by the package array, which siunitx loads).
+/// A column for tabular: r, l or, of long texts, one that breaks its lines (by the package array, which
+/// siunitx loads). That is as wide as its longest word, such as the hash of a commit, in typewriter letters.
 std::string column_of(const Table& table, std::size_t column) {
   constexpr std::size_t longest = 40;
+  constexpr double usual_mm = 55, letter_mm = 1.7;
   if (is_right_aligned(table, column)) return "r";
-  const bool is_long = std::ranges::any_of(table.rows, [&](const std::vector<Cell>& row) {
-    return width_of(cell_text(row[column], table.columns[column])) > longest;
-  });
-  return is_long ? ">{\\raggedright\\arraybackslash}p{55mm}" : "l";
+  std::size_t widest = 0, widest_word = 0;
+  for (const std::vector<Cell>& row : table.rows) {
+    const std::string text = cell_text(row[column], table.columns[column]);
+    widest = std::max(widest, width_of(text));
+    std::istringstream words(text);
+    for (std::string word; words >> word;) widest_word = std::max(widest_word, width_of(word));
+  }
+  if (widest <= longest) return "l";
+  return fmt::format(">{{\\raggedright\\arraybackslash}}p{{{:.0f}mm}}",
+                     std::max(usual_mm, std::ceil(letter_mm * static_cast<double>(widest_word))));
 }
 
 /// Writes the blocks of a page, one after the other.
@@ -218,12 +230,13 @@ class LatexPage {
                     latex_prose(caption), name_, ++tables_);
     // A table that is wider than the text is made as wide.
     text_ += "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n\\begin{tabular}{";
-    for (std::size_t i = 0; i < table.columns.size(); ++i) text_ += column_of(table, i);
+    std::vector<std::string> columns;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) text_ += columns.emplace_back(column_of(table, i));
     text_ += "}\n\\toprule\n";
-    line(table, [&](std::size_t i) { return table.columns[i].name; });
+    line(columns, [&](std::size_t i) { return table.columns[i].name; });
     text_ += "\\midrule\n";
     for (const std::vector<Cell>& row : table.rows)
-      line(table, [&](std::size_t i) { return cell_text(row[i], table.columns[i]); });
+      line(columns, [&](std::size_t i) { return cell_text(row[i], table.columns[i]); });
     text_ += "\\bottomrule\n\\end{tabular}}\n\\end{table}\n\n";
   }
 
@@ -236,9 +249,9 @@ class LatexPage {
   }
 
   template <class Text>
-  void line(const Table& table, Text text) {
-    for (std::size_t i = 0; i < table.columns.size(); ++i)
-      text_ += (i == 0 ? "" : " & ") + cell_of(text(i), is_right_aligned(table, i));
+  void line(const std::vector<std::string>& columns, Text text) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      text_ += (i == 0 ? "" : " & ") + cell_of(text(i), columns[i]);
     text_ += " \\\\\n";
   }
 
