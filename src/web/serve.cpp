@@ -74,13 +74,15 @@ Request read_request(int socket) {
   return {text.substr(0, text.find("\r\n")), text.substr(end + 4, length)};
 }
 
-void answer(int socket, std::string_view status, std::string_view type, std::string_view body) {
+/// `only_head`: without the body, whose length the head states all the same.
+void answer(int socket, std::string_view status, std::string_view type, std::string_view body,
+            bool only_head = false) {
   // Isolation from other origins makes the browser's clock finer.
   std::string text = fmt::format(
       "HTTP/1.1 {}\r\nContent-Type: {}; charset=utf-8\r\nContent-Length: {}\r\nConnection: close\r\n"
       "Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\r\n",
       status, type, body.size());
-  text += body;
+  if (!only_head) text += body;
   for (std::string_view rest = text; !rest.empty();) {
     const ssize_t count = ::send(socket, rest.data(), rest.size(), MSG_NOSIGNAL);
     if (count <= 0) return;
@@ -103,9 +105,11 @@ void serve_page(const std::function<std::string()>& make_page, int port, bool on
     // A browser may connect long before it asks, or never ask.
     const timeval patience{.tv_sec = 2, .tv_usec = 0};
     ::setsockopt(connection.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    const Request request = read_request(connection.get());
+    Request request = read_request(connection.get());
+    const bool only_head = request.line.starts_with("HEAD ");
+    if (only_head) request.line.replace(0, 4, "GET");
     if (request.line.starts_with("GET / ") || request.line.starts_with("GET /?")) {
-      answer(connection.get(), "200 OK", "text/html", page);
+      answer(connection.get(), "200 OK", "text/html", page, only_head);
     } else if (request.line.starts_with("POST /results ")) {
       try {
         answer(connection.get(), "200 OK", "text/plain", taken(request.body));
@@ -114,7 +118,7 @@ void serve_page(const std::function<std::string()>& make_page, int port, bool on
         answer(connection.get(), "400 Bad Request", "text/plain", error.what());
       }
     } else if (!request.line.empty()) {
-      answer(connection.get(), "404 Not Found", "text/plain", "there is only the page /");
+      answer(connection.get(), "404 Not Found", "text/plain", "there is only the page /", only_head);
     }
   }
 }

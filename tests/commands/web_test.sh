@@ -19,6 +19,25 @@ ends 0 web --out page.html
 (($(stat -c %s page.html) < 8000000)) || fail "the page has more than 8 MB"
 if grep -qE '(src|href)="?https?:|@import|import\(' page.html; then fail "the page needs something beside it"; fi
 
+# HEAD is answered like GET, without the body.
+begins web --serve
+soon 60 test -s "$work/out" || fail "mssim does not serve the page"
+python3 - "$(grep -o '[0-9]*' "$work/out")" <<'PYTHON' || fail "HEAD is not answered like GET"
+import socket, sys
+
+def answer(method, path):
+    """Head and body of all that comes until the connection is closed."""
+    with socket.create_connection(("localhost", int(sys.argv[1]))) as connection:
+        connection.sendall(f"{method} {path} HTTP/1.1\r\nHost: localhost:1\r\n\r\n".encode())
+        return b"".join(iter(lambda: connection.recv(1 << 16), b"")).split(b"\r\n\r\n", 1)
+
+for path, status in (("/", b"200"), ("/?auto=cloth2500", b"200"), ("/nothing", b"404")):
+    head, body = answer("GET", path)
+    assert status in head.splitlines()[0] and body, head
+    assert answer("HEAD", path) == [head, b""], path
+PYTHON
+is_ended 143 TERM
+
 chromium=$(command -v chromium) || {
   echo "chromium is missing: the page is not opened" >&2
   exit 77
