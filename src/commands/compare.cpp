@@ -1,9 +1,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "application/bench/ab_comparison.h"
@@ -29,6 +31,7 @@ struct CompareOptions {
   double threshold_percent = 5;
   ComparisonFormat format = ComparisonFormat::table;
   std::string out;  ///< folder for the comparison; empty: none
+  bool overwrite = false;
   bool force = false;
 };
 
@@ -68,13 +71,15 @@ std::vector<std::string> regressions(const RunComparison& comparison) {
   return sentences;
 }
 
+/// The files of --out, and how they hold the comparison.
+constexpr auto files = std::to_array<std::pair<const char*, ComparisonFormat>>(
+    {{"comparison.md", ComparisonFormat::markdown}, {"comparison.json", ComparisonFormat::json}});
+
 int report(const RunComparison& comparison, const CompareOptions& options) {
   std::cout << to_text(comparison, options.format, terminal_of(STDOUT_FILENO).utf8);
-  if (!options.out.empty()) {
-    const std::filesystem::path folder = options.out;
-    write_file_atomically(folder / "comparison.md", to_text(comparison, ComparisonFormat::markdown));
-    write_file_atomically(folder / "comparison.json", to_text(comparison, ComparisonFormat::json));
-  }
+  if (!options.out.empty())
+    for (const auto& [name, format] : files)
+      write_file_atomically(std::filesystem::path(options.out) / name, to_text(comparison, format));
   tell_first(regressions(comparison));
   const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
   if (undecided > 0)
@@ -102,7 +107,11 @@ int compare_runs(const CompareOptions& options) {
 
 int run(CompareOptions options) {
   options.ab.threshold = options.threshold_percent / 100;
-  if (!options.out.empty()) make_folder(options.out);  // finds what cannot be written before it measures
+  if (!options.out.empty()) {  // finds what cannot be written before it measures
+    for (const auto& [name, format] : files)
+      require_free(std::filesystem::path(options.out) / name, "--out", options.overwrite);
+    make_folder(options.out);
+  }
   if (!options.programs) return compare_runs(options);
   require_few_threads(options.ab.threads);
   if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
@@ -127,8 +136,11 @@ std::function<int()> declare_compare(Arguments& arguments) {
                                           {"markdown", ComparisonFormat::markdown},
                                           {"json", ComparisonFormat::json}},
                                          "What to print: table, markdown or json (default: table)");
-  arguments.add("--out DIR", options->out,
-                "Folder for the comparison as comparison.md and, with the samples, comparison.json");
+  const Argument out =
+      arguments.add("--out DIR", options->out,
+                    "Folder for the comparison as comparison.md and, with the samples, comparison.json");
+  arguments.add_flag("--overwrite", options->overwrite, "Replace a comparison that the folder has")
+      .needs(out);
   const Argument ab =
       arguments.add_flag("--ab", options->programs,
                          "BASE and NEW are mssim programs: run them alternately, as a new process each time");

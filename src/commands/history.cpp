@@ -1,12 +1,10 @@
 #include "bench/results/history.h"
 
 #include <algorithm>
-#include <array>
 #include <iostream>
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "application/bench/bench_results.h"
@@ -31,18 +29,12 @@ struct HistoryOptions {
   ListingFormat format = ListingFormat::table;
 };
 
-/// Refuses an option that only the other action takes.
-void refuse_options(const std::string& action, std::span<const std::pair<const char*, bool>> given) {
-  for (const auto& [name, is_given] : given)
-    if (is_given) throw UsageError("mssim history {} takes no {}: leave it out", action, name);
-}
-
 int add(const HistoryOptions& options) {
   if (options.folder.empty())
     throw UsageError("FOLDER is missing: give the folder that mssim bench --out wrote");
-  refuse_options(options.action, std::array{std::pair{"--threshold", options.threshold_percent.has_value()},
-                                            std::pair{"--last", options.last.has_value()},
-                                            std::pair{"--format", options.format != ListingFormat::table}});
+  refuse_options("history add", {{"--threshold", options.threshold_percent.has_value()},
+                                 {"--last", options.last.has_value()},
+                                 {"--format", options.format != ListingFormat::table}});
   const MeasuredRun run = read_run(options.folder);
   // As it reads back: the entries that it is compared with have been cut and escaped.
   const std::string line = history_line(entry_of(run.provenance, run.rows, options.commit));
@@ -79,8 +71,7 @@ int show(const HistoryOptions& options) {
   if (!options.folder.empty())
     throw UsageError("show takes no FOLDER, but was given {}: give the file with --file",
                      printable(options.folder));
-  refuse_options(options.action, std::array{std::pair{"--commit", !options.commit.empty()},
-                                            std::pair{"--replace", options.replace}});
+  refuse_options("history show", {{"--commit", !options.commit.empty()}, {"--replace", options.replace}});
   const std::vector<HistoryEntry> history = read_history(options.file);
   const std::vector<MachineHistory> machines = machines_of(history);
   const double threshold = options.threshold_percent.value_or(5) / 100;

@@ -172,8 +172,13 @@ constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"timings-schema", nullptr, timings_schema}});
 
 int run_list(const ListOptions& options) {
-  require_device(options.execution, table_backends());
   const Listed& subject = *found_in(subjects, options.subject, &Listed::name);
+  const bool no_backends = subject.list != list_backends;
+  refuse_options("list " + options.subject,
+                 {{"--format", subject.schema && options.format != ListingFormat::table},
+                  {"--device", no_backends && !options.execution.device.empty()},
+                  {"--backend-folder", no_backends && !options.own_backends.folders.empty()}});
+  require_device(options.execution, table_backends());
   std::cout << (subject.schema ? subject.schema() : to_text(subject.list(options), options.format));
   return exit_ok;
 }
@@ -190,8 +195,9 @@ std::function<int()> declare_list(Arguments& arguments) {
            one_of("word", known))
       .required();
   declare_listing_format(arguments, options->format);
-  arguments.add("--device N|NAME", options->execution.device,
-                "OpenCL device to check backends with: its number or a part of its name or platform");
+  arguments.add(
+      "--device N|NAME", options->execution.device,
+      "With backends: OpenCL device to check them with, its number or a part of its name or platform");
   declare_backend_folders(arguments, options->own_backends);
   return [options] { return run_list(*options); };
 }

@@ -204,7 +204,7 @@ std::optional<double> unit_given(const std::string& text) {
 }
 
 /// An existing scene is replaced only on request, and a body never.
-void require_free(const MeasureOptions& options) {
+void require_free_scene(const MeasureOptions& options) {
   const fs::path scene = options.scene;
   if (scene.extension() != ".json")
     throw UsageError("--scene is {}: give a file that ends in .json, as mssim run requires",
@@ -212,9 +212,7 @@ void require_free(const MeasureOptions& options) {
   if (escaped(options.body) != options.body)
     throw UsageError(printable(options.body, 1000) +
                      " has characters that a scene file cannot hold: give the file another name");
-  if (fs::exists(scene) && !options.overwrite)
-    throw UsageError(printable(options.scene, 1000) +
-                     " already exists: give another --scene, or --overwrite to replace it");
+  require_free(scene, "--scene", options.overwrite);
 }
 
 void tell(const MeasureOptions& options, const BodyListing& listing) {
@@ -312,7 +310,7 @@ int run_measure(const MeasureOptions& options) {
             "scene of a garment, which ends in .json");
       return measure_scene(options);
     }
-    if (!options.scene.empty()) require_free(options);
+    if (!options.scene.empty()) require_free_scene(options);
     MeasuredFile found = measure_file(options);
     return options.scene.empty() ? exit_ok : write_scene(options, std::move(found));
   } catch (const InputError& error) {

@@ -190,6 +190,18 @@ void declare_listing_format(Arguments& arguments, ListingFormat& target) {
       "What to print: table, csv or json (default: table)");
 }
 
+void refuse_options(std::string_view command,
+                    std::initializer_list<std::pair<std::string_view, bool>> given) {
+  for (const auto& [name, is_given] : given)
+    if (is_given) throw UsageError("mssim {} takes no {}: leave it out", command, name);
+}
+
+void require_free(const std::filesystem::path& file, std::string_view option, bool overwrite) {
+  if (std::error_code error; std::filesystem::exists(file, error) && !overwrite)
+    throw UsageError("{} already exists: give another {}, or --overwrite to replace it",
+                     printable(file.string(), 1000), option);
+}
+
 void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads,
                        std::vector<std::string>* sets) {
   constexpr std::string_view several = "; each of several gets rows of its own";

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -92,6 +94,12 @@ Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
 
 /// Declares --format for a listing. `target` must outlive the parsing.
 void declare_listing_format(Arguments& arguments, ListingFormat& target);
+
+/// Throws UsageError for the first option that is given. `command`: one that takes none of them.
+void refuse_options(std::string_view command, std::initializer_list<std::pair<std::string_view, bool>> given);
+
+/// Throws UsageError if there is such a file, unless it is to be replaced. `option` names it, or its folder.
+void require_free(const std::filesystem::path& file, std::string_view option, bool overwrite);
 
 /// Declares --threads, --ranks, --launcher, --device, --memory, --roots and --instruction-set. If `threads`
 /// is given, --threads takes several numbers into it; if `sets` is given, --instruction-set takes several

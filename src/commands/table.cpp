@@ -4,11 +4,11 @@
 #include <iterator>
 #include <memory>
 #include <set>
-#include <system_error>
 #include <vector>
 
 #include "application/bench/suites.h"
 #include "commands/command.h"
+#include "commands/options.h"
 #include "commands/result_folders.h"
 #include "platform/files.h"
 #include "platform/process.h"
@@ -93,10 +93,7 @@ int table(const TableOptions& options) {
   }
   const std::vector<PaperFile> files = paper_files(input);
   const fs::path out = options.out;
-  for (const PaperFile& file : files)
-    if (std::error_code error; fs::exists(out / file.name, error) && !options.overwrite)
-      throw UsageError("{} already exists: give another --out, or --overwrite to replace it",
-                       printable((out / file.name).string(), 1000));
+  for (const PaperFile& file : files) require_free(out / file.name, "--out", options.overwrite);
   make_folder(out);
   std::vector<fs::path> charts;
   for (const PaperFile& file : files) {

@@ -54,11 +54,15 @@ ends 0 bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --
 [ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
 
 # A device that was named is missed before anything is measured.
-for command in 'bench --scene cloth2500' 'bench --scene cloth2500 --dry-run' 'bench --suite guide --dry-run' 'guide --scene cloth2500' 'list backends' 'list devices' \
+for command in 'bench --scene cloth2500' 'bench --scene cloth2500 --dry-run' 'bench --suite guide --dry-run' 'guide --scene cloth2500' 'list backends' \
   'run --scene cloth2500 --backend hybrid'; do
   # shellcheck disable=SC2086
   expect 3 'no OpenCL device has "nothing".*there are: 0 (' $command --device nothing
 done
+# A list that would not use an option refuses it.
+expect 2 'list devices takes no --device' list devices --device 0
+expect 2 'list scenes takes no --backend-folder' list scenes --backend-folder "$work"
+expect 2 'list schema takes no --format' list schema --format csv
 
 # The methods to avoid the data race: those asked for, and the base of the ratios where it is one of them.
 ends 0 bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races"

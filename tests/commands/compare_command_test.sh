@@ -87,7 +87,10 @@ PYTHON
 # A folder keeps both.
 compare 1 "$work/base" "$work/slower" --format markdown --out "$work/kept/comparison"
 cmp "$work/out" "$work/kept/comparison/comparison.md" || fail "the kept page is not the printed one"
-compare 1 "$work/base" "$work/slower" --format json --out "$work/kept/comparison"
+expect 2 'kept/comparison/comparison.md already exists.*--overwrite' compare "$work/base" "$work/slower" --out "$work/kept/comparison"
+rm "$work/kept/comparison/comparison.md"
+expect 2 'comparison.json already exists.*--overwrite' compare "$work/base" "$work/slower" --out "$work/kept/comparison"
+compare 1 "$work/base" "$work/slower" --format json --out "$work/kept/comparison" --overwrite
 cmp "$work/out" "$work/kept/comparison/comparison.json" || fail "the kept JSON is not the printed one"
 expect 4 'timings.csv' compare "$work/base" "$work/slower" --out "$work/base/timings.csv"
 
