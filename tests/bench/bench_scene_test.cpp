@@ -1,53 +1,15 @@
-#include "bench/bench_scene.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <ctime>
-#include <filesystem>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <optional>
 #include <thread>
-#include <utility>
 
-#include "backends/backends.h"
 #include "bench/verification/reference_cache.h"
-#include "bench/verification/verification.h"
-#include "integrators/all_integrators.h"
 #include "platform/files.h"
 #include "platform/process.h"
-#include "tests/support/systems.h"
+#include "tests/bench/bench_scene_fixture.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
-
-using testing::HasSubstr;
-
-/// The serial backend under another name.
-class OtherSerial : public Backend {
- public:
-  explicit OtherSerial(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {}
-  void set_state(const State& state) override { serial_->set_state(state); }
-  void step(int count) override { serial_->step(count); }
-  State state() const override { return serial_->state(); }
-  std::string device() const override { return "made up"; }
-  int threads() const override { return 1; }
-
- private:
-  std::unique_ptr<Backend> serial_;
-};
-
-template <class Other>
-std::unique_ptr<Backend> make_other(const System& system, const Integrator& integrator, double dt_s,
-                                    const ExecutionOptions& options) {
-  return std::make_unique<Other>(find_backend("serial")->make(system, integrator, dt_s, options));
-}
 
 /// A backend that is right until its state has been set a number of times, as a data race may be.
 class RightForAWhile final : public OtherSerial {
@@ -83,44 +45,6 @@ class OnTwoProcessors final : public OtherSerial {
 };
 constexpr BackendInfo undividable{
     "undividable", "", "takes two", false, {}, make_other<OnTwoProcessors>, {}, {}};
-
-/// A right one behind which a program stands that fails at one of its calls, counted from 1. It takes note of
-/// whether it rests.
-class FailsAt final : public OtherSerial {
- public:
-  explicit FailsAt(std::unique_ptr<Backend> serial) : OtherSerial(std::move(serial)) {
-    calls = 0;
-    call();
-  }
-  void set_state(const State& state) override {
-    call();
-    OtherSerial::set_state(state);
-  }
-  void step(int count) override {
-    call();
-    OtherSerial::step(count);
-  }
-  State state() const override {
-    call();
-    return OtherSerial::state();
-  }
-  std::string note() const override { return "settings"; }
-  void rest() override { rests = true; }
-  std::string end() override { return "all went well"; }
-  double processor_seconds() const override { return processor_s += 0.5; }
-
-  inline static int calls, fails_at;
-  inline static bool rests;
-  inline static double processor_s;
-
- private:
-  static void call() {
-    rests = false;
-    if (++calls == fails_at) throw BackendFailure("it stumbled", "oh dear");
-  }
-};
-constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, {}, make_other<FailsAt>,
-                                {},          {}};
 
 /// What a program may do that wants to look fast.
 enum class Cheat : std::uint8_t {
@@ -207,82 +131,6 @@ class WatchedSerial final : public OtherSerial {
 constexpr BackendInfo watched{
     "serial", "", "", false, {}, make_other<WatchedSerial>, {}, {}, 1, BackendRole::baseline};
 
-/// Takes 50 ms and 40 MB to be made, most of which it then frees, and 30 ms for its first step.
-class SlowToBegin final : public OtherSerial {
- public:
-  explicit SlowToBegin(std::unique_ptr<Backend> serial) : OtherSerial(std::move(serial)) {
-    const std::vector<char> passing(40'000'000, 'x');
-    std::this_thread::sleep_for(std::chrono::milliseconds(passing.back() == 'x' ? 50 : 0));
-  }
-  void step(int count) override {
-    if (!std::exchange(has_stepped_, true)) std::this_thread::sleep_for(std::chrono::milliseconds(30));
-    OtherSerial::step(count);
-  }
-
- private:
-  bool has_stepped_ = false;
-};
-constexpr BackendInfo slow_to_begin{
-    "slow-to-begin", "", "slow only at first", false, {}, make_other<SlowToBegin>, {}, {}};
-
-/// Takes 20 ms for every tenth request of four steps, and little for the others.
-class Stuttering final : public OtherSerial {
- public:
-  using OtherSerial::OtherSerial;
-  void step(int count) override {
-    if (count == 4 && ++frames % 10 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    OtherSerial::step(count);
-  }
-
-  inline static int frames = 0;
-};
-constexpr BackendInfo stuttering{"stuttering", "", "slow now and then", false, {}, make_other<Stuttering>,
-                                 {},           {}};
-
-/// A right one for each of whose requests the processors use 3 J.
-class Hungry final : public OtherSerial {
- public:
-  using OtherSerial::OtherSerial;
-  void step(int count) override {
-    OtherSerial::step(count);
-    write_file_atomically(counter, fmt::format("{}\n", used_uj += 3'000'000));
-  }
-
-  inline static std::filesystem::path counter;
-  inline static std::int64_t used_uj = 0;
-};
-constexpr BackendInfo hungry{"hungry", "", "uses energy", false, {}, make_other<Hungry>, {}, {}};
-
-class BenchScene : public testing::Test {
- protected:
-  BenchScene() {
-    job_.name = "test";
-    job_.system = &system_;
-    job_.dt_s = 1e-4;
-    job_.backends = {find_backend("serial"), find_backend("openmp")};
-    job_.integrators = {find_integrator("semi-euler"), find_integrator("rk4")};
-    job_.execution.threads = 1;
-    job_.rounds = 3;
-    job_.sample_seconds = 1e-4;
-  }
-  std::vector<ResultRow> run() {
-    return bench_scene(job_,
-                       {.progress =
-                            [](const std::string&, double done) {
-                              EXPECT_GE(done, 0);
-                              EXPECT_LE(done, 1);
-                            },
-                        .after_round = [&](const std::vector<ResultRow>& rows) { kept_.push_back(rows); },
-                        .stop = [&] { return asked_++ >= stop_after_; }});
-  }
-
-  System system_ = cloth_system(9, 11);
-  SceneJob job_;
-  std::vector<std::vector<ResultRow>> kept_;  ///< after every round
-  int asked_ = 0;
-  int stop_after_ = std::numeric_limits<int>::max();
-};
-
 TEST_F(BenchScene, GivesARowForEveryCombinationAndKeepsEveryRound) {
   const std::vector<ResultRow> rows = run();
   ASSERT_EQ(rows.size(), 4U);
@@ -304,74 +152,6 @@ TEST_F(BenchScene, GivesARowForEveryCombinationAndKeepsEveryRound) {
       ASSERT_EQ(kept_[round][i].samples_ms.size(), round + 1);
       EXPECT_EQ(kept_[round][i].samples_ms[round], rows[i].samples_ms[round]);
     }
-}
-
-TEST_F(BenchScene, TellsWhatARowTookBeforeItsSamples) {
-  job_.backends = {find_backend("serial"), &slow_to_begin};
-  job_.integrators.resize(1);
-  const std::vector<ResultRow> rows = run();
-  EXPECT_GT(rows[0].setup_s, 0);
-  EXPECT_LT(rows[0].setup_s, rows[1].setup_s);
-  EXPECT_GT(rows[0].first_step_ms, 0);
-  EXPECT_LT(rows[0].peak_memory_bytes, 4'000'000U);
-  EXPECT_GE(rows[1].setup_s, 0.05);
-  EXPECT_GE(rows[1].first_step_ms, 30);
-  EXPECT_LT(rows[1].ms_per_step, 30);
-  EXPECT_EQ(rows[1].compile_s, std::nullopt);
-  EXPECT_GT(rows[1].peak_memory_bytes, 39'000'000U);
-  EXPECT_LT(rows[1].peak_memory_bytes, 50'000'000U);
-}
-
-TEST_F(BenchScene, TellsWhichPartOfTheSetupTheDriverCompiled) {
-  if (!unavailable_reason(*find_backend("opencl"), job_.execution).empty())
-    GTEST_SKIP() << unavailable_reason(*find_backend("opencl"), job_.execution);
-  job_.backends = {find_backend("opencl")};
-  job_.integrators.resize(1);
-  const ResultRow row = run().front();
-  EXPECT_GT(row.compile_s, 0);
-  EXPECT_LT(row.compile_s, row.setup_s);
-}
-
-TEST_F(BenchScene, TimesSingleFramesIfItIsToldHowMany) {
-  job_.backends = {find_backend("serial"), &stuttering};
-  job_.integrators.resize(1);
-  EXPECT_EQ(run()[0].frame_steps, std::nullopt);
-  job_.fps = 2500;  // 4 steps of 1e-4 s
-  Stuttering::frames = 0;
-  const std::vector<ResultRow> rows = run();
-  EXPECT_EQ(rows[0].frame_steps, 4U);
-  EXPECT_GT(rows[0].frame_p50_ms, 0);
-  EXPECT_LE(rows[0].frame_p50_ms, rows[0].frame_p95_ms);
-  EXPECT_LT(rows[1].frame_p50_ms, 20);
-  EXPECT_GE(rows[1].frame_p95_ms, 20);
-  EXPECT_GE(rows[1].frame_p99_ms, rows[1].frame_p95_ms);
-  EXPECT_GE(Stuttering::frames, timed_frames);
-}
-
-class BenchSceneWithEnergy : public BenchScene, public TemporaryFolder {};
-
-TEST_F(BenchSceneWithEnergy, TellsWhatAStepTakes) {
-  const std::filesystem::path zone = path() / "sys/class/powercap/intel-rapl:0";
-  std::filesystem::create_directories(zone);
-  write_file_atomically(zone / "name", "package-0\n");
-  write_file_atomically(zone / "max_energy_range_uj", "262143328850\n");
-  write_file_atomically(Hungry::counter = zone / "energy_uj", "0\n");
-  job_.root = path();
-  job_.backends = {&hungry};
-  job_.integrators.resize(1);
-  const ResultRow row = run().front();
-  EXPECT_NEAR(row.joules_per_step.value() * row.sample_steps.front(), 3, 1e-9);
-  job_.root = path() / "none";
-  EXPECT_EQ(run().front().joules_per_step, std::nullopt);
-}
-
-TEST_F(BenchScene, TellsBytesOfAStepASecond) {
-  job_.backends = {find_backend("serial")};
-  job_.integrators = {find_integrator("semi-euler")};
-  const ResultRow row = run().front();
-  // A step reads and writes positions and velocities: 4 vectors of 3 floats for each of 99 nodes, 4,752
-  // bytes. A GB/s is 1e6 bytes a millisecond.
-  EXPECT_NEAR(row.gigabytes_per_second.value() * row.ms_per_step.value() * 1e6, 4752, 1e-6);
 }
 
 TEST_F(BenchScene, TellsByTheHashesOfStatesWhichRowsAreTheSameToTheLastBit) {
@@ -702,82 +482,6 @@ TEST_F(BenchSceneWithReferences, FailsNoRowByWhatAFileSays) {
     EXPECT_EQ(row.note, "");
   }
   EXPECT_EQ(run()[0].note, "compared with a reference of an earlier run") << "it was replaced";
-}
-
-TEST_F(BenchScene, SaysHowManyProcessorsTheSamplesTook) {
-  job_.backends = {find_backend("serial"), &stumbling};
-  job_.integrators = {find_integrator("semi-euler")};
-  FailsAt::fails_at = 0;
-  const std::vector<ResultRow> rows = run();
-  EXPECT_GT(rows[0].processors_used, 0);
-  EXPECT_LT(rows[0].processors_used, 1.5);
-  EXPECT_GT(rows[1].processors_used, 10) << "half a second for each sample of a tenth of a millisecond";
-}
-
-TEST(Summarise, WorksOutWhatFollowsFromTheSamples) {
-  ResultRow row, serial;
-  row.integrator = "rk4";
-  row.springs_unique = 1000;
-  row.samples_ms = {2, 1, 4};
-  serial.samples_ms = {10, 1, 4};
-  summarise(row, &serial);
-  EXPECT_EQ(row.ms_per_step, 2);
-  EXPECT_EQ(row.ms_per_step_min, 1);
-  // 1,000 springs in each of 4 stages, in 2 ms.
-  EXPECT_EQ(row.springs_per_second, 2e6);
-  // Of the rounds' ratios 5, 1 and 1; that of the medians would be 2.
-  EXPECT_EQ(row.speedup_vs_serial, 1);
-  serial.samples_ms.pop_back();
-  row.speedup_vs_serial.reset();
-  row.springs_per_second.reset();
-  row.integrator = "implicit-euler";
-  summarise(row, &serial);
-  EXPECT_FALSE(row.speedup_vs_serial) << "there are no pairs";
-  EXPECT_FALSE(row.springs_per_second) << "nobody counts the products of conjugate gradients";
-}
-
-TEST(RequireFinite, FailsARowByAnyNumberOfItsColumns) {
-  std::size_t numbers = 0;
-  for (const ResultColumn& column : result_columns)
-    if (const auto* number = std::get_if<std::optional<double> ResultRow::*>(&column.value)) {
-      ResultRow row;
-      row.verified = true;
-      row.** number = std::numeric_limits<double>::infinity();
-      require_finite(row);
-      EXPECT_EQ(row.status, "failed: " + std::string(column.name) + " is not finite");
-      EXPECT_FALSE(row.**number || row.verified) << column.name;
-      ++numbers;
-    }
-  EXPECT_GE(numbers, 18U);
-}
-
-TEST(SampleLength, FillsTheTimeThatASampleIsToTake) {
-  EXPECT_EQ(sample_steps(1e-3, 0.1, 1e-9), 100);
-  EXPECT_EQ(sample_steps(10, 0.1, 1e-9), 1);
-}
-
-TEST(SampleLength, IsLimitedUnlessTheClockIsTooCoarseForThat) {
-  EXPECT_EQ(sample_steps(1e-6, 0.1, 1e-9), max_sample_steps);
-  // 2000 steps would be 20 microseconds; a thousand steps of the clock are a millisecond.
-  EXPECT_EQ(sample_steps(1e-8, 0.1, 1e-6), 100'000);
-  // Never longer than asked for.
-  EXPECT_EQ(sample_steps(1e-8, 1e-4, 1e-6), 10'000);
-  EXPECT_GE(sample_steps(0, 0.1, 1e-9), 1);
-}
-
-TEST(WarmUp, EndsWhenTwoTrialsInARowWereNotFaster) {
-  EXPECT_FALSE(is_warm({}));
-  EXPECT_FALSE(is_warm(std::vector{1.0, 1.0}));
-  EXPECT_TRUE(is_warm(std::vector{1.0, 1.0, 1.0}));
-  EXPECT_TRUE(is_warm(std::vector{1.0, 0.99, 1.5}));
-  EXPECT_FALSE(is_warm(std::vector{5.0, 3.0, 2.0}));
-  // Two in a hundred are no change.
-  EXPECT_TRUE(is_warm(std::vector{1.0, 0.981, 0.981}));
-  EXPECT_FALSE(is_warm(std::vector{1.0, 0.979, 0.979}));
-  EXPECT_FALSE(is_warm(std::vector{5.0, 3.0, 2.0, 1.5, 1.2}));
-  EXPECT_FALSE(is_warm(std::vector{5.0, 3.0, 1.0, 1.0}));
-  EXPECT_TRUE(is_warm(std::vector{5.0, 3.0, 1.0, 1.0, 1.0}));
-  EXPECT_TRUE(is_warm(std::vector{5.0, 3.0, 1.0, 7.0, 0.99}));
 }
 
 }  // namespace
