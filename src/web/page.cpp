@@ -200,6 +200,12 @@ json integrators_json() {
   return table;
 }
 
+/// The module of the row `wasm`; null if mssim was built without a compiler for it (cmake/wasm_module.cmake).
+json module_text() {
+  const std::filesystem::path file = data_folder() / "spring_list.wasm";
+  return std::filesystem::exists(file) ? json(base64(read_file(file))) : json();
+}
+
 json page_data() {
   Provenance provenance;
   provenance.build = build_info();
@@ -226,6 +232,7 @@ json page_data() {
           {"scenes", scenes},
           {"shapes", shapes.all()},
           {"columns", columns},
+          {"wasm", module_text()},
           {"paper_device", paper_device},
           {"energy_tolerance", energy_tolerance},
           {"verification_steps", verification_steps},

@@ -3,19 +3,23 @@
 
 As a program: web.py CHROMIUM PAGE FOLDER runs the checks of web_test.sh, and leaves results as FOLDER/NAME.json.
 """
+import base64
 import concurrent.futures
 import csv
 import http.server
 import io
+import itertools
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import threading
 import time
 
+BACKENDS = ["javascript", "wasm", "webgpu"]
 WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"]
 
 
@@ -114,8 +118,8 @@ def query_of(scenes, integrators="semi-euler", rounds=1, seconds=0.002, more="")
     return f"auto={scenes}&integrators={integrators}&rounds={rounds}&seconds={seconds}{more}"
 
 
-# What a kernel may have wrong: text of the page's WebGPU part, and what stands there instead. The reference stays right.
-MUTANTS = {
+# What a kernel may have wrong, by backend: text of the page's part for it, and what stands there instead. The reference stays right.
+WEBGPU_MUTANTS = {
     "a force with the other sign": ("spring_pull(dot(d, d),", "-spring_pull(dot(d, d),"),
     "springs act from one end": ("for (const end of [1, -1])", "for (const end of [1])"),
     "a spring is missing at the right edge": ("column + ${c} < ${grid.columns})", "column + ${c} < ${grid.columns - 1})"),
@@ -128,6 +132,18 @@ MUTANTS = {
     "no air": ("f32(system.viscous_damping)", "f32(0)"),
     "the floor does not brake": ("floor_velocity(v_next, ${f32(restitution)}, ${f32(friction)})", "floor_velocity(v_next, ${f32(restitution)}, 0)"),
     "the last springs of slices are missing": ("entry < first_entry[i / ${sliceLanes}u + 1u]", "entry + 1u < first_entry[i / ${sliceLanes}u + 1u]"),
+}
+WASM_MUTANTS = {
+    "the last spring is missing": ("if (i >= count) continue", "if (i >= count - 1) continue"),
+    "half of the damping is missing": ("4 * c] = material[name]", "4 * c] = material[name] * (name === 'damping' ? 0.5 : 1)"),
+    "stiffness is 1 % too large": ("= material.stiffness * system.restLengths[s];", "= 1.01 * material.stiffness * system.restLengths[s];"),
+    "another dt": ("data.integrators.indexOf(integrator), dt,", "data.integrators.indexOf(integrator), 1.002 * dt,"),
+    "pins move": ("system.free[node] / mass", "1 / mass"),
+    "no air": ("count, system.viscous_damping", "count, 0"),
+    "the floor does not brake": ("system.gravity, ...system.floor)", "system.gravity, system.floor[0], system.floor[1], 0)"),
+    # Instructions of the module, f32x4.*, which take and give as much: those of the springs and of the integrator.
+    "a magnitude for a root": (b"\xfd\xe3\x01", b"\xfd\xe0\x01"),
+    "forces pull both ends the same way": (b"\xfd\xe5\x01\xfd\x0b\x04\x00", b"\xfd\xe4\x01\xfd\x0b\x04\x00"),
 }
 
 
@@ -145,21 +161,40 @@ def check_rows(browser, page):
     every = browser.open(page) or browser.value("data.integrators.map(({name}) => name)")
     browser.open(page, query_of("cloth2500,bodies3858", ",".join(every), 3, 0.005))
     rows = rows_of(result := browser.results())
-    expect(len(rows) == 2 * 2 * len(every), f"{len(rows)} rows")
+    expect(len(rows) == 2 * len(BACKENDS) * len(every), f"{len(rows)} rows")
+    expect({row["backend"] for row in rows} == set(BACKENDS), "a backend has no row")
     for row in rows:
         expect(is_timed(row), f"not right: {row}")
     expect(browser.value("Math.abs(session.done / session.units - 1) < 1e-6"), "the progress does not end at its end")
     return {"result": result}
 
 
+def mutated(page, right, wrong):
+    """The page with something else in the place of a text, or of bytes of its module, which it has once."""
+    expect(page.count(right) == 1, f"the page has {page.count(right)} times: {right}")
+    return page.replace(right, wrong)
+
+
+def with_mutant(page, right, wrong):
+    if isinstance(right, str):
+        return mutated(page, right, wrong)
+    before, module, after = re.split(r'(?<="wasm":")([^"]+)', page)
+    return before + base64.b64encode(mutated(base64.b64decode(module), right, wrong)).decode() + after
+
+
 def check_mutants(browser, page):
-    for name, (right, wrong) in MUTANTS.items():
-        expect(page.count(right) == 1, f"the page has {page.count(right)} times: {right}")
-        browser.open(page.replace(right, wrong), query_of("bodies3858" if "slices" in name else "cloth2500"))
+    """A page has a mutant of each backend, as long as there are some."""
+    for of_webgpu, of_wasm in itertools.zip_longest(WEBGPU_MUTANTS.items(), WASM_MUTANTS.items()):
+        mutants = {backend: mutant for backend, mutant in (("webgpu", of_webgpu), ("wasm", of_wasm)) if mutant}
+        changed = page
+        for _, change in mutants.values():
+            changed = with_mutant(changed, *change)
+        browser.open(changed, query_of("bodies3858" if "slices" in mutants.get("webgpu", " ")[0] else "cloth2500"))
         rows = {row["backend"]: row for row in rows_of(browser.results())}
-        wrong = rows.pop("webgpu")
-        expect(wrong["status"].startswith("failed") and not wrong["ms_per_step"], f"not noticed: {name}: {wrong}")
-        expect(all(map(is_timed, rows.values())), f"others fail: {name}: {rows}")
+        for backend, (name, _) in mutants.items():
+            wrong = rows.pop(backend)
+            expect(wrong["status"].startswith("failed") and not wrong["ms_per_step"], f"not noticed: {name}: {wrong}")
+        expect(rows and all(map(is_timed, rows.values())), f"others fail: {mutants}: {rows}")
 
 
 def check_accidents(browser, page):
@@ -217,6 +252,12 @@ def check_without(browser, page):
     rows = rows_of(without := browser.results())
     expect("webgpu" not in [row["backend"] for row in rows] and all(map(is_timed, rows)), f"rows without WebGPU: {rows}")
     expect("WebGPU" in browser.value("element('notes').textContent"), "the page does not say that there is no WebGPU")
+    # A page of an mssim that was built without a compiler for WebAssembly.
+    browser.open(re.sub(r'"wasm":"[^"]+"', '"wasm":null', page), query_of("cloth2500"))
+    rows = rows_of(browser.results())
+    expect([row["backend"] for row in rows] == ["javascript"] and is_timed(rows[0]), f"rows without a module: {rows}")
+    for where in "notes", "module":
+        expect("wasm-ld" in browser.value(f"element('{where}').textContent"), f"the page does not say that there is no wasm in: {where}")
     return {"without": without}
 
 

@@ -37,6 +37,13 @@ for path, status in (("/", b"200"), ("/?auto=cloth2500", b"200"), ("/nothing", b
     assert answer("HEAD", path) == [head, b""], path
 PYTHON
 is_ended 143 TERM
+# Both are packages of the tests. Only a build that was configured before they came has no module.
+if grep -q '"wasm":null' page.html; then
+  ! type -P clang++ wasm-ld >/dev/null ||
+    fail "the page has no row wasm: configure this build again, and see what CMake says of clang++ and wasm-ld"
+  echo "clang++ or wasm-ld is missing: the page has no row wasm, and is not opened" >&2
+  exit 77
+fi
 
 chromium=$(command -v chromium) || {
   echo "chromium is missing: the page is not opened" >&2
@@ -53,6 +60,7 @@ grep -q 'webgpu, ' report.html || fail "the report does not name the device"
 grep -q 'result.json' report.html || fail "the report does not name the file"
 ends 0 compare result.json result.json
 says javascript
+says wasm
 
 # damaged PATTERN EDIT: a result changed by a statement of Python on its document d is refused
 damaged() {

@@ -78,6 +78,7 @@ report                text platform statistics integrators scene/fields charts b
 application           text platform integrators garment/contact model mesh garment/body scene/spec scene backends/interface backends/devices backends/process backends/described garment/stepping backends garment/fitting bench/machine bench/results bench/verification bench guide output/tables output/guide output/traces output/pictures output/folders
 application/bench     text platform integrators scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/windows bench/job bench output/tables garment/output output/traces output/folders application
 web                   text platform integrators model scene/spec scene bench/machine bench/results bench/verification bench/job output/tables output/folders application application/bench
+web/module            kernels laws integrators
 commands/arguments    text
 commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices backends/described garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench output/tables output/folders output/traces output/pictures output/exports report application application/bench web commands/arguments
 main.cpp              platform commands

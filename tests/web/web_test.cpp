@@ -61,6 +61,22 @@ TEST(WebResults, HaveWhatFollowsFromTheirSamples) {
   EXPECT_DOUBLE_EQ(run.rows[1].springs_per_second.value(), 14502 / 1.25e-3);
 }
 
+TEST(WebResults, HaveRowsOfEachBackendOfThePage) {
+  std::vector<ResultRow> rows;
+  for (const BrowserBackend& backend : browser_backends) {
+    rows.push_back(row_of(std::string(backend.name), {2, 2, 2}));
+    rows.back().ms_per_step = rows.back().ms_per_step_low = rows.back().ms_per_step_high =
+        rows.back().ms_per_step_min = 2;
+  }
+  const MeasuredRun run = parse_web_results("page.json", document_of(rows).dump());
+  ASSERT_EQ(run.rows.size(), 3U);
+  for (const char* backend : {"wasm", "webgpu"}) {
+    const auto row = std::ranges::find(run.rows, backend, &ResultRow::backend);
+    ASSERT_NE(row, run.rows.end()) << backend;
+    EXPECT_DOUBLE_EQ(row->speedup_vs_serial.value(), 1) << backend;
+  }
+}
+
 TEST(WebResults, AreRefusedIfMadeUp) {
   const auto expect_refused = [](const std::string& what, const auto& change) {
     std::vector<ResultRow> rows = rows_of_a_page();
@@ -78,6 +94,7 @@ TEST(WebResults, AreRefusedIfMadeUp) {
   expect_refused("a sample of no time", [](ResultRow& row) { row.samples_ms[1] = 0; });
   expect_refused("a time without samples", [](ResultRow& row) { row.samples_ms.clear(); });
   expect_refused("another backend", [](ResultRow& row) { row.backend = "vulkan"; });
+  expect_refused("a backend by half of its name", [](ResultRow& row) { row.backend = "was"; });
   expect_refused("an implicit integrator", [](ResultRow& row) { row.integrator = "xpbd"; });
   expect_refused("verified without an error", [](ResultRow& row) { row.position_error.reset(); });
 }

@@ -22,6 +22,7 @@ struct BrowserBackend {
 };
 inline constexpr auto browser_backends = std::to_array<BrowserBackend>({
     {"javascript", "cpu-only"},
+    {"wasm", ""},
     {"webgpu", "gpu"},
 });
 /// What `serial` is to the others, in a browser.

@@ -128,6 +128,8 @@ async function verifySecond(make, scene, integrator) {
 
 // Measurement.
 
+const missingModule = 'there is no row wasm: this mssim was built without clang and wasm-ld';
+
 /** Thrown where the user has pressed Stop. */
 class Stopped extends Error {}
 
@@ -143,7 +145,9 @@ class Session {
     this.granularity = clockGranularity();
     this.started = new Date().toISOString().replace(/\.\d+Z$/, 'Z');
     this.notes.push(`the browser's clock has steps of ${Number((1e6 * this.granularity).toPrecision(3))} microseconds`);
-    if (!device) this.notes.push('there was no WebGPU; only javascript was measured');
+    this.backends = ['javascript', data.wasm && 'wasm', device && 'webgpu'].filter(Boolean);
+    if (!device) this.notes.push('there was no WebGPU; only the CPU was measured');
+    if (!data.wasm) this.notes.push(missingModule);
     device?.lost.then(({reason, message}) => {
       if (this.finished) return;
       this.lost = `the browser lost the GPU (${[reason, message].filter(Boolean).join(': ')})`;
@@ -155,7 +159,7 @@ class Session {
     this.integrators = data.integrators.filter(({name}) => options.integrators.includes(name));
     this.scenes = data.scenes.filter(({name}) => options.scenes.includes(name));
     this.verifying = (scene, integrator) => 0.2 + 5e-5 * scene.nodes * integrator.stages.length;
-    this.round = 4 * options.sampleSeconds * this.integrators.length;
+    this.round = 2 * this.backends.length * options.sampleSeconds * this.integrators.length;
     this.units = 0;
     for (const scene of this.scenes)
       this.units += this.integrators.reduce((sum, it) => sum + this.verifying(scene, it), options.rounds * this.round);
@@ -196,7 +200,7 @@ class Session {
   }
 
   rowOf(scene, backend, integrator) {
-    const published = (scene.published[integrator.paper_name] || {})[backend === 'webgpu' ? 'gpu' : 'cpu-only'];
+    const published = (scene.published[integrator.paper_name] || {})[{javascript: 'cpu-only', webgpu: 'gpu'}[backend]];
     const row = {scene: scene.name, nodes: scene.nodes, springs_unique: scene.springs_unique,
                  springs_published: scene.springs_published || '', backend, device: backend === 'webgpu' ? this.adapterName : 'cpu',
                  threads: 1, integrator: integrator.name, dt_s: scene.dt, rounds: 0, paper_ms: published ?? '', verified: false,
@@ -212,11 +216,11 @@ class Session {
         this.advance(scene, `${integrator.name}: the double-precision reference`);
         await this.pause(true);
         const reference = await runReference(system, integrator, scene.checks[integrator.name], scene.dt, () => this.pause());
-        for (const name of this.device || this.lost ? ['javascript', 'webgpu'] : ['javascript']) {
+        for (const name of this.backends) {
           const row = this.rowOf(scene, name, integrator);
           await this.attempt(row, async () => {
             const make = its => name === 'webgpu' ? this.makeWebGpu(its, integrator, scene.dt)
-              : new ListBackend(its, integrator, scene.dt, Float32Array);
+              : name === 'wasm' ? WasmBackend.make(its, integrator, scene.dt) : new ListBackend(its, integrator, scene.dt, Float32Array);
             const failure = await verifySecond(make, scene, integrator);
             row.backend_ = await make(system);
             if (row.backend_.compileSeconds) row.compile_s = row.backend_.compileSeconds;

@@ -218,11 +218,12 @@ element('scenes').append(...data.scenes.map(({name}) => box(name, !autoScenes.le
 element('integrators').append(...data.integrators.map(({name, paper_name}) =>
   box(name, integrators.length ? integrators.includes(name) : name === paper_name)));
 if (address.get('rounds')) element('rounds').value = address.get('rounds');
+if (!data.wasm) element('module').textContent = `In this page, ${missingModule}.`;
 element('version').textContent = `Made by mssim ${build.version}, commit ${build.commit.slice(0, 12)}${build.dirty ? ' with changes' : ''}.`;
 
 (async () => {
   const device = await openDevice().catch(() => null);
-  element('support').textContent = device ? `WebGPU runs on ${adapterName()}.` : `${missingWebGpu()} Only JavaScript will be measured.`;
+  element('support').textContent = device ? `WebGPU runs on ${adapterName()}.` : `${missingWebGpu()} Only the CPU will be measured.`;
   device?.destroy();
   await animate();
   if (!autoScenes.length) return showKept();

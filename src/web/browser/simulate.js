@@ -1,4 +1,4 @@
-// Scenes, laws, and the two backends. The laws are the text of kernels/, translated; the stages are those of mssim's table of
+// Scenes, laws, and the backends. The laws are the text of kernels/, translated; the stages are those of mssim's table of
 // integrators; `data` has both (src/web/page.cpp).
 'use strict';
 
@@ -218,6 +218,43 @@ class ListBackend {
   async step(count) { this.steps(this.list, count); }
   async state() { return moved(stateIn(this.list.pairs[0], this.at, this.system.nodes), -this.ahead, this.system.floor[0]); }
   destroy() { this.list = null; }
+}
+
+/** The same list in WebAssembly (src/web/module/spring_list.cpp): single precision, four springs at a time. */
+class WasmBackend {
+  /** Throws an Error whose message is the reason if the browser has no such WebAssembly, or too little memory. */
+  static async make(system, integrator, dt) {
+    const n = system.nodes, count = system.first.length, names = data.spring_constants;
+    const {instance: {exports}} = await WebAssembly.instantiate(unpack(data.wasm, Uint8Array), {env: {pow: Math.pow}})
+      .catch(error => { throw new Error(`unsupported: ${error.message}`); });
+    const head = exports.prepare(data.integrators.indexOf(integrator), dt, n, count, system.viscous_damping, system.gravity, ...system.floor);
+    if (!head) throw new Error(`unsupported: the browser has too little memory for ${n} nodes and ${count} springs in WebAssembly`);
+    const {buffer} = exports.memory, [, , , , springs, masses] = new Uint32Array(buffer, head, 6);
+    // Four springs: their first ends, their second ends, each constant of the law, stiffness_rest. The last four are filled up with
+    // springs that pull at nothing.
+    const words = 4 * (3 + names.length), groups = Math.ceil(count / 4);
+    const ends = new Uint32Array(buffer, springs, words * groups), laws = new Float32Array(buffer, springs, words * groups);
+    for (let i = 0; i < 4 * groups; ++i) {
+      const s = Math.min(i, count - 1), at = words * (i >> 2) + i % 4, material = system.materials[system.kind[s]];
+      ends[at] = system.first[s];
+      ends[at + 4] = system.second[s];
+      if (i >= count) continue;
+      names.forEach((name, c) => laws[at + 8 + 4 * c] = material[name]);
+      laws[at + words - 4] = material.stiffness * system.restLengths[s];
+    }
+    new Float32Array(buffer, masses, n).set(system.mass.map((mass, node) => system.free[node] / mass));
+    return Object.assign(new WasmBackend(), {exports, head, system, ahead: integrator.ahead * dt});
+  }
+  at(node, c) { return 8 * node + c + (c > 2); }
+  /** Those that the integrator has, the state first. */
+  pairs() {
+    const {buffer} = this.exports.memory;
+    return [...new Uint32Array(buffer, this.head, 4)].filter(Boolean).map(pair => new Float32Array(buffer, pair, 8 * this.system.nodes));
+  }
+  async setState(state) { for (const pair of this.pairs()) store(moved(state, this.ahead), pair, this.at); }  // pinned nodes stay in all
+  async step(count) { this.exports.step(count); }
+  async state() { return moved(stateIn(this.pairs()[0], this.at, this.system.nodes), -this.ahead, this.system.floor[0]); }
+  destroy() { this.exports = null; }
 }
 
 // WebGPU: an invocation owns a node, gathers its springs and runs a stage's assignments. A pair is an array of nodes, two vec4f

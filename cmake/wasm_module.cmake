@@ -1,0 +1,35 @@
+# The row `wasm` of the page of mssim web: a WebAssembly module, if there are clang and wasm-ld. It has no C library. Of the host's
+# it takes headers, for templates and types; they ask for a list of functions that a 32-bit C library lacks: here an empty one.
+find_program(WASM_CXX clang++)
+find_program(WASM_LD wasm-ld)
+mark_as_advanced(WASM_CXX WASM_LD)
+set(wasm_folder ${CMAKE_BINARY_DIR}/wasm)
+file(WRITE ${wasm_folder}/gnu/stubs-32.h "")
+file(WRITE ${wasm_folder}/try.cpp "#include <algorithm>\n#include <cmath>\n#include <string_view>\n#include <vector>\n")
+set(wasm_flags --target=wasm32 -std=c++20 -O3 -msimd128 -mbulk-memory -ffp-contract=off -fno-math-errno -fno-exceptions -fno-rtti
+  -fvisibility=hidden -nostdlib -Wl,--no-entry,--allow-undefined,--strip-all -I${wasm_folder})
+foreach(folder ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
+  if(NOT folder MATCHES "/(gcc|clang)/") # what is a compiler's own
+    list(APPEND wasm_flags -isystem ${folder})
+  endif()
+endforeach()
+set(wasm_module ${CMAKE_BINARY_DIR}/share/mssim/spring_list.wasm)
+set(wasm_fails 1)
+if(WASM_CXX AND WASM_LD)
+  execute_process(COMMAND ${WASM_CXX} ${wasm_flags} ${wasm_folder}/try.cpp -o ${wasm_folder}/try.wasm
+    RESULT_VARIABLE wasm_fails OUTPUT_FILE ${wasm_folder}/try.log ERROR_FILE ${wasm_folder}/try.log)
+endif()
+if(NOT wasm_fails EQUAL 0)
+  message(STATUS "The page of mssim web gets no row wasm: clang++ and wasm-ld (Debian's clang and lld) are missing, or cannot compile "
+    "(${wasm_folder}/try.log)")
+  file(REMOVE ${wasm_module})
+  return()
+endif()
+set(wasm_source ${PROJECT_SOURCE_DIR}/src/web/module/spring_list.cpp)
+add_custom_command(OUTPUT ${wasm_module} DEPENDS ${wasm_source} DEPFILE ${wasm_folder}/spring_list.d
+  COMMAND ${WASM_CXX} ${wasm_flags} -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
+    -I${PROJECT_SOURCE_DIR}/src -I${PROJECT_SOURCE_DIR} -MD -MF ${wasm_folder}/spring_list.d -MT ${wasm_module} ${wasm_source} -o ${wasm_module}
+  COMMENT "Building the module of the page" VERBATIM)
+add_custom_target(wasm_module DEPENDS ${wasm_module})
+add_dependencies(mssim wasm_module)
+install(FILES ${wasm_module} DESTINATION ${CMAKE_INSTALL_DATADIR}/mssim)
