@@ -234,6 +234,8 @@ def check_person(browser, page):
     expect(browser.value("document.activeElement.id") == "stop", "the focus is not on Stop")
     browser.press("Enter", text="\r")
     results = browser.results()
+    expect("early" in browser.value("element('state').textContent") and browser.value("element('bar').value") < 1,
+           "the page says that it is done, though it was stopped")
     for what in "hidden", "stopped":
         expect(any(what in note for note in json.loads(results)["provenance"]["noise"]), f"no note says that it was {what}: {results}")
     rows = browser.value("element('rows').children.length")
@@ -245,6 +247,9 @@ def check_person(browser, page):
         for dark in False, True:
             browser.resize(width, 800, dark)
             expect(browser.value("document.documentElement.scrollWidth") <= width, f"the page is wider than {width}")
+            last = "last" if width == 1280 else "nth"  # of a phone's columns, those up to the time
+            expect(browser.value(f"document.querySelector('thead th:{last}-child{'' if last == 'last' else '(4)'}').getBoundingClientRect().right")
+                   <= width, f"columns of the table are hidden in a page of {width}")
 
 
 def check_without(browser, page):

@@ -188,6 +188,7 @@ class Session {
     try {
       for (const scene of this.scenes) await this.measureScene(scene);
     } catch (error) {
+      this.endedEarly = true;
       if (!(error instanceof Stopped)) this.notes.push(`the measurement ended early: ${error.message}`);
       else this.notes.push('the user stopped the measurement');
     }

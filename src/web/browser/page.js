@@ -75,13 +75,14 @@ function showChart({rows}) {
   for (const configuration of ['gpu', 'multi-thread-cpu'])
     add(`published ${configuration === 'gpu' ? 'GPU' : 'threads'}, ${data.paper_device}`, 'var(--two)', configuration === 'gpu' ? '' : '3 4',
         ({published}) => published[name]?.['cpu-only'] / published[name]?.[configuration]);
-  add('webgpu here', 'var(--one)', '', scene => rows.find(row =>
-    row.scene === scene.name && row.integrator === name && row.backend === 'webgpu' && row.status === 'ok')?.speedup);
+  for (const [backend, dash] of [['webgpu', ''], ['wasm', '3 4']])
+    add(`${backend} here`, 'var(--one)', dash, scene => rows.find(row =>
+      row.scene === scene.name && row.integrator === name && row.backend === backend && row.status === 'ok')?.speedup);
   const all = lines.flatMap(({points}) => points.map(([, value]) => value));
   if (!lines.some(({label}) => label.endsWith('here'))) return element('chart').replaceChildren();
   const width = Math.max(300, Math.min(element('chart').clientWidth, 720)), height = 320, left = 48, log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
   const xs = [2000, 400000], ys = [Math.min(1, ...all) / 1.2, Math.max(...all) * 1.2];
-  const x = nodes => left + (width - left - 12) * log(nodes, xs), y = value => height - 32 - (height - 44 - 16 * lines.length) * log(value, ys);
+  const x = nodes => left + (width - left - 24) * log(nodes, xs), y = value => height - 32 - (height - 44 - 16 * lines.length) * log(value, ys);
   let svg = '';
   for (const nodes of [2500, 10000, 40000, 350000])
     svg += `<text x="${x(nodes)}" y="${height - 12}" text-anchor="middle">${nodes.toLocaleString('en')}</text>`;
@@ -101,12 +102,13 @@ function showChart({rows}) {
 function show(its) {
   const left = its.left();
   // A screen reader says each new state: those are few.
-  const state = its.finished ? `Done: ${its.rows.filter(row => row.verified).length} of ${its.rows.length} rows are verified.`
+  const end = its.endedEarly ? 'Ended early' : 'Done';
+  const state = its.finished ? `${end}: ${its.rows.filter(row => row.verified).length} of ${its.rows.length} rows are verified.`
     : `Measures ${its.scene}.`;
   if (element('state').textContent !== state) element('state').textContent = state;
   element('left').textContent = its.finished ? ''
     : its.what + (left > 0 ? `; about ${left < 90000 ? `${Math.ceil(left / 1000)} s` : `${Math.ceil(left / 60000)} min`} left` : '');
-  element('bar').value = its.finished ? 1 : its.done / its.units;
+  element('bar').value = its.finished && !its.endedEarly ? 1 : its.done / its.units;
   const notes = its.drift() > 1.05 ? [...its.notes, `a row became ${((its.drift() - 1) * 100).toFixed(0)} % slower over its rounds: the device may be hot`] : its.notes;
   element('notes').replaceChildren(...notes.map(note => create('li', {textContent: note})));
   const seen = JSON.stringify(its.rows.map(({status, verified, ms_per_step}) => [status, verified, ms_per_step]));
@@ -116,9 +118,9 @@ function show(its) {
     showChart(its);
   }
   for (const id of ['save', 'send']) element(id).disabled = !its.rows.some(row => row.samples.length || row.status !== 'ok');
-  const {notes: said, started, finished, rows} = its;
+  const {notes: said, started, finished, endedEarly, done, units, rows} = its;
   try {
-    sessionStorage.setItem(keptAs, JSON.stringify({notes: said, started, finished, rows: rows.map(({backend_, ...row}) => row)}));
+    sessionStorage.setItem(keptAs, JSON.stringify({notes: said, started, finished, endedEarly, done, units, rows: rows.map(({backend_, ...row}) => row)}));
   } catch {}  // some browsers forbid it, for example in private windows
 }
 
@@ -128,7 +130,10 @@ function showKept() {
   try { kept = JSON.parse(sessionStorage.getItem(keptAs)); } catch {}
   if (!kept) return;
   session = Object.assign(Object.create(Session.prototype), kept, {finished: true});
-  if (!kept.finished) session.notes.push('the page was loaded again during the measurement, which ended');
+  if (!kept.finished) {
+    session.endedEarly = true;
+    session.notes.push('the page was loaded again during the measurement, which ended');
+  }
   session.rows.forEach(row => session.summarise(row));
   show(session);
 }
@@ -196,13 +201,17 @@ async function measure() {
 
 async function send() {
   const answer = await fetch('/results', {method: 'POST', body: session.results(await about())}).catch(error => error);
-  element('sent').textContent = answer.ok ? `mssim has written ${await answer.text()}.` : `mssim has not taken them: ${answer.text ? await answer.text() : answer.message}`;
+  // Another server than mssim's answers with a page.
+  const said = !answer.headers ? answer.message
+    : answer.headers.get('content-type')?.startsWith('text/plain') ? await answer.text() : `${answer.status} ${answer.statusText}`;
+  element('sent').textContent = answer.ok ? `mssim has written ${said}.` : `mssim has not taken them: ${said}`;
 }
 
 element('choices').addEventListener('submit', event => {
   event.preventDefault();
   measure();
 });
+addEventListener('resize', () => session && showChart(session));
 element('stop').addEventListener('click', () => session.stopping = true);
 element('save').addEventListener('click', async () => {
   const url = URL.createObjectURL(new Blob([session.results(await about())], {type: 'application/json'}));
