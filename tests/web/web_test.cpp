@@ -92,6 +92,10 @@ TEST(WebResults, AreRefusedIfMadeUp) {
   expect_refused("another median", [](ResultRow& row) { row.ms_per_step = 0.5; });
   expect_refused("another interval", [](ResultRow& row) { row.ms_per_step_high = 1.5; });
   expect_refused("a sample of no time", [](ResultRow& row) { row.samples_ms[1] = 0; });
+  expect_refused("samples that are too small for a rate", [](ResultRow& row) {
+    row.samples_ms = {1e-310, 1e-310, 1e-310};
+    row.ms_per_step = row.ms_per_step_low = row.ms_per_step_high = row.ms_per_step_min = 1e-310;
+  });
   expect_refused("a time without samples", [](ResultRow& row) { row.samples_ms.clear(); });
   expect_refused("another backend", [](ResultRow& row) { row.backend = "vulkan"; });
   expect_refused("a backend by half of its name", [](ResultRow& row) { row.backend = "was"; });

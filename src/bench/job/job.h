@@ -184,14 +184,6 @@ void time_frames(Combination& combination, const SceneJob& job, const std::funct
 /// not examined.
 void require_prompt_steps(Combination& combination);
 
-/// Computes all values that follow from the row's samples. `serial`: the baseline's row of the same
-/// integrator, or null.
-void summarise(ResultRow& row, const ResultRow* serial);
-
-/// Removes numbers from the row that are not finite. They arise if a program reports such numbers, or takes
-/// less time than the clock resolves. The first one makes a row fail that was ok.
-void require_finite(ResultRow& row);
-
 /// Adds medians of the other costs of this run's samples to the row: processors, energy, and communication.
 void summarise_costs(const Combination& combination, ResultRow& row);
 

@@ -241,6 +241,14 @@ std::string combination_name(const A& a) {
 /// Whether the row is ok and verified, so that its time counts.
 inline bool counts(const ResultRow& row) { return row.status == "ok" && row.verified; }
 
+/// Computes all values that follow from the row's samples. `serial`: the baseline's row of the same
+/// integrator, or null.
+void summarise(ResultRow& row, const ResultRow* serial);
+
+/// Removes numbers from the row that are not finite. They arise if a program reports such numbers, or takes
+/// less time than the clock resolves. The first one makes a row fail that was ok.
+void require_finite(ResultRow& row);
+
 /// Whether its steps took more processors than the `threads` that were requested. An OpenCL device does so if
 /// its driver cannot divide it.
 inline bool exceeds(const ResultRow& row, int threads) { return row.threads > threads; }

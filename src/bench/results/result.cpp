@@ -1,0 +1,40 @@
+#include "bench/results/result.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/all_integrators.h"
+#include "statistics/statistics.h"
+
+namespace mssim {
+
+void summarise(ResultRow& row, const ResultRow* serial) {
+  row.rounds = static_cast<int>(row.samples_ms.size());
+  if (row.status != "ok" || row.samples_ms.empty()) return;
+  const MedianInterval time = median_interval(row.samples_ms);
+  row.ms_per_step = time.median;
+  row.ms_per_step_low = time.low;
+  row.ms_per_step_high = time.high;
+  row.ms_per_step_min = *std::min_element(row.samples_ms.begin(), row.samples_ms.end());
+  const Integrator& integrator = *find_integrator(row.integrator);
+  if (!is_implicit(integrator))
+    row.springs_per_second = 1000 / time.median * static_cast<double>(row.springs_unique) *
+                             static_cast<double>(integrator.stage_count);
+  if (serial != nullptr && serial->samples_ms.size() == row.samples_ms.size())
+    row.speedup_vs_serial = median_ratio(serial->samples_ms, row.samples_ms).median;
+  const std::vector<Outlier> labels = outliers(row.samples_ms);
+  row.outliers =
+      static_cast<int>(labels.size() - static_cast<std::size_t>(std::ranges::count(labels, Outlier::no)));
+}
+
+void require_finite(ResultRow& row) {
+  for (const ResultColumn& column : result_columns) {
+    const auto* value = std::get_if<std::optional<double> ResultRow::*>(&column.value);
+    if (!value || !(row.**value) || std::isfinite(*(row.**value))) continue;
+    (row.**value).reset();
+    row.verified = false;
+    if (row.status == "ok") row.status = fmt::format("failed: {} is not finite", column.name);
+  }
+}
+
+}  // namespace mssim
