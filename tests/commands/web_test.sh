@@ -58,6 +58,7 @@ python3 "$2/tests/commands/web.py" "$chromium" page.html . || fail "the page in 
 ends 0 report result.json lost.json without.json "$2/results/table1/zen5" --no-runs --out report.html
 grep -q 'webgpu, ' report.html || fail "the report does not name the device"
 grep -q 'result.json' report.html || fail "the report does not name the file"
+grep -q '<td>wasm<' report.html || fail "the report does not name the module"
 ends 0 compare result.json result.json
 says javascript
 says wasm

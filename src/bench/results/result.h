@@ -22,7 +22,7 @@ struct BrowserBackend {
 };
 inline constexpr auto browser_backends = std::to_array<BrowserBackend>({
     {"javascript", "cpu-only"},
-    {"wasm", ""},
+    {"wasm", "cpu-only"},
     {"webgpu", "gpu"},
 });
 /// What `serial` is to the others, in a browser.

@@ -201,7 +201,7 @@ class Session {
   }
 
   rowOf(scene, backend, integrator) {
-    const published = (scene.published[integrator.paper_name] || {})[{javascript: 'cpu-only', webgpu: 'gpu'}[backend]];
+    const published = (scene.published[integrator.paper_name] || {})[backend === 'webgpu' ? 'gpu' : 'cpu-only'];
     const row = {scene: scene.name, nodes: scene.nodes, springs_unique: scene.springs_unique,
                  springs_published: scene.springs_published || '', backend, device: backend === 'webgpu' ? this.adapterName : 'cpu',
                  threads: 1, integrator: integrator.name, dt_s: scene.dt, rounds: 0, paper_ms: published ?? '', verified: false,
