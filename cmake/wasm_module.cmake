@@ -4,7 +4,7 @@ find_program(WASM_CXX clang++)
 find_program(WASM_LD wasm-ld)
 mark_as_advanced(WASM_CXX WASM_LD)
 set(wasm_folder ${CMAKE_BINARY_DIR}/wasm)
-file(WRITE ${wasm_folder}/gnu/stubs-32.h "")
+file(CONFIGURE OUTPUT ${wasm_folder}/gnu/stubs-32.h CONTENT "") # written only once: the module depends on it
 file(WRITE ${wasm_folder}/try.cpp "#include <algorithm>\n#include <cmath>\n#include <string_view>\n#include <vector>\n")
 set(wasm_flags --target=wasm32 -std=c++20 -O3 -msimd128 -mbulk-memory -ffp-contract=off -fno-math-errno -fno-exceptions -fno-rtti
   -fvisibility=hidden -nostdlib -Wl,--no-entry,--allow-undefined,--strip-all -I${wasm_folder})
