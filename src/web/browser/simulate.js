@@ -413,8 +413,9 @@ class WebGpuBackend {
     this.odd = 0;
     await this.device.queue.onSubmittedWorkDone();
   }
-  /** Submissions take at most about a fifth of a second: drivers end those that take seconds. Short calls that the clock resolves
-   *  overstate a step's time, so a submission only grows from call to call. */
+  /** Submissions take at most about a fifth of a second: drivers end those that take seconds. Short calls
+   *  overstate a step's time, so a submission only grows from call to call; to ten times a call's steps at most, because a coarse
+   *  clock may say that they took no time. */
   async step(count) {
     const before = performance.now();
     for (let left = count; left > 0; left -= this.batch) {
@@ -430,7 +431,7 @@ class WebGpuBackend {
       this.device.queue.submit([encoder.finish()]);
     }
     await this.device.queue.onSubmittedWorkDone();
-    this.batch = Math.max(this.batch, Math.min(2000, Math.floor(200 * count / (performance.now() - before))));
+    this.batch = Math.max(this.batch, Math.min(2000, 10 * count, Math.floor(200 * count / (performance.now() - before))));
   }
   async state() {
     const n = this.system.nodes, encoder = this.device.createCommandEncoder();
