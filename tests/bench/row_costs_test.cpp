@@ -96,6 +96,17 @@ TEST_F(BenchScene, TimesSingleFramesIfItIsToldHowMany) {
   EXPECT_GE(Stuttering::frames, timed_frames);
 }
 
+TEST_F(BenchScene, SaysOfFramesLongerThanSamplesThatTheyAreNotTimed) {
+  job_.integrators.resize(1);
+  job_.fps = 4;  // 2,500 steps of 1e-4 s
+  for (const ResultRow& row : run()) {
+    EXPECT_EQ(row.status, "ok");
+    EXPECT_EQ(row.frame_steps, std::nullopt);
+    EXPECT_EQ(row.frame_p50_ms, std::nullopt);
+    EXPECT_THAT(row.note, AllOf(HasSubstr("2500 steps"), HasSubstr("2000 steps")));
+  }
+}
+
 class BenchSceneWithEnergy : public BenchScene, public TemporaryFolder {};
 
 TEST_F(BenchSceneWithEnergy, TellsWhatAStepTakes) {

@@ -98,7 +98,7 @@ void update_nodes() {
   }
 }
 
-extern "C" unsigned char __heap_base;  // the linker's: the first byte behind the program's own memory
+extern "C" unsigned char __heap_base;  // the linker's: the first byte after the program's own memory
 
 /// Takes memory from there on, one part after the other.
 class Room {
@@ -125,7 +125,7 @@ class Room {
 }  // namespace
 
 extern "C" {
-/// Makes room for a system behind the program's own memory. `integrator`: of all_integrators. Returns the
+/// Makes room for a system after the program's own memory. `integrator`: of all_integrators. Returns the
 /// list's address, or 0 if the browser gives no memory.
 __attribute__((export_name("prepare"))) List* prepare(std::uint32_t integrator, double dt_s,
                                                       std::uint32_t nodes, std::uint32_t springs,
