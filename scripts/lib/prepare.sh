@@ -148,10 +148,15 @@ build() {
     say "waiting for another build of $build_folder"
     flock "$lock"
   fi
-  # CMake reconfigures by itself when a CMakeLists.txt changed, but not for a new preset.
+  # CMake reconfigures by itself when a CMakeLists.txt changed, but not for a new preset, nor for a package that came later, such as MPI
+  # or the compiler of the page's module.
+  local fresh=''
   if [[ ! -e $build_folder/build.ninja || $root/CMakePresets.json -nt $build_folder/build.ninja ]] ||
     ! is_configured "$build_folder"; then
-    (cd -- "$root" && cmake --preset "$preset" --fresh) </dev/null >"$build_folder/configure.log" 2>&1 ||
+    fresh=--fresh
+  fi
+  if [[ $fresh || /var/lib/dpkg/status -nt $build_folder/build.ninja ]]; then
+    (cd -- "$root" && cmake --preset "$preset" $fresh) </dev/null >"$build_folder/configure.log" 2>&1 ||
       fail_build "$build_folder/configure.log"
   fi
   local start=$SECONDS

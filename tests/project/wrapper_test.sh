@@ -69,6 +69,12 @@ runs 7
 noted 'cmake --preset release' || fail 'a changed preset configures anew'
 touch -d '1 hour ago' "$repository/CMakePresets.json"
 
+touch -d 2000-01-01 "$repository/CMakePresets.json"
+touch -d 2001-01-01 "$repository/build/release/build.ninja"
+runs 7
+[[ ! -e /var/lib/dpkg/status ]] || { noted 'cmake --preset release' && ! noted 'cmake .*--fresh'; } ||
+  fail 'a build looks for packages that came after it, and keeps its cache'
+
 mv "$repository" "$place/moved"
 ln -sfn "$place/moved/scripts/mssim" "$place/elsewhere/link"
 runs 7

@@ -5,7 +5,8 @@
 const element = id => document.getElementById(id);
 const address = new URLSearchParams(location.search);
 const listIn = name => (address.get(name) || '').split(',').filter(Boolean);
-const digits = value => Number(value.toPrecision(3)).toString();
+/** Three significant digits, without an exponent. */
+const digits = value => value.toPrecision(3).includes('e') ? Number(value.toPrecision(3)).toString() : value.toPrecision(3);
 const create = (tag, properties = {}, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);
