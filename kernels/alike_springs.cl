@@ -1,12 +1,12 @@
 /* Computes one acceleration per spring of alike bodies, as packed_springs.cl computes one force per spring.
  * This is the device's share of hybrid if a scene has enough alike bodies.
  *
- * The ends of a spring are two slices (alike_slices.h; AlikeSprings in src/backends/layouts), so no gather is
+ * The ends of a spring are two slices (lanes.h; AlikeSprings in src/backends/layouts), so no gather is
  * needed.
  */
 #define spring_parts (MSSIM_SLICE / MSSIM_LANES)
 
-/* nodes: slices (alike_slices.h). forces: [springs][x y z][16], accelerations (m/s^2) of the first ends;
+/* nodes: slices (lanes.h). forces: [springs][x y z][16], accelerations (m/s^2) of the first ends;
  * those of the second ends are the opposite. springs: first slice, second slice, stiffness times rest length
  * / mass (the bits of a float, m/s^2), and an index into shapes: constants divided by a mass. A work-item
  * handles `count` parts of springs, MSSIM_LANES lanes each, up to parts_end. */

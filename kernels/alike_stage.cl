@@ -2,7 +2,7 @@
  * after the other. A tile is one node of MSSIM_LANES bodies, and each node gathers the forces of all its
  * springs: whole vectors, because the neighbours of a node are the same in every body.
  *
- * A pair is an array of slices (alike_slices.h). Constants are per unit of node mass.
+ * A pair is an array of slices (lanes.h). Constants are per unit of node mass.
  */
 typedef struct {
   __global const uint4* slices;  /* begin and end of its springs, its bodies' first slice, 1: pinned */

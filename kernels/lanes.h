@@ -119,3 +119,8 @@ MSSIM_INLINE Node load_components(__global const float* from, int step) {
   const Node node = {load_vector(from, step), load_vector(from + 3 * step, step)};
   return node;
 }
+
+/* A slice of alike bodies (AlikeSlices in src/backends/layouts): one node of MSSIM_SLICE bodies, its x of all
+ * bodies, then y, z, u, v and w. MSSIM_SLICE is a multiple of MSSIM_LANES.
+ */
+#define slice_floats (6 * MSSIM_SLICE)

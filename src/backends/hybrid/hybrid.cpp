@@ -60,9 +60,8 @@ AlikeNodes::AlikeNodes(const System& system, const std::vector<AlikeBodies>& bod
 
 SpringKernel AlikeNodes::spring_kernel(int lanes) const {
   const std::size_t parts = AlikeSprings::slice_nodes / static_cast<std::size_t>(lanes);
-  return {slices_program_text(
-              AlikeSprings::slice_nodes, lanes,
-              {"lanes.h", "spring_constants.h", "spring_law.h", "alike_slices.h", "alike_springs.cl"}),
+  return {slices_program_text(AlikeSprings::slice_nodes, lanes,
+                              {"lanes.h", "spring_constants.h", "spring_law.h", "alike_springs.cl"}),
           "alike_spring_forces",
           springs.springs.size() * parts,
           springs.slices.floats(),

@@ -328,7 +328,7 @@ std::size_t alike_slice_lanes(int lanes) {
 std::string alike_program_text(const Integrator& integrator, int lanes) {
   return with_kernels(slices_program_text(alike_slice_lanes(lanes), lanes,
                                           {"lanes.h", "spring_constants.h", "spring_law.h", "node_laws.h",
-                                           "parameters.h", "stage.h", "alike_slices.h", "alike_stage.cl"}),
+                                           "parameters.h", "stage.h", "alike_stage.cl"}),
                       integrator, alike);
 }
 
