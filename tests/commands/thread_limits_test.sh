@@ -30,18 +30,18 @@ grep -q 'OMP_STACKSIZE.*200000G' err || fail "the stack's size is not named: $(c
 # Scenes are built and pictures are drawn all the same, by fewer threads.
 OMP_STACKSIZE=200000G ends 0 render --scene cloth2500 --backend serial --duration 0.001 --out picture.png
 
-# A limit of processes, which root is not subject to.
+# A limit of processes, which root is not subject to. The other user may not write where TMPDIR says.
 if [ "$(id -u)" -eq 0 ] && chmod 777 . && setpriv --reuid=54321 --regid=54321 --clear-groups "$mssim" --version >/dev/null 2>&1; then
   for backend in openmp threads-mutex; do
     status=0
-    env HOME="$work" setpriv --reuid=54321 --regid=54321 --clear-groups bash -c \
+    env -u TMPDIR HOME="$work" setpriv --reuid=54321 --regid=54321 --clear-groups bash -c \
       'ulimit -u 4; exec timeout 120 "$@"' bash "$mssim" "${bench[@]}" --backend "serial,$backend" --threads 8 --out "limited-$backend" \
       >out 2>err || status=$?
     [ "$status" -eq 3 ] || fail "$backend under a limit of processes exits with $status: $(cat err)"
     [ "$(row "limited-$backend" serial)" = ok ] || fail "serial has not gone on under a limit of processes: $(cat err)"
   done
   # Room for the threads of one body, and not for those of three bodies, which live at once.
-  env HOME="$work" setpriv --reuid=54321 --regid=54321 --clear-groups bash -c \
+  env -u TMPDIR HOME="$work" setpriv --reuid=54321 --regid=54321 --clear-groups bash -c \
     'ulimit -u 9; exec timeout 120 "$@"' bash "$mssim" bench --scene bodies3858 --integrator semi-euler --rounds 1 --threads 4 \
     --backend serial,threads-mutex:each --out limited-each >out 2>err || true
   row limited-each threads-mutex:each | grep -Eq '^"?unavailable: 10 threads ' || fail "the threads of three bodies: $(cat err)"
