@@ -9,8 +9,7 @@ import json
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "commands"))
-from web import Browser  # pylint: disable=wrong-import-position
+from browser import Browser
 
 
 def kept_rows(folder):

@@ -415,10 +415,11 @@ Clock::duration expected_check(const SceneJob& job, const std::vector<Combinatio
 /// Expected time of the frames of all combinations.
 Clock::duration expected_frames(const SceneJob& job, const std::vector<Combination>& combinations) {
   if (!job.fps) return {};
+  const int steps = steps_of_frame(*job.fps, job.dt_s);
   double seconds = 0;
   for (const Combination& combination : combinations)
-    if (combination.backend)
-      seconds += combination.step_seconds * timed_frames * steps_of_frame(*job.fps, job.dt_s);
+    if (combination.backend && steps <= combination.most_steps)  // time_frames times no longer ones
+      seconds += combination.step_seconds * timed_frames * steps;
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 

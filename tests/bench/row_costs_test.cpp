@@ -105,6 +105,9 @@ TEST_F(BenchScene, SaysOfFramesLongerThanSamplesThatTheyAreNotTimed) {
     EXPECT_EQ(row.frame_p50_ms, std::nullopt);
     EXPECT_THAT(row.note, AllOf(HasSubstr("2500 steps"), HasSubstr("2000 steps")));
   }
+  job_.fps = 1e-4;  // hours, for which no time is put aside
+  job_.deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  EXPECT_EQ(run()[0].rounds, job_.rounds);
 }
 
 class BenchSceneWithEnergy : public BenchScene, public TemporaryFolder {};

@@ -161,8 +161,8 @@ for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies
 without_gpu = [machine for machine in machines if machine != gpu]
 assert {cpus(f"results/table1/{machine}") for machine in without_gpu} == {2}
 readme.append(f"Of {len(claims)} claims in both papers, {len(testable)} can be decided by a ratio of times.")
-readme.append("Held, of those that a machine's rows decide: without a GPU " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each;")
-readme.append(f"on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
+readme.append("Each machine's rows decide some of these. Held without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
+readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
 slower = [machine for machine in machines if outcome(locks, machine)["outcome"] == "not held"]
 readme.append(f"made at least one cloth slower than one thread does, on {len(slower)} of {len(machines)} machines")

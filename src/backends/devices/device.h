@@ -54,7 +54,7 @@ int lanes_for(const OpenclDevice& device);
 /// more units, or cannot be divided; check compute_units of the result. Repeated calls return the same part.
 OpenclDevice part_of(const OpenclDevice& device, int count);
 
-/// Cores of this machine that run a device's kernels, or 1 for the thread that waits for it.
+/// Threads of this machine that run a device's kernels, or 1 for the thread that waits for it.
 int threads_of(const OpenclDevice& device);
 
 /// Throws Unsupported unless the device can hold buffers of these sizes (bytes) at the same time.

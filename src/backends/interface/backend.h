@@ -116,7 +116,7 @@ class Backend {
   virtual State state() const = 0;
   /// Where the steps run, for the `device` column: for example an OpenCL device's name.
   virtual std::string device() const { return "cpu"; }
-  /// Cores of this machine that compute a step; for a discrete device, 1 (the host thread that waits). More
+  /// Threads of this machine that compute a step; for a discrete device, 1 (the host thread that waits). More
   /// than ExecutionOptions::threads only if a driver cannot be limited.
   virtual int threads() const = 0;
   /// Whole steps per pass over the state in memory, if stages overlap; 0 if every stage makes its own pass.
