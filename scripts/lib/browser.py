@@ -15,15 +15,16 @@ class Browser:
     def __init__(self, chromium, flags):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         self.page, self.number, self.read, self.session = b"", 0, b"", {}
+        self.is_isolated = True  # from other origins: the clock is finer, samples are shorter, and threads share memory
         browser = self
 
         class Handler(http.server.BaseHTTPRequestHandler):
             def do_GET(self):
                 self.send_response(200)
                 self.send_header("Content-Type", "text/html; charset=utf-8")
-                # The clock of isolated pages is finer, and samples are shorter.
-                self.send_header("Cross-Origin-Opener-Policy", "same-origin")
-                self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+                if browser.is_isolated:
+                    self.send_header("Cross-Origin-Opener-Policy", "same-origin")
+                    self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
                 self.end_headers()
                 self.wfile.write(browser.page)
 

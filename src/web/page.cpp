@@ -200,9 +200,9 @@ json integrators_json() {
   return table;
 }
 
-/// The module of the row `wasm`; null if mssim was built without a compiler for it (cmake/wasm_module.cmake).
-json module_text() {
-  const std::filesystem::path file = data_folder() / "spring_list.wasm";
+/// A module of WebAssembly; null if mssim was built without a compiler for it (cmake/wasm_module.cmake).
+json module_text(const char* name) {
+  const std::filesystem::path file = data_folder() / name;
   return std::filesystem::exists(file) ? json(base64(read_file(file))) : json();
 }
 
@@ -213,7 +213,7 @@ json page_data() {
   const std::vector<PublishedTable> published = published_tables();
   Shapes shapes;
   json scenes = json::array(), names = json::array(), stencil = json::array(), columns = json::array(),
-       slots = json::array(), laws = json::array();
+       slots = json::array(), laws = json::array(), configurations = json::object();
   for (const char* suite : {"table1", "table3"})
     for (const std::string& name : scenes_of_suite(suite, true))
       scenes.push_back(scene_of(name, published, provenance, shapes));
@@ -222,6 +222,8 @@ json page_data() {
     stencil.push_back({spring.rows, spring.columns, static_cast<int>(spring.kind)});
   for (const ResultColumn& column : result_columns) columns.push_back(column.name);
   for (std::size_t slot = 0; slot < memory_slots; ++slot) slots.push_back(slot_names[slot]);
+  for (const BrowserBackend& backend : browser_backends)
+    configurations[std::string(backend.name)] = backend.paper_configuration;
   for (const char* file : {"spring_law.h", "node_laws.h"})
     laws.push_back(read_file(data_folder() / "kernels" / file));
   return {{"laws", laws},
@@ -232,7 +234,9 @@ json page_data() {
           {"scenes", scenes},
           {"shapes", shapes.all()},
           {"columns", columns},
-          {"wasm", module_text()},
+          {"wasm", module_text("spring_list.wasm")},
+          {"wasm_threads", module_text("spring_list_threads.wasm")},
+          {"configurations", configurations},
           {"paper_device", paper_device},
           {"energy_tolerance", energy_tolerance},
           {"verification_steps", verification_steps},

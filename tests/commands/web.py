@@ -17,8 +17,9 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "lib"))
 from browser import Browser  # pylint: disable=wrong-import-position
 
-BACKENDS = ["javascript", "wasm", "webgpu"]
+BACKENDS = ["javascript", "wasm", "wasm-threads", "webgpu"]
 WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"]
+MODULE = "[A-Za-z0-9+/=]{999,}"
 
 
 def rows_of(text):
@@ -29,7 +30,7 @@ def query_of(scenes, integrators="semi-euler", rounds=1, seconds=0.002, more="")
     return f"auto={scenes}&integrators={integrators}&rounds={rounds}&seconds={seconds}{more}"
 
 
-# What a kernel may have wrong, by backend: text of the page's part for it, and what stands there instead. The reference stays right.
+# What kernels may have wrong: text of the page's part for them, and what stands there instead. The reference stays right.
 WEBGPU_MUTANTS = {
     "a force with the other sign": ("spring_pull(dot(d, d),", "-spring_pull(dot(d, d),"),
     "springs act from one end": ("for (const end of [1, -1])", "for (const end of [1])"),
@@ -50,11 +51,19 @@ WASM_MUTANTS = {
     "stiffness is 1 % too large": ("= material.stiffness * system.restLengths[s];", "= 1.01 * material.stiffness * system.restLengths[s];"),
     "another dt": ("data.integrators.indexOf(integrator), dt,", "data.integrators.indexOf(integrator), 1.002 * dt,"),
     "pins move": ("system.free[node] / mass", "1 / mass"),
-    "no air": ("count, system.viscous_damping", "count, 0"),
-    "the floor does not brake": ("system.gravity, ...system.floor)", "system.gravity, system.floor[0], system.floor[1], 0)"),
-    # Instructions of the module, f32x4.*, which take and give as much: those of the springs and of the integrator.
+    "no air": ("n, threads, system.viscous_damping", "n, threads, 0"),
+    "the floor does not brake": ("...system.floor))", "system.floor[0], system.floor[1], 0))"),
+}
+# Instructions of a module, f32x4.*, which take and give as much: those of the springs and of the integrator.
+WASM_MODULE_MUTANTS = {
     "a magnitude for a root": (b"\xfd\xe3\x01", b"\xfd\xe0\x01"),
     "forces pull both ends the same way": (b"\xfd\xe5\x01\xfd\x0b\x04\x00", b"\xfd\xe4\x01\xfd\x0b\x04\x00"),
+}
+THREADS_MUTANTS = {
+    "a spring between two threads pulls at one": ("[shares[owner[first[s]]], shares[owner[second[s]]]]", "[shares[owner[first[s]]]]"),
+    "a thread leaves its last node": ("end = owner.filter(its => its <= thread).length", "end = owner.filter(its => its <= thread).length - thread"),
+    # i32.eq between the threads that have come and all, before a constant that tells the place.
+    "threads do not wait for each other": (b"\x46\x0d\x00\x41\xc0\x84\x3d", b"\x47\x0d\x00\x41\xc0\x84\x3d"),
 }
 
 
@@ -86,25 +95,28 @@ def mutated(page, right, wrong):
     return page.replace(right, wrong)
 
 
-def with_mutant(page, right, wrong):
+def with_mutant(page, backend, right, wrong):
     if isinstance(right, str):
         return mutated(page, right, wrong)
-    before, module, after = re.split(r'(?<="wasm":")([^"]+)', page)
+    before, module, after = re.split(f'(?<="{backend.replace("-", "_")}":")({MODULE})', page)
     return before + base64.b64encode(mutated(base64.b64decode(module), right, wrong)).decode() + after
 
 
 def check_mutants(browser, page):
-    """A page has a mutant of each backend, as long as there are some."""
-    for of_webgpu, of_wasm in itertools.zip_longest(WEBGPU_MUTANTS.items(), WASM_MUTANTS.items()):
-        mutants = {backend: mutant for backend, mutant in (("webgpu", of_webgpu), ("wasm", of_wasm)) if mutant}
-        changed = page
-        for _, change in mutants.values():
-            changed = with_mutant(changed, *change)
-        browser.open(changed, query_of("bodies3858" if "slices" in mutants.get("webgpu", " ")[0] else "cloth2500"))
+    """A page has a mutant of WebGPU and one of the modules, as long as there are some."""
+    def of(mutants, *backends):
+        return [(backends, name, change) for name, change in mutants.items()]
+
+    of_wasm = of(WASM_MUTANTS, "wasm", "wasm-threads") + of(WASM_MODULE_MUTANTS, "wasm") + of(THREADS_MUTANTS, "wasm-threads")
+    for pair in itertools.zip_longest(of(WEBGPU_MUTANTS, "webgpu"), of_wasm):
+        mutants, changed = list(filter(None, pair)), page
+        for backends, _, change in mutants:
+            changed = with_mutant(changed, backends[0], *change)
+        browser.open(changed, query_of("bodies3858" if "slices" in mutants[0][1] else "cloth2500"))
         rows = {row["backend"]: row for row in rows_of(browser.results())}
-        for backend, (name, _) in mutants.items():
-            wrong = rows.pop(backend)
-            expect(wrong["status"].startswith("failed") and not wrong["ms_per_step"], f"not noticed: {name}: {wrong}")
+        for backends, name, _ in mutants:
+            for wrong in map(rows.pop, backends):
+                expect(wrong["status"].startswith("failed") and not wrong["ms_per_step"], f"not noticed: {name}: {wrong}")
         expect(rows and all(map(is_timed, rows.values())), f"others fail: {mutants}: {rows}")
 
 
@@ -164,12 +176,20 @@ def check_person(browser, page):
 
 
 def check_without(browser, page):
-    browser.open(page, query_of("cloth2500", rounds=2))
+    """There is no WebGPU, no isolation, or no module."""
+    browser.open(page, query_of("cloth2500", rounds=2, more="&threads=3"))
     rows = rows_of(without := browser.results())
+    expect({row["backend"]: row["threads"] for row in rows} == {"javascript": "1", "wasm": "1", "wasm-threads": "3"}, f"threads: {rows}")
     expect("webgpu" not in [row["backend"] for row in rows] and all(map(is_timed, rows)), f"rows without WebGPU: {rows}")
     expect("WebGPU" in browser.value("element('notes').textContent"), "the page does not say that there is no WebGPU")
+    browser.is_isolated = False
+    browser.open(page, query_of("cloth2500"))
+    rows = rows_of(browser.results())
+    expect([row["backend"] for row in rows] == ["javascript", "wasm"] and all(map(is_timed, rows)), f"rows without isolation: {rows}")
+    expect("Cross-Origin-Embedder-Policy" in browser.value("element('notes').textContent"), "the page does not say how to isolate it")
+    browser.is_isolated = True
     # A page of an mssim that was built without a compiler for WebAssembly.
-    browser.open(re.sub(r'"wasm":"[^"]+"', '"wasm":null', page), query_of("cloth2500"))
+    browser.open(re.sub(rf'"(wasm\w*)":"{MODULE}"', r'"\1":null', page), query_of("cloth2500"))
     rows = rows_of(browser.results())
     expect([row["backend"] for row in rows] == ["javascript"] and is_timed(rows[0]), f"rows without a module: {rows}")
     for where in "notes", "module":

@@ -62,10 +62,10 @@ python3 "$2/tests/commands/web.py" "$chromium" page.html . || fail "the page in 
 ends 0 report result.json lost.json without.json "$2/results/table1/zen5" --no-runs --out report.html
 grep -q 'webgpu, ' report.html || fail "the report does not name the device"
 grep -q 'result.json' report.html || fail "the report does not name the file"
-grep -q '<td>wasm<' report.html || fail "the report does not name the module"
+grep -q '<td>wasm-threads<' report.html || fail "the report does not name the threads of the module"
 ends 0 compare result.json result.json
 says javascript
-says wasm
+says wasm-threads
 
 # damaged PATTERN EDIT: a result changed by a statement of Python on its document d is refused
 damaged() {

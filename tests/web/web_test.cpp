@@ -69,8 +69,8 @@ TEST(WebResults, HaveRowsOfEachBackendOfThePage) {
         rows.back().ms_per_step_min = 2;
   }
   const MeasuredRun run = parse_web_results("page.json", document_of(rows).dump());
-  ASSERT_EQ(run.rows.size(), 3U);
-  for (const char* backend : {"wasm", "webgpu"}) {
+  ASSERT_EQ(run.rows.size(), 4U);
+  for (const char* backend : {"wasm", "wasm-threads", "webgpu"}) {
     const auto row = std::ranges::find(run.rows, backend, &ResultRow::backend);
     ASSERT_NE(row, run.rows.end()) << backend;
     EXPECT_DOUBLE_EQ(row->speedup_vs_serial.value(), 1) << backend;

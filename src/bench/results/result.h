@@ -23,6 +23,7 @@ struct BrowserBackend {
 inline constexpr auto browser_backends = std::to_array<BrowserBackend>({
     {"javascript", "cpu-only"},
     {"wasm", "cpu-only"},
+    {"wasm-threads", "multi-thread-cpu"},
     {"webgpu", "gpu"},
 });
 /// What `serial` is to the others, in a browser.

@@ -93,7 +93,7 @@ async function runReference(system, integrator, check, dt, pause) {
 async function verify(backend, system, reference, row, pause) {
   if (reference.failure) return reference.failure;
   await backend.setState(system.start);
-  const atOnce = backend instanceof WebGpuBackend ? data.steps_between_looks : 1;
+  const atOnce = backend instanceof ListBackend ? 1 : data.steps_between_looks;
   for (let step = 0; step < reference.steps; step += atOnce) {
     await backend.step(Math.min(atOnce, reference.steps - step));
     await pause();
@@ -129,6 +129,11 @@ async function verifySecond(make, scene, integrator) {
 // Measurement.
 
 const missingModule = 'there is no row wasm: this mssim was built without clang and wasm-ld';
+/** Why there is no row wasm-threads; empty if there is one. */
+const missingThreads = threads => !crossOriginIsolated
+  ? 'there is no row wasm-threads: the page is not isolated from other origins. mssim web --serve isolates it; other hosts do so by the ' +
+    'headers Cross-Origin-Opener-Policy: same-origin and Cross-Origin-Embedder-Policy: require-corp'
+  : threads < 2 ? 'there is no row wasm-threads: the browser knows of one CPU' : '';
 
 /** Thrown where the user has pressed Stop. */
 class Stopped extends Error {}
@@ -137,7 +142,7 @@ class Stopped extends Error {}
 let hides = 0;
 document.addEventListener('visibilitychange', () => ++hides);
 
-/** A run. `options`: {scenes, integrators, rounds, sampleSeconds}, names. `show(session)` is called after each change. */
+/** A run. `options`: {scenes, integrators, rounds, sampleSeconds, threads}, the first two names. `show(session)` is called after each change. */
 class Session {
   constructor(options, device, adapterName, show) {
     Object.assign(this, {options, device, adapterName, show, rows: [], notes: [], stopping: false, hidden: false, lost: '', done: 0,
@@ -145,9 +150,10 @@ class Session {
     this.granularity = clockGranularity();
     this.started = new Date().toISOString().replace(/\.\d+Z$/, 'Z');
     this.notes.push(`the browser's clock has steps of ${Number((1e6 * this.granularity).toPrecision(3))} microseconds`);
-    this.backends = ['javascript', data.wasm && 'wasm', device && 'webgpu'].filter(Boolean);
+    const noThreads = missingThreads(options.threads);
+    this.backends = ['javascript', data.wasm && 'wasm', data.wasm && !noThreads && 'wasm-threads', device && 'webgpu'].filter(Boolean);
     if (!device) this.notes.push('there was no WebGPU; only the CPU was measured');
-    if (!data.wasm) this.notes.push(missingModule);
+    if (!data.wasm || noThreads) this.notes.push(data.wasm ? noThreads : missingModule);
     device?.lost.then(({reason, message}) => {
       if (this.finished) return;
       this.lost = `the browser lost the GPU (${[reason, message].filter(Boolean).join(': ')})`;
@@ -201,10 +207,10 @@ class Session {
   }
 
   rowOf(scene, backend, integrator) {
-    const published = (scene.published[integrator.paper_name] || {})[backend === 'webgpu' ? 'gpu' : 'cpu-only'];
+    const published = (scene.published[integrator.paper_name] || {})[data.configurations[backend]];
     const row = {scene: scene.name, nodes: scene.nodes, springs_unique: scene.springs_unique,
                  springs_published: scene.springs_published || '', backend, device: backend === 'webgpu' ? this.adapterName : 'cpu',
-                 threads: 1, integrator: integrator.name, dt_s: scene.dt, rounds: 0, paper_ms: published ?? '', verified: false,
+                 threads: backend === 'wasm-threads' ? this.options.threads : 1, integrator: integrator.name, dt_s: scene.dt, rounds: 0, paper_ms: published ?? '', verified: false,
                  status: 'ok', note: scene.note, warm_up_trials: 0, outliers: 0, samples: [], steps: 1};
     this.rows.push(row);
     return row;
@@ -221,7 +227,8 @@ class Session {
           const row = this.rowOf(scene, name, integrator);
           await this.attempt(row, async () => {
             const make = its => name === 'webgpu' ? this.makeWebGpu(its, integrator, scene.dt)
-              : name === 'wasm' ? WasmBackend.make(its, integrator, scene.dt) : new ListBackend(its, integrator, scene.dt, Float32Array);
+              : name === 'javascript' ? new ListBackend(its, integrator, scene.dt, Float32Array)
+              : WasmBackend.make(its, integrator, scene.dt, row.threads);
             const failure = await verifySecond(make, scene, integrator);
             row.backend_ = await make(system);
             if (row.backend_.compileSeconds) row.compile_s = row.backend_.compileSeconds;

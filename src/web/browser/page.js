@@ -1,5 +1,5 @@
 // What the page shows, and the buttons. ?auto=SCENE,... measures at once, and sends the results to mssim web --serve; further
-// settings in the address: integrators=NAME,..., rounds=N, seconds=S (of a sample), webgpu=no.
+// settings in the address: integrators=NAME,..., rounds=N, seconds=S (of a sample), threads=N, webgpu=no.
 'use strict';
 
 const element = id => document.getElementById(id);
@@ -58,7 +58,7 @@ function showRows({rows}) {
     const together = published('gpu+multi-thread-cpu'), timed = row.status === 'ok' && row.ms_per_step;
     const verdict = row.verified ? `verified, error ${digits(row.position_error)}` : row.status === 'ok' ? '' : row.status;
     return create('tr', {}, create('th', {scope: 'row', textContent: `${row.scene} (${row.nodes.toLocaleString('en')})`}), ...[
-      row.integrator, row.backend, timed ? digits(row.ms_per_step) : '', timed ? `${digits(row.ms_per_step_low)} to ${digits(row.ms_per_step_high)}` : '',
+      row.integrator, row.threads > 1 ? `${row.backend} (${row.threads})` : row.backend, timed ? digits(row.ms_per_step) : '', timed ? `${digits(row.ms_per_step_low)} to ${digits(row.ms_per_step_high)}` : '',
       timed && row.speedup ? `${digits(row.speedup)}×` : '', timed && row.drift ? row.drift.toFixed(2) : '',
       published('cpu-only') ?? '', published('gpu') ?? (together ? `${together} with threads` : ''),
       row.verified && row.status !== 'ok' ? `${verdict}; ${row.status}` : verdict,
@@ -76,7 +76,7 @@ function showChart({rows}) {
   for (const configuration of ['gpu', 'multi-thread-cpu'])
     add(`published ${configuration === 'gpu' ? 'GPU' : 'threads'}, ${data.paper_device}`, 'var(--two)', configuration === 'gpu' ? '' : '3 4',
         ({published}) => published[name]?.['cpu-only'] / published[name]?.[configuration]);
-  for (const [backend, dash] of [['webgpu', ''], ['wasm', '3 4']])
+  for (const [backend, dash] of [['webgpu', ''], ['wasm-threads', '3 4'], ['wasm', '1 5']])
     add(`${backend} here`, 'var(--one)', dash, scene => rows.find(row =>
       row.scene === scene.name && row.integrator === name && row.backend === backend && row.status === 'ok')?.speedup);
   const all = lines.flatMap(({points}) => points.map(([, value]) => value));
@@ -182,7 +182,8 @@ const chosen = id => [...element(id).querySelectorAll('input:checked')].map(({va
 
 async function measure() {
   const options = {scenes: chosen('scenes'), integrators: chosen('integrators'), rounds: Number(element('rounds').value) || 10,
-                   sampleSeconds: Number(address.get('seconds')) || 0.1};
+                   sampleSeconds: Number(address.get('seconds')) || 0.1,
+                   threads: Number(address.get('threads')) || navigator.hardwareConcurrency || 1};
   if (session && !session.finished) return;
   if (!options.scenes.length || !options.integrators.length) return void (element('state').textContent = 'Choose a scene and an integrator.');
   element('stop').disabled = false;

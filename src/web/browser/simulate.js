@@ -220,41 +220,103 @@ class ListBackend {
   destroy() { this.list = null; }
 }
 
-/** The same list in WebAssembly (src/web/module/spring_list.cpp): single precision, four springs at a time. */
+/** Shares the nodes of a system among threads, in ranges [begin, end) with about as many springs each. A thread gets all springs
+ *  that pull at its nodes; they touch nodes of [low, high). */
+function sharesOf({nodes, first, second}, threads) {
+  const springs = new Uint32Array(nodes), owner = new Uint32Array(nodes), all = 2 * first.length;
+  for (const ends of [first, second]) for (const node of ends) ++springs[node];
+  for (let node = 0, before = 0; node < nodes; before += springs[node++])
+    owner[node] = Math.min(Math.floor(before * threads / all), threads - 1);
+  const shares = Array.from({length: threads}, (_, thread) => {
+    const begin = owner.filter(its => its < thread).length, end = owner.filter(its => its <= thread).length;
+    return {begin, end, low: begin, high: end, springs: []};
+  });
+  for (let s = 0; s < first.length; ++s)
+    for (const share of new Set([shares[owner[first[s]]], shares[owner[second[s]]]])) {
+      share.springs.push(s);
+      share.low = Math.min(share.low, first[s], second[s]);
+      share.high = Math.max(share.high, first[s] + 1, second[s] + 1);
+    }
+  return shares;
+}
+
+/** A thread of the module: its first message makes it, others are numbers of steps. It answers each. */
+const wasmWorker = `onmessage = ({data: {module, memory, thread, stack}}) => {
+  const {exports} = new WebAssembly.Instance(module, {env: {memory, pow: Math.pow}});
+  exports.__stack_pointer.value = stack;
+  onmessage = ({data: count}) => postMessage(exports.step(thread, count));
+  postMessage(0);
+};`;
+
+/** The same list in WebAssembly (src/web/module/spring_list.cpp): single precision, four springs at a time. Several threads are
+ *  workers, and share a memory; only a page that is isolated from other origins may do so. */
 class WasmBackend {
   /** Throws an Error whose message is the reason if the browser has no such WebAssembly, or too little memory. */
-  static async make(system, integrator, dt) {
-    const n = system.nodes, count = system.first.length, names = data.spring_constants;
-    const {instance: {exports}} = await WebAssembly.instantiate(unpack(data.wasm, Uint8Array), {env: {pow: Math.pow}})
-      .catch(error => { throw new Error(`unsupported: ${error.message}`); });
-    const head = exports.prepare(data.integrators.indexOf(integrator), dt, n, count, system.viscous_damping, system.gravity, ...system.floor);
-    if (!head) throw new Error(`unsupported: the browser has too little memory for ${n} nodes and ${count} springs in WebAssembly`);
-    const {buffer} = exports.memory, [, , , , springs, masses] = new Uint32Array(buffer, head, 6);
+  static async make(system, integrator, dt, threads) {
+    const n = system.nodes, names = data.spring_constants, backend = new WasmBackend();
+    const unsupported = message => { throw new Error(`unsupported: ${message}`); };
+    const given = address => address ||
+      unsupported(`the browser has too little memory for ${n} nodes and ${system.first.length} springs in WebAssembly`);
+    let module, memory, exports;
+    try {
+      module = await WebAssembly.compile(unpack(threads > 1 ? data.wasm_threads : data.wasm, Uint8Array));
+      // At most 256 MiB, twice what the largest scene needs: browsers may reserve a shared memory whole.
+      memory = new WebAssembly.Memory({initial: 16, maximum: 4096, shared: threads > 1});
+      exports = (await WebAssembly.instantiate(module, {env: {memory, pow: Math.pow}})).exports;
+    } catch (error) { unsupported(error.message); }
+    const head = given(exports.prepare(data.integrators.indexOf(integrator), dt, n, threads, system.viscous_damping, system.gravity,
+                                       ...system.floor));
     // Four springs: their first ends, their second ends, each constant of the law, stiffness_rest. The last four are filled up with
     // springs that pull at nothing.
-    const words = 4 * (3 + names.length), groups = Math.ceil(count / 4);
-    const ends = new Uint32Array(buffer, springs, words * groups), laws = new Float32Array(buffer, springs, words * groups);
-    for (let i = 0; i < 4 * groups; ++i) {
-      const s = Math.min(i, count - 1), at = words * (i >> 2) + i % 4, material = system.materials[system.kind[s]];
-      ends[at] = system.first[s];
-      ends[at + 4] = system.second[s];
-      if (i >= count) continue;
-      names.forEach((name, c) => laws[at + 8 + 4 * c] = material[name]);
-      laws[at + words - 4] = material.stiffness * system.restLengths[s];
+    const words = 4 * (3 + names.length);
+    sharesOf(system, threads).forEach(({springs, begin, end, low, high}, thread) => {
+      const count = springs.length, groups = Math.ceil(count / 4);
+      const address = given(exports.share(thread, count, begin, end, low, high)), {buffer} = memory;
+      const ends = new Uint32Array(buffer, address, words * groups), laws = new Float32Array(buffer, address, words * groups);
+      for (let i = 0; i < 4 * groups; ++i) {
+        const s = springs[Math.min(i, count - 1)], at = words * (i >> 2) + i % 4, material = system.materials[system.kind[s]];
+        ends[at] = system.first[s];
+        ends[at + 4] = system.second[s];
+        if (i >= count) continue;
+        names.forEach((name, c) => laws[at + 8 + 4 * c] = material[name]);
+        laws[at + words - 4] = material.stiffness * system.restLengths[s];
+      }
+    });
+    const stacks = Array.from({length: threads}, () => given(exports.stack()));
+    const [masses] = new Uint32Array(memory.buffer, head + 16, 1);
+    new Float32Array(memory.buffer, masses, n).set(system.mass.map((mass, node) => system.free[node] / mass));
+    Object.assign(backend, {memory, exports, head, system, ahead: integrator.ahead * dt, workers: []});
+    if (threads > 1) {
+      const text = URL.createObjectURL(new Blob([wasmWorker], {type: 'text/javascript'}));
+      backend.workers = stacks.map(() => new Worker(text));
+      await backend.ask((thread) => ({module, memory, thread, stack: stacks[thread]})).finally(() => URL.revokeObjectURL(text));
     }
-    new Float32Array(buffer, masses, n).set(system.mass.map((mass, node) => system.free[node] / mass));
-    return Object.assign(new WasmBackend(), {exports, head, system, ahead: integrator.ahead * dt});
+    return backend;
+  }
+  /** Sends each worker a message, and waits for all answers. */
+  async ask(messageTo) {
+    await Promise.all(this.workers.map((worker, thread) => new Promise((resolve, reject) => {
+      worker.onmessage = resolve;
+      worker.onerror = ({message}) => reject(new Error(`a thread ended: ${message}`));
+      worker.postMessage(messageTo(thread));
+    })));
   }
   at(node, c) { return 8 * node + c + (c > 2); }
   /** Those that the integrator has, the state first. */
   pairs() {
-    const {buffer} = this.exports.memory;
+    const {buffer} = this.memory;
     return [...new Uint32Array(buffer, this.head, 4)].filter(Boolean).map(pair => new Float32Array(buffer, pair, 8 * this.system.nodes));
   }
   async setState(state) { for (const pair of this.pairs()) store(moved(state, this.ahead), pair, this.at); }  // pinned nodes stay in all
-  async step(count) { this.exports.step(count); }
+  async step(count) {
+    if (this.workers.length) await this.ask(() => count);
+    else this.exports.step(0, count);
+  }
   async state() { return moved(stateIn(this.pairs()[0], this.at, this.system.nodes), -this.ahead, this.system.floor[0]); }
-  destroy() { this.exports = null; }
+  destroy() {
+    for (const worker of this.workers) worker.terminate();
+    this.exports = this.memory = null;
+  }
 }
 
 // WebGPU: an invocation owns a node, gathers its springs and runs a stage's assignments. A pair is an array of nodes, two vec4f

@@ -1,6 +1,9 @@
-// The row `wasm` of the page of `mssim web`: the plain list of springs as a WebAssembly module in single
-// precision, four springs at a time. The page puts a scene into its memory (WasmBackend in
-// src/web/browser/simulate.js). A program of its own, without a C library: CMakeLists.txt compiles it.
+// The rows `wasm` and `wasm-threads` of the page of `mssim web`: the plain list of springs as a WebAssembly
+// module in single precision, four springs at a time. The page puts a scene into its memory (WasmBackend in
+// src/web/browser/simulate.js). A program of its own, without a C library: cmake/wasm_module.cmake compiles
+// it for one thread, and for threads that share a memory. A thread owns a range of nodes. It has all springs
+// that pull at them, so those between two ranges are computed twice, and no thread writes what another
+// writes.
 
 #include <cstdint>
 
@@ -40,22 +43,31 @@ struct Springs {
   LinearSpring<Four> law;
 };
 
+/// What a thread has. It owns the nodes [begin, end); its springs touch nodes of [low, high).
+struct Share {
+  Springs* springs;
+  std::uint32_t fours, begin, end, low, high;
+  Four* force;  // N, of [low, high); only those of its own nodes are whole
+};
+
+using Pairs = std::array<Node*, pair_kinds>;
+
 /// A system, and where the page finds its parts; all numbers of the head have four bytes.
 struct List {
-  std::array<Node*, pair_kinds> pairs;
-  Springs* springs;
+  Pairs pairs;
   float* inverse_mass;  // 1/kg; 0 for a pinned node
-  Four* force;          // N
-  std::uint32_t nodes, fours;
+  Share* shares;
+  std::uint32_t nodes, threads;
   float viscous_damping, gravity, height, restitution, friction;
   const Integrator* integrator;
   Coefficients<float> coefficients;
 } list;
 
-void add_forces(const Node* from) {
-  for (std::uint32_t node = 0; node < list.nodes; ++node) list.force[node] = 0;
-  for (std::uint32_t s = 0; s < list.fours; ++s) {
-    const Springs& springs = list.springs[s];
+void add_forces(const Share& share, const Node* from) {
+  Four* const force = share.force - share.low;
+  for (std::uint32_t node = share.low; node < share.high; ++node) force[node] = 0;
+  for (std::uint32_t s = 0; s < share.fours; ++s) {
+    const Springs& springs = share.springs[s];
     Four d[4], u[4];
     for (std::size_t i = 0; i < 4; ++i) {
       const Node &one = from[springs.first[i]], &other = from[springs.second[i]];
@@ -69,24 +81,24 @@ void add_forces(const Node* from) {
     const Four closing = column(u, 0) * x + column(u, 1) * y + column(u, 2) * z;
     const Four pull = spring_pull(x * x + y * y + z * z, closing, springs.law);
     for (std::size_t i = 0; i < 4; ++i) {
-      const Four force = pull[i] * d[i];
-      list.force[springs.first[i]] += force;
-      list.force[springs.second[i]] -= force;
+      const Four at_one = pull[i] * d[i];
+      force[springs.first[i]] += at_one;
+      force[springs.second[i]] -= at_one;
     }
   }
 }
 
 template <std::size_t method, std::size_t stage>
-void update_nodes() {
-  const Node* from = list.pairs[index(integrators[method].stages[stage].gather)];
-  for (std::uint32_t i = 0; i < list.nodes; ++i) {
+void update_nodes(const Share& share, const Pairs& pairs) {
+  const Node* from = pairs[index(integrators[method].stages[stage].gather)];
+  for (std::uint32_t i = share.begin; i < share.end; ++i) {
     if (list.inverse_mass[i] == 0) continue;
     const Node node = from[i];
-    const Four a =
-        node_acceleration(list.inverse_mass[i] * list.force[i], node.v, list.viscous_damping, list.gravity);
+    const Four a = node_acceleration(list.inverse_mass[i] * share.force[i - share.low], node.v,
+                                     list.viscous_damping, list.gravity);
     const auto slot_of = [&](auto slot) -> Four& {
       constexpr std::size_t s = index(decltype(slot)::value);
-      return s % 2 == 0 ? list.pairs[s / 2][i].x : list.pairs[s / 2][i].v;
+      return s % 2 == 0 ? pairs[s / 2][i].x : pairs[s / 2][i].v;
     };
     update_stage<method, stage>(
         list.coefficients, node.x, node.v, a, slot_of, [&](auto slot, Four value) { slot_of(slot) = value; },
@@ -98,11 +110,33 @@ void update_nodes() {
   }
 }
 
+/// Waits until all threads are here. They spin for about a millisecond before they sleep, because to wake
+/// takes longer than a stage of a small scene. Endless spinning could hold the processor of the thread that
+/// is waited for.
+[[gnu::noinline]] void wait_for_all() {
+#ifdef __wasm_atomics__
+  static std::uint32_t here, round;
+  constexpr int most_looks = 1'000'000;
+  const std::uint32_t now = __atomic_load_n(&round, __ATOMIC_SEQ_CST);
+  if (__atomic_add_fetch(&here, 1, __ATOMIC_SEQ_CST) == list.threads) {
+    __atomic_store_n(&here, 0, __ATOMIC_SEQ_CST);
+    __atomic_add_fetch(&round, 1, __ATOMIC_SEQ_CST);
+    __builtin_wasm_memory_atomic_notify(reinterpret_cast<int*>(&round), list.threads);
+    return;
+  }
+  for (int look = 0; look < most_looks; ++look)
+    if (__atomic_load_n(&round, __ATOMIC_SEQ_CST) != now) return;
+  while (__atomic_load_n(&round, __ATOMIC_SEQ_CST) == now)
+    __builtin_wasm_memory_atomic_wait32(reinterpret_cast<int*>(&round), static_cast<int>(now), -1);
+#endif
+}
+
 extern "C" unsigned char __heap_base;  // the linker's: the first byte after the program's own memory
 
 /// Takes memory from there on, one part after the other.
 class Room {
  public:
+  void clear() { end_ = (reinterpret_cast<std::uintptr_t>(&__heap_base) + 15) / 16 * 16; }
   template <class Part>
   Part* take(std::uint32_t count) {
     const std::uint64_t begin = end_;
@@ -119,8 +153,8 @@ class Room {
   }
 
  private:
-  std::uint64_t end_ = (reinterpret_cast<std::uintptr_t>(&__heap_base) + 15) / 16 * 16;
-};
+  std::uint64_t end_ = 0;
+} room;
 
 }  // namespace
 
@@ -128,37 +162,60 @@ extern "C" {
 /// Makes room for a system after the program's own memory. `integrator`: of all_integrators. Returns the
 /// list's address, or 0 if the browser gives no memory.
 __attribute__((export_name("prepare"))) List* prepare(std::uint32_t integrator, double dt_s,
-                                                      std::uint32_t nodes, std::uint32_t springs,
+                                                      std::uint32_t nodes, std::uint32_t threads,
                                                       float viscous_damping, float gravity, float height,
                                                       float restitution, float friction) {
   list.integrator = all_integrators[integrator];
   list.coefficients = coefficients_of<float>(*list.integrator, dt_s);
   list.nodes = nodes;
-  list.fours = (springs + 3) / 4;
+  list.threads = threads;
   list.viscous_damping = viscous_damping;
   list.gravity = gravity;
   list.height = height;
   list.restitution = restitution;
   list.friction = friction;
-  Room room;
+  room.clear();
   for (std::size_t pair = 0; pair < pair_kinds; ++pair)
     if (touches(*list.integrator, static_cast<Pair>(pair))) list.pairs[pair] = room.take<Node>(nodes);
-  list.springs = room.take<Springs>(list.fours);
   list.inverse_mass = room.take<float>(nodes);
-  list.force = room.take<Four>(nodes);
+  list.shares = room.take<Share>(threads);
   return room.is_there() ? &list : nullptr;
 }
 
-__attribute__((export_name("step"))) void step(std::uint32_t count) {
+/// Makes room for a thread's share. Returns the address of its springs, or 0 if the browser gives no memory.
+__attribute__((export_name("share"))) Springs* share(std::uint32_t thread, std::uint32_t springs,
+                                                     std::uint32_t begin, std::uint32_t end,
+                                                     std::uint32_t low, std::uint32_t high) {
+  const std::uint32_t fours = (springs + 3) / 4;
+  Springs* const its = room.take<Springs>(fours);
+  Four* const force = room.take<Four>(high - low);
+  if (!room.is_there()) return nullptr;
+  list.shares[thread] = {its, fours, begin, end, low, high, force};
+  return its;
+}
+
+/// Room for what the compiler keeps in memory while a thread of its own runs `step`: its end, or 0.
+__attribute__((export_name("stack"))) unsigned char* stack() {
+  constexpr std::uint32_t bytes = 65536;
+  unsigned char* const begin = room.take<unsigned char>(bytes);
+  return room.is_there() ? begin + bytes : nullptr;
+}
+
+/// A thread's part of the steps. It returns when all threads are done.
+__attribute__((export_name("step"))) void step(std::uint32_t thread, std::uint32_t count) {
+  const Share its = list.shares[thread];
+  Pairs pairs = list.pairs;
   with_integrator(*list.integrator, [&](auto method) {
     for (std::uint32_t step = 0; step < count; ++step) {
       for_each_stage<method>([&](auto stage) {
-        add_forces(list.pairs[index(integrators[method].stages[stage].gather)]);
-        update_nodes<method, stage>();
+        add_forces(its, pairs[index(integrators[method].stages[stage].gather)]);
+        update_nodes<method, stage>(its, pairs);
+        wait_for_all();  // no stage writes the pair that it gathers: once a stage is enough
       });
-      std::swap(list.pairs[index(Pair::state)], list.pairs[index(Pair::next)]);
+      std::swap(pairs[index(Pair::state)], pairs[index(Pair::next)]);
     }
   });
+  if (thread == 0) list.pairs = pairs;
 }
 }
 
