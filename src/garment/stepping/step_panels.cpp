@@ -77,7 +77,8 @@ HWY_INLINE void compute_forces(const GarmentGrid& grid, const GarmentGrid::Panel
           panel_stencil[d].rows * static_cast<std::ptrdiff_t>(panel.stride) + panel_stencil[d].columns;
       const Lanes3 away = load_unaligned(grid.position, at + static_cast<std::size_t>(offset)) - own;
       const Lanes rest = hn::Load(FloatTag(), grid.rest[d].data() + at);
-      const SpringConstants<Lanes> undamped{.stiffness = Lanes(panel.stiffness[d][row])};
+      const SpringConstants<Lanes> undamped{.stiffness = Lanes(panel.stiffness[d][row]),
+                                            .damping = Lanes(0.0F)};
       const Lanes pull = spring_pull(dot(away, away), Lanes(0.0F), linear_spring(undamped, rest));
       const Mask exists = hn::Gt(rest.v, hn::Zero(FloatTag()));
       store(scratch.forces(), scratch.at(d, row) + column, keep(exists, pull * away));
