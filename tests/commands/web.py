@@ -26,8 +26,8 @@ def rows_of(text):
     return list(csv.DictReader(io.StringIO(json.loads(text)["timings_csv"])))
 
 
-def query_of(scenes, integrators="semi-euler", rounds=1, seconds=0.002, more=""):
-    return f"auto={scenes}&integrators={integrators}&rounds={rounds}&seconds={seconds}{more}"
+def query_of(scenes, integrators="semi-euler", rounds=1, seconds=0.002, threads=2, more=""):
+    return f"auto={scenes}&integrators={integrators}&rounds={rounds}&seconds={seconds}&threads={threads}{more}"
 
 
 # What kernels may have wrong: text of the page's part for them, and what stands there instead. The reference stays right.
@@ -177,7 +177,7 @@ def check_person(browser, page):
 
 def check_without(browser, page):
     """There is no WebGPU, no isolation, or no module."""
-    browser.open(page, query_of("cloth2500", rounds=2, more="&threads=3"))
+    browser.open(page, query_of("cloth2500", rounds=2, threads=3))
     rows = rows_of(without := browser.results())
     expect({row["backend"]: row["threads"] for row in rows} == {"javascript": "1", "wasm": "1", "wasm-threads": "3"}, f"threads: {rows}")
     expect("webgpu" not in [row["backend"] for row in rows] and all(map(is_timed, rows)), f"rows without WebGPU: {rows}")

@@ -92,11 +92,12 @@ address=$(<address) port=$(grep -o '[0-9]*' address)
 (work=$(mktemp -d) && expect 2 "cannot serve on port $port.*--port" web --serve --port "$port" && rm -r "$work") || exit 1
 profile=$(mktemp -d)
 "$chromium" --headless=new --no-sandbox --user-data-dir="$profile" --remote-debugging-port=0 \
-  "$address?auto=cloth2500&rounds=2&seconds=0.002&integrators=semi-euler" >/dev/null 2>&1 &
+  "$address?auto=cloth2500&rounds=2&seconds=0.002&integrators=semi-euler&threads=2" >/dev/null 2>&1 &
 browser=$!
 soon 60 is_gone "$server" || { kill "$server" && fail "mssim takes no result"; }
 kill "$browser"
 wait "$browser" || true
 rm -rf "$profile"
 grep -q '^cloth2500,2500,.*,javascript,cpu,1,semi-euler,.*,true,ok' sent/*/timings.csv || fail "mssim has not written what it was sent"
+grep -q '^cloth2500,2500,.*,wasm-threads,cpu,2,semi-euler,.*,true,ok' sent/*/timings.csv || fail "the served page is not isolated"
 ends 0 report sent --no-runs --out sent.html

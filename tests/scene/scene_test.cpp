@@ -255,7 +255,7 @@ TEST(FindScene, SaysWhatAnUnknownNameMayMean) {
                                                         {"", "no scene is named \"\""},
                                                         {"scene.schema", "no scene is named"},
                                                         {"..", "no scene is named"}}) {
-    EXPECT_THAT(sentence_of<SceneError>([&name = name] { find_scene(name); }),
+    EXPECT_THAT(sentence_of<SceneError>([&wrong = name] { find_scene(wrong); }),
                 AllOf(HasSubstr(hint), HasSubstr("mssim list scenes")));
   }
 }
