@@ -117,10 +117,13 @@ async function verifySecond(make, scene, integrator) {
   if (steps === 0) return '';
   const laws = scene.checks.second_system;
   const system = buildSystem(laws, start, [floor_height, ...laws.floor.slice(1)]), backend = await make(system);
-  await backend.setState(system.start);
-  await backend.step(steps);
-  const error = largestDistance((await backend.state()).position, unpack(position, Float64Array)) / system.mean_rest_length;
-  backend.destroy();
+  let state;
+  try {
+    await backend.setState(system.start);
+    await backend.step(steps);
+    state = await backend.state();
+  } finally { backend.destroy(); }
+  const error = largestDistance(state.position, unpack(position, Float64Array)) / system.mean_rest_length;
   return error <= tolerance ? ''
     : `position error ${error.toPrecision(6)} of a rest length exceeds ${tolerance.toPrecision(6)} after ${steps} steps of a ` +
       'small scene of its kind that meets the floor';
@@ -133,7 +136,7 @@ const missingModule = 'there is no row wasm: this mssim was built without clang 
 const missingThreads = threads => !crossOriginIsolated
   ? 'there is no row wasm-threads: the page is not isolated from other origins. mssim web --serve isolates it; other hosts do so by the ' +
     'headers Cross-Origin-Opener-Policy: same-origin and Cross-Origin-Embedder-Policy: require-corp'
-  : threads < 2 ? 'there is no row wasm-threads: the browser knows of one CPU' : '';
+  : threads < 2 ? 'there is no row wasm-threads: it would have one thread' : '';
 
 /** Thrown where the user has pressed Stop. */
 class Stopped extends Error {}

@@ -289,7 +289,10 @@ class WasmBackend {
     if (threads > 1) {
       const text = URL.createObjectURL(new Blob([wasmWorker], {type: 'text/javascript'}));
       backend.workers = stacks.map(() => new Worker(text));
-      await backend.ask((thread) => ({module, memory, thread, stack: stacks[thread]})).finally(() => URL.revokeObjectURL(text));
+      await backend.ask(thread => ({module, memory, thread, stack: stacks[thread]})).catch(error => {
+        backend.destroy();
+        throw error;
+      }).finally(() => URL.revokeObjectURL(text));
     }
     return backend;
   }
@@ -297,7 +300,7 @@ class WasmBackend {
   async ask(messageTo) {
     await Promise.all(this.workers.map((worker, thread) => new Promise((resolve, reject) => {
       worker.onmessage = resolve;
-      worker.onerror = ({message}) => reject(new Error(`a thread ended: ${message}`));
+      worker.onerror = ({message}) => reject(new Error(`a thread ended: ${message || 'the browser does not say why'}`));
       worker.postMessage(messageTo(thread));
     })));
   }
