@@ -93,7 +93,7 @@ async function runReference(system, integrator, check, dt, pause) {
 async function verify(backend, system, reference, row, pause) {
   if (reference.failure) return reference.failure;
   await backend.setState(system.start);
-  const atOnce = backend instanceof ListBackend ? 1 : data.steps_between_looks;
+  const atOnce = backend.device || backend.workers?.length ? data.steps_between_looks : 1;  // others keep the page from drawing
   for (let step = 0; step < reference.steps; step += atOnce) {
     await backend.step(Math.min(atOnce, reference.steps - step));
     await pause();
@@ -133,8 +133,8 @@ async function verifySecond(make, scene, integrator) {
 
 const missingModule = 'there is no row wasm: this mssim was built without clang and wasm-ld';
 /** Why there is no row wasm-threads; empty if there is one. */
-const missingThreads = threads => !crossOriginIsolated
-  ? 'there is no row wasm-threads: the page is not isolated from other origins. mssim web --serve isolates it; other hosts do so by the ' +
+const missingThreads = threads => !self.crossOriginIsolated
+  ? 'there is no row wasm-threads: the page is not isolated from other origins. mssim web --serve isolates it; other hosts do so by https and the ' +
     'headers Cross-Origin-Opener-Policy: same-origin and Cross-Origin-Embedder-Policy: require-corp'
   : threads < 2 ? 'there is no row wasm-threads: it would have one thread' : '';
 
