@@ -31,9 +31,9 @@ foreach(wasm_module ${wasm_modules})
   get_filename_component(wasm_name ${wasm_module} NAME_WE)
   set(wasm_depfile ${wasm_folder}/${wasm_name}.d)
   add_custom_command(OUTPUT ${wasm_module} DEPENDS ${wasm_source} DEPFILE ${wasm_depfile}
-    COMMAND ${WASM_CXX} ${wasm_flags} -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
+    COMMAND ${WASM_CXX} ${wasm_flags} -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion $<$<BOOL:${CMAKE_COMPILE_WARNING_AS_ERROR}>:-Werror>
       -I${PROJECT_SOURCE_DIR}/src -I${PROJECT_SOURCE_DIR} -MD -MF ${wasm_depfile} -MT ${wasm_module} ${wasm_source} -o ${wasm_module}
-    COMMENT "Building a module of the page" VERBATIM)
+    COMMENT "Building a module of the page" VERBATIM COMMAND_EXPAND_LISTS)
   # Each thread gets a stack of its own. The page decides how much memory there may be, up to 4 GiB.
   list(APPEND wasm_flags -matomics -mmutable-globals -Wl,--shared-memory,--max-memory=4294967296,--export=__stack_pointer)
 endforeach()

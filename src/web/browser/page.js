@@ -183,7 +183,7 @@ const chosen = id => [...element(id).querySelectorAll('input:checked')].map(({va
 async function measure() {
   const options = {scenes: chosen('scenes'), integrators: chosen('integrators'), rounds: Number(element('rounds').value) || 10,
                    sampleSeconds: Number(address.get('seconds')) || 0.1,
-                   threads: Number(address.get('threads')?.match(/^[1-9]\d{0,2}$/)) || navigator.hardwareConcurrency || 1};
+                   threads: Number(address.get('threads')?.match(/^[1-9]\d?$/)) || navigator.hardwareConcurrency || 1};
   if (session && !session.finished) return;
   if (!options.scenes.length || !options.integrators.length) return void (element('state').textContent = 'Choose a scene and an integrator.');
   element('stop').disabled = false;

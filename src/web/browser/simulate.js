@@ -260,8 +260,10 @@ class WasmBackend {
     let module, memory, exports;
     try {
       module = await WebAssembly.compile(unpack(threads > 1 ? data.wasm_threads : data.wasm, Uint8Array));
-      // At most 256 MiB, twice what the largest scene needs: browsers may reserve a shared memory whole.
-      memory = new WebAssembly.Memory({initial: 16, maximum: 4096, shared: threads > 1});
+      // Browsers may reserve a shared memory whole. This is enough if the integrator has all pairs, each thread has forces of all nodes,
+      // and each spring is computed twice.
+      const most = 2 ** 21 + 65536 * threads + n * (132 + 16 * threads) + 2 * 4 * (3 + names.length) * system.first.length;
+      memory = new WebAssembly.Memory({initial: 16, maximum: Math.ceil(most / 65536), shared: threads > 1});
       exports = (await WebAssembly.instantiate(module, {env: {memory, pow: Math.pow}})).exports;
     } catch (error) { unsupported(error.message); }
     const head = given(exports.prepare(data.integrators.indexOf(integrator), dt, n, threads, system.viscous_damping, system.gravity,
