@@ -21,7 +21,7 @@ if(WASM_CXX AND WASM_LD)
     RESULT_VARIABLE wasm_fails OUTPUT_FILE ${wasm_folder}/try.log ERROR_FILE ${wasm_folder}/try.log)
 endif()
 if(NOT wasm_fails EQUAL 0)
-  message(STATUS "The page of mssim web gets no row wasm: clang++ and wasm-ld (Debian's clang and lld) are missing, or cannot compile "
+  message(STATUS "The page of mssim web gets no rows wasm and wasm-threads: clang++ and wasm-ld (Debian's clang and lld) are missing, or cannot compile "
     "(${wasm_folder}/try.log)")
   file(REMOVE ${wasm_modules})
   return()
@@ -34,7 +34,7 @@ foreach(wasm_module ${wasm_modules})
     COMMAND ${WASM_CXX} ${wasm_flags} -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion $<$<BOOL:${CMAKE_COMPILE_WARNING_AS_ERROR}>:-Werror>
       -I${PROJECT_SOURCE_DIR}/src -I${PROJECT_SOURCE_DIR} -MD -MF ${wasm_depfile} -MT ${wasm_module} ${wasm_source} -o ${wasm_module}
     COMMENT "Building a module of the page" VERBATIM COMMAND_EXPAND_LISTS)
-  # Each thread gets a stack of its own. The page decides how much memory there may be, up to 4 GiB.
+  # For the second: threads share its memory, and each gets a stack of its own. The page decides how much memory there may be, up to 4 GiB.
   list(APPEND wasm_flags -matomics -mmutable-globals -Wl,--shared-memory,--max-memory=4294967296,--export=__stack_pointer)
 endforeach()
 add_custom_target(wasm_module DEPENDS ${wasm_modules})

@@ -60,7 +60,7 @@ WASM_MODULE_MUTANTS = {
     "forces pull both ends the same way": (b"\xfd\xe5\x01\xfd\x0b\x04\x00", b"\xfd\xe4\x01\xfd\x0b\x04\x00"),
 }
 THREADS_MUTANTS = {
-    "a spring between two threads pulls at one": ("[shares[owner[first[s]]], shares[owner[second[s]]]]", "[shares[owner[first[s]]]]"),
+    "a spring between two threads pulls at one": ("one === other ? [one] : [one, other]", "[one]"),
     "a thread leaves its last node": ("end = owner.filter(its => its <= thread).length", "end = owner.filter(its => its <= thread).length - thread"),
     # i32.eq between the threads that have come and all, before a constant that tells the place.
     "threads do not wait for each other": (b"\x46\x0d\x00\x41\xc0\x84\x3d", b"\x47\x0d\x00\x41\xc0\x84\x3d"),

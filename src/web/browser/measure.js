@@ -131,7 +131,7 @@ async function verifySecond(make, scene, integrator) {
 
 // Measurement.
 
-const missingModule = 'there is no row wasm: this mssim was built without clang and wasm-ld';
+const missingModule = 'there are no rows wasm and wasm-threads: this mssim was built without clang and wasm-ld';
 /** Why there is no row wasm-threads; empty if there is one. */
 const missingThreads = threads => !self.crossOriginIsolated
   ? 'there is no row wasm-threads: the page is not isolated from other origins. mssim web --serve isolates it; other hosts do so by https and the ' +

@@ -231,12 +231,14 @@ function sharesOf({nodes, first, second}, threads) {
     const begin = owner.filter(its => its < thread).length, end = owner.filter(its => its <= thread).length;
     return {begin, end, low: begin, high: end, springs: []};
   });
-  for (let s = 0; s < first.length; ++s)
-    for (const share of new Set([shares[owner[first[s]]], shares[owner[second[s]]]])) {
+  for (let s = 0; s < first.length; ++s) {
+    const one = shares[owner[first[s]]], other = shares[owner[second[s]]];
+    for (const share of one === other ? [one] : [one, other]) {
       share.springs.push(s);
       share.low = Math.min(share.low, first[s], second[s]);
       share.high = Math.max(share.high, first[s] + 1, second[s] + 1);
     }
+  }
   return shares;
 }
 
@@ -284,11 +286,11 @@ class WasmBackend {
         laws[at + words - 4] = material.stiffness * system.restLengths[s];
       }
     });
-    const stacks = Array.from({length: threads}, () => given(exports.stack()));
     const [masses] = new Uint32Array(memory.buffer, head + 16, 1);
     new Float32Array(memory.buffer, masses, n).set(system.mass.map((mass, node) => system.free[node] / mass));
     Object.assign(backend, {memory, exports, head, system, ahead: integrator.ahead * dt, workers: []});
     if (threads > 1) {
+      const stacks = Array.from({length: threads}, () => given(exports.stack()));
       const text = URL.createObjectURL(new Blob([wasmWorker], {type: 'text/javascript'}));
       backend.workers = stacks.map(() => new Worker(text));
       await backend.ask(thread => ({module, memory, thread, stack: stacks[thread]})).catch(error => {

@@ -57,7 +57,7 @@ struct List {
   Pairs pairs;
   float* inverse_mass;  // 1/kg; 0 for a pinned node
   Share* shares;
-  std::uint32_t nodes, threads;
+  std::uint32_t threads;
   float viscous_damping, gravity, height, restitution, friction;
   const Integrator* integrator;
   Coefficients<float> coefficients;
@@ -110,9 +110,9 @@ void update_nodes(const Share& share, const Pairs& pairs) {
   }
 }
 
-/// Waits until all threads are here. They spin for about a millisecond before they sleep, because to wake
-/// takes longer than a stage of a small scene. Endless spinning could hold the processor of the thread that
-/// is waited for.
+/// Waits until all threads are here. They look a million times before they sleep, because to wake takes
+/// longer than a stage of a small scene. A thread that never slept could hold the processor of the one that
+/// it waits for.
 [[gnu::noinline]] void wait_for_all() {
 #ifdef __wasm_atomics__
   static std::uint32_t here, round;
@@ -167,7 +167,6 @@ __attribute__((export_name("prepare"))) List* prepare(std::uint32_t integrator, 
                                                       float restitution, float friction) {
   list.integrator = all_integrators[integrator];
   list.coefficients = coefficients_of<float>(*list.integrator, dt_s);
-  list.nodes = nodes;
   list.threads = threads;
   list.viscous_damping = viscous_damping;
   list.gravity = gravity;
@@ -194,7 +193,7 @@ __attribute__((export_name("share"))) Springs* share(std::uint32_t thread, std::
   return its;
 }
 
-/// Room for what the compiler keeps in memory while a thread of its own runs `step`: its end, or 0.
+/// Makes room for a worker's stack. Returns its upper end, or 0 if the browser gives no memory.
 __attribute__((export_name("stack"))) unsigned char* stack() {
   constexpr std::uint32_t bytes = 65536;
   unsigned char* const begin = room.take<unsigned char>(bytes);
