@@ -20,6 +20,7 @@
 #include "mesh/tetgen.h"
 #include "output/tables/table.h"
 #include "picture/picture.h"
+#include "platform/counters.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "scene/fields/fields.h"
@@ -168,9 +169,12 @@ std::vector<Checkup> findings_here() {
   std::vector<Checkup> findings = machine_findings(gather_provenance({}, threads));
   findings.insert(findings.begin() + 1, threads_finding(threads));
   findings.push_back(looked_at("memory", "all scenes of --suite table1", look_at_memory));
-  const std::string obstacle = PackageEnergy().obstacle();
-  findings.push_back({"energy counters", obstacle.empty() ? ok : limited, "",
-                      "the column joules_per_step of mssim bench", obstacle});
+  const auto add_counters = [&](const char* item, const char* use, const std::string& obstacle) {
+    findings.push_back({item, obstacle.empty() ? ok : limited, "", use, obstacle});
+  };
+  add_counters("energy counters", "the column joules_per_step of mssim bench", PackageEnergy().obstacle());
+  add_counters("event counters", "the columns cycles_per_step to cache_misses_per_step of mssim bench",
+               EventCounters().obstacle());
   add_opencl(findings);
   findings.push_back(looked_at("TetGen", "meshes of bodies: --suite table2 and table3", look_at_tetgen));
   findings.push_back(looked_at("MPI", "backend mpi: several processes or machines", look_at_mpi));

@@ -346,47 +346,6 @@ std::optional<std::uint64_t> MemoryPeak::rise() const {
   return *peak - std::min(*peak, *before_);
 }
 
-PackageEnergy::PackageEnergy(const fs::path& root) {
-  const fs::path folder = root / "sys/class/powercap";
-  obstacle_ =
-      "the system has no energy counters in " + folder.string() + ": use a machine that is not virtual";
-  std::error_code error;
-  for (const fs::directory_entry& zone : fs::directory_iterator(folder, error)) {
-    std::string name;  // others are parts of a package, the whole machine, or the same by another way
-    if (!zone.path().filename().string().starts_with("intel-rapl:") ||
-        !(std::ifstream(zone.path() / "name") >> name) || !name.starts_with("package-"))
-      continue;
-    const std::vector<std::int64_t> range = numbers_in(zone.path() / "max_energy_range_uj"),
-                                    now = numbers_in(zone.path() / "energy_uj");
-    if (range.empty() || now.empty()) {
-      obstacle_ = "the energy counter " + (zone.path() / "energy_uj").string() +
-                  " cannot be read: let its owner allow it (chmod a+r)";
-      counters_.clear();
-      return;
-    }
-    counters_.push_back(
-        {zone.path() / "energy_uj", static_cast<double>(range[0]), static_cast<double>(now[0])});
-  }
-  if (!counters_.empty()) obstacle_.clear();
-}
-
-std::optional<double> PackageEnergy::joules() {
-  // All are read before one is stored, so that their intervals stay alike if one cannot be read.
-  std::vector<double> all_uj;
-  for (const Counter& counter : counters_) {
-    const std::vector<std::int64_t> now = numbers_in(counter.file);
-    if (now.empty()) return std::nullopt;
-    all_uj.push_back(static_cast<double>(now[0]));
-  }
-  double sum_uj = 0;
-  for (std::size_t i = 0; i < counters_.size(); ++i) {
-    Counter& counter = counters_[i];
-    const double last_uj = std::exchange(counter.last_uj, all_uj[i]);
-    sum_uj += counter.last_uj - last_uj + (counter.last_uj < last_uj ? counter.range_uj : 0);
-  }
-  return counters_.empty() ? std::nullopt : std::optional(1e-6 * sum_uj);
-}
-
 void start_with_short_waits(char** argv) {
   const char* spins = std::getenv(spin_variable);
   if (spins != nullptr && spins == short_spins) {

@@ -77,27 +77,6 @@ class MemoryPeak {
   std::optional<std::uint64_t> before_;
 };
 
-/// The energy that the packages of this machine's processors use, whoever uses them: Linux's counters of RAPL
-/// (/sys/class/powercap), which are updated about every millisecond.
-class PackageEnergy {
- public:
-  /// `root` is prepended to /sys.
-  explicit PackageEnergy(const std::filesystem::path& root = "/");
-  /// Why there are no counters, a sentence with the remedy; empty if there are.
-  const std::string& obstacle() const { return obstacle_; }
-  /// J since the last call; nothing without counters, or if one can no longer be read.
-  std::optional<double> joules();
-
- private:
-  struct Counter {
-    std::filesystem::path file;
-    double range_uj;  ///< after which it starts again at 0
-    double last_uj;
-  };
-  std::vector<Counter> counters_;
-  std::string obstacle_;
-};
-
 /// Restarts the program with the same arguments if OpenMP's threads would spin as long as libgomp does by
 /// default, tens of milliseconds. On CPUs that other programs use, two threads can end up on one CPU, where
 /// each spins while the other should work. libgomp reads its spin count once, before main(). Call it first in

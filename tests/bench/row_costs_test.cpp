@@ -1,8 +1,11 @@
+#include <linux/perf_event.h>
+
 #include <chrono>
 #include <thread>
 
 #include "platform/files.h"
 #include "tests/bench/bench_scene_fixture.h"
+#include "tests/support/new_pages.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -125,6 +128,30 @@ TEST_F(BenchSceneWithEnergy, TellsWhatAStepTakes) {
   EXPECT_NEAR(row.joules_per_step.value() * row.sample_steps.front(), 3, 1e-9);
   job_.root = path() / "none";
   EXPECT_EQ(run().front().joules_per_step, std::nullopt);
+}
+
+/// Uses new memory for every request, in a new thread.
+class Spreading final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void step(int count) override {
+    OtherSerial::step(count);
+    std::thread(touch_new_pages).join();
+  }
+};
+constexpr BackendInfo spreading{"spreading", "", "uses memory", false, {}, make_other<Spreading>, {}, {}};
+
+TEST_F(BenchScene, TellsWhatTheSystemCountedInAStep) {
+  // What Linux counts itself, because this processor may have no counters; and what never happens.
+  constexpr CountedEvent page_fault{PERF_TYPE_SOFTWARE, PERF_COUNT_SW_PAGE_FAULTS};
+  job_.events = {page_fault, page_fault, {PERF_TYPE_SOFTWARE, PERF_COUNT_SW_DUMMY}};
+  if (!EventCounters(job_.events).obstacle().empty()) GTEST_SKIP() << EventCounters(job_.events).obstacle();
+  job_.backends = {&spreading};
+  job_.integrators.resize(1);
+  const ResultRow row = run().front();
+  EXPECT_NEAR(row.cycles_per_step.value() * row.sample_steps.front(), new_pages, 0.1 * new_pages);
+  EXPECT_NEAR(row.instructions_per_step.value() * row.sample_steps.front(), new_pages, 0.1 * new_pages);
+  EXPECT_EQ(row.cache_misses_per_step, 0);
 }
 
 TEST_F(BenchScene, TellsBytesOfAStepASecond) {

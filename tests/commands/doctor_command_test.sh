@@ -12,8 +12,8 @@ is() { says "^$2  *$1\( \|\$\)"; }
 # This machine, which runs tests.
 ends 0 doctor
 is 'main job' ok
-for item in processor threads 'processor caches' affinity 'container limits' governor load memory 'energy counters' 'OpenCL de' TetGen MPI font 'cache of meshes' \
-  'cache of references'; do
+for item in processor threads 'processor caches' affinity 'container limits' governor load memory 'energy counters' 'event counters' \
+  'OpenCL de' TetGen MPI font 'cache of meshes' 'cache of references'; do
   says "^\(ok\|limited\|missing\)  *$item"
 done
 [ ! -s err ] || fail "stderr is not empty: $(cat err)"

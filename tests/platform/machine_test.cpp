@@ -105,45 +105,6 @@ TEST_F(MadeUpGroups, MayHaveNoLimitOrBeMissing) {
   EXPECT_FALSE(limits.memory_left);
 }
 
-class MadeUpEnergy : public TemporaryFolderTest {
- protected:
-  void put_zone(const std::string& zone, const std::string& name, const std::string& energy_uj) const {
-    const std::string folder = "sys/class/powercap/" + zone + "/";
-    put(folder + "name", name + "\n");
-    put(folder + "max_energy_range_uj", "1000000000\n");
-    put(folder + "energy_uj", energy_uj);
-  }
-};
-
-TEST_F(MadeUpEnergy, IsThatOfAllPackagesSinceTheLastCall) {
-  put_zone("intel-rapl:0", "package-0", "999000000\n");
-  put_zone("intel-rapl:1", "package-1", "5000000\n");
-  put_zone("intel-rapl:0:0", "core", "7\n");  // a part of package 0
-  put_zone("intel-rapl:2", "psys", "7\n");    // the whole machine
-  put_zone("intel-rapl-mmio:0", "package-0", "7\n");
-  PackageEnergy energy(folder());
-  EXPECT_EQ(energy.obstacle(), "");
-  put_zone("intel-rapl:0", "package-0", "2000000\n");  // started again at 1 kJ
-  put_zone("intel-rapl:1", "package-1", "5500000\n");
-  for (const char* other : {"intel-rapl:0:0", "intel-rapl:2", "intel-rapl-mmio:0"})
-    put("sys/class/powercap/" + std::string(other) + "/energy_uj", "70000000\n");
-  EXPECT_NEAR(energy.joules().value(), 3.5, 1e-9);
-  EXPECT_EQ(energy.joules(), 0);
-  put_zone("intel-rapl:1", "package-1", "");
-  EXPECT_EQ(energy.joules(), std::nullopt);
-}
-
-TEST_F(MadeUpEnergy, IsNoneWithoutCountersOrIfTheyCannotBeRead) {
-  PackageEnergy none(folder());
-  EXPECT_EQ(none.joules(), std::nullopt);
-  EXPECT_NE(none.obstacle().find("sys/class/powercap"), std::string::npos);
-  put_zone("intel-rapl:0", "package-0", "5\n");
-  put_zone("intel-rapl:1", "package-1", "");  // as if only root could read it
-  PackageEnergy unreadable(folder());
-  EXPECT_EQ(unreadable.joules(), std::nullopt);
-  EXPECT_NE(unreadable.obstacle().find("intel-rapl:1/energy_uj"), std::string::npos);
-}
-
 TEST(Terminal, IsWhatItsStreamAndTheEnvironmentSay) {
   constexpr StreamFacts usual{.is_terminal = true, .columns = 120, .term = "xterm", .lang = "en_GB.UTF-8"};
   StreamFacts of_unknown_width = usual, pipe = usual, plain = usual, dumb = usual, unknown = usual;

@@ -108,7 +108,7 @@ garment/fitting       fitting
 garment/layers        cloth_contacts cloth_cloth
 garment/output        garment_tables h5md_garment
 garment/stepping      dressing_backend published_dressing
-platform              files process supervised_process machine
+platform              files process supervised_process machine counters
 mesh                  meshing surface_file tetgen
 model                 system node_shape
 scene/fields          fields

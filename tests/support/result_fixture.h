@@ -44,6 +44,9 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.latency_us = 1.25;
   row.link_gigabytes_per_second = 8;
   row.joules_per_step = 0.015625;
+  row.cycles_per_step = 4096;
+  row.instructions_per_step = 8192.5;
+  row.cache_misses_per_step = 0.25;
   row.frame_steps = 33;
   row.frame_p50_ms = 33 * ms;
   row.frame_p95_ms = 34 * ms;

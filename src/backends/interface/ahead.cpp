@@ -33,6 +33,7 @@ class AheadBackend final : public Backend {
   void rest() override { backend_->rest(); }
   std::string end() override { return backend_->end(); }
   double processor_seconds() const override { return backend_->processor_seconds(); }
+  bool steps_in_process() const override { return backend_->steps_in_process(); }
   std::optional<std::uint64_t> program_peak_bytes() const override { return backend_->program_peak_bytes(); }
 
  private:

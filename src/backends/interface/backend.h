@@ -147,6 +147,8 @@ class Backend {
     ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
+  /// Do threads of this process take the steps? Not those of a program that mssim has started.
+  virtual bool steps_in_process() const { return true; }
   /// Sum of the largest resident memory that each living process of its program has had, bytes; none if it
   /// has no program, or if the system does not tell.
   virtual std::optional<std::uint64_t> program_peak_bytes() const { return std::nullopt; }

@@ -173,6 +173,7 @@ class ProcessBackend final : public WindowBackend {
   }
   std::string end() override { return end_politely(); }
   double processor_seconds() const override { return process_->processor_seconds(); }
+  bool steps_in_process() const override { return false; }
   std::optional<std::uint64_t> program_peak_bytes() const override { return process_->peak_bytes(); }
 
   std::optional<Communication> communication() override {

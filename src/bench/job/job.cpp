@@ -1,6 +1,7 @@
 #include "bench/job/job.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -23,6 +24,7 @@ struct SampleTime {
   double wall_s = 0;
   double processor_s = 0;
   std::optional<double> joules = {};  ///< of the machine's processors
+  std::optional<std::array<double, EventCounters::count>> events = {};
 };
 
 /// Returns to the state from which samples start.
@@ -49,12 +51,14 @@ SampleTime time_sample(Combination& combination, int steps) {
     restart(combination);
   }
   combination.energy.joules();
-  // Read last before the steps and first after them: reading the counters of energy takes CPU time.
+  if (backend.steps_in_process()) combination.event_counters.start();
+  // Read last before the steps and first after them: reading the other counters takes CPU time.
   const double processor_before = backend.processor_seconds();
   // No clock resolves less than 1 ns.
   const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));
   const double processor_s = backend.processor_seconds() - processor_before;
-  return {wall_s, processor_s, combination.energy.joules()};
+  const auto events = combination.event_counters.stop();
+  return {wall_s, processor_s, combination.energy.joules(), events};
 }
 
 /// Description of a row beyond its names.
@@ -179,6 +183,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   combination.start = &start;
   combination.in_double = info.in_double;
   combination.energy = PackageEnergy(job.root);
+  combination.event_counters = EventCounters(job.events);
   ResultRow& row = combination.row;
   row.scene = job.name;
   row.nodes = job.windowed ? job.windowed->nodes() : job.system->nodes();
@@ -245,7 +250,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
     return fail(combination,
                 fmt::format("failed: {} was verified, but this is {}", subject_of(*found), subject_of(row)));
-  static_cast<Agreement&>(row) = *found;
+  static_cast<Agreement&>(row) = static_cast<const Agreement&>(*found);
   row.dressing = found->dressing;
   row.verified = true;
   append_sentence(row.note, "verified by an earlier process");
@@ -291,6 +296,10 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
     }
     combination.processors.push_back(time.processor_s / time.wall_s);
     if (time.joules) combination.joules.push_back(*time.joules / combination.steps);
+    if (time.events) {
+      combination.events.push_back(*time.events);
+      for (double& events : combination.events.back()) events /= combination.steps;
+    }
     ms = 1000 * time.wall_s / combination.steps;
   });
   return ms;
@@ -342,13 +351,22 @@ void require_prompt_steps(Combination& combination) {
 void summarise_costs(const Combination& combination, ResultRow& row) {
   if (!combination.processors.empty()) row.processors_used = median(combination.processors);
   if (!combination.joules.empty()) row.joules_per_step = median(combination.joules);
-  const std::vector<Communication>& samples = combination.communication;
-  if (samples.empty()) return;
-  const auto median_of = [&](const auto& cost) {
+  const auto median_over = [](const auto& samples, const auto& cost) {
     std::vector<double> values;
-    for (const Communication& sample : samples) values.push_back(cost(sample));
+    for (const auto& sample : samples) values.push_back(cost(sample));
     return median(values);
   };
+  if (!combination.events.empty()) {
+    const auto events_per_step = [&](std::size_t event) {
+      return median_over(combination.events, [&](const auto& events) { return events[event]; });
+    };
+    row.cycles_per_step = events_per_step(0);
+    row.instructions_per_step = events_per_step(1);
+    row.cache_misses_per_step = events_per_step(2);
+  }
+  const std::vector<Communication>& samples = combination.communication;
+  if (samples.empty()) return;
+  const auto median_of = [&](const auto& cost) { return median_over(samples, cost); };
   row.waiting_share = median_of([](const Communication& sample) { return sample.waiting; });
   row.packing_share = median_of([](const Communication& sample) { return sample.packing; });
   row.bytes_per_step = median_of([](const Communication& sample) { return sample.bytes; });

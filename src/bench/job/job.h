@@ -18,6 +18,7 @@
 #include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
 #include "garment/fitting/fitting.h"
+#include "platform/counters.h"
 #include "platform/machine.h"
 
 namespace mssim {
@@ -98,7 +99,8 @@ struct SceneJob : BenchSettings {
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   /// Approximate share of the time before the rounds in the whole; for the progress only.
   double preparation = 0.3;
-  std::filesystem::path root = "/";     ///< for PackageEnergy
+  std::filesystem::path root = "/";  ///< for PackageEnergy
+  EventCounters::Events events = EventCounters::of_processor;
   std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
 };
 
@@ -120,6 +122,8 @@ struct Combination {
   std::vector<double> processors;       ///< processor seconds per second, for each sample of this run
   std::vector<double> joules;           ///< J per step, for each sample of this run, if the system tells
   PackageEnergy energy;
+  std::vector<std::array<double, EventCounters::count>> events;  ///< per step, as `joules`
+  EventCounters event_counters;
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
   std::vector<double> sample_seconds;        ///< wall time of each sample of this run

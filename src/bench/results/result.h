@@ -73,7 +73,8 @@ struct Agreement {
 
 /// Costs of a row's steps other than time; medians of the samples.
 struct MeasuredCosts {
-  std::optional<double> processors_used, joules_per_step;
+  std::optional<double> processors_used, joules_per_step, cycles_per_step, instructions_per_step,
+      cache_misses_per_step;
   // For processes that step together (Communication).
   std::optional<double> waiting_share, packing_share, bytes_per_step, messages_per_step, latency_us,
       link_gigabytes_per_second;
@@ -224,6 +225,12 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"joules_per_step", "J",
      "energy that the processors' packages used in the timed samples, whoever used them; the median",
      &ResultRow::joules_per_step},
+    {"cycles_per_step", "",
+     "processor cycles in user code of mssim's threads in the timed samples; the median",
+     &ResultRow::cycles_per_step},
+    {"instructions_per_step", "", "instructions of the same threads", &ResultRow::instructions_per_step},
+    {"cache_misses_per_step", "", "their accesses to memory that no cache answered",
+     &ResultRow::cache_misses_per_step},
 });
 
 /// Whether both are of the same scene, backend and integrator.
