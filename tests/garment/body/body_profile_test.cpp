@@ -227,5 +227,25 @@ TEST(JeansForBody, AreThoseOfTheReferenceBodyAndWideEnoughForAnyLeg) {
   }
 }
 
+TEST(JeansForBody, HaveAnEaseThatFitsTheThighs) {
+  const BodyProfile profile(mannequin({}));
+  const auto jeans_with = [&](double thigh_share) {
+    BodyLandmarks body = find_landmarks(profile);
+    body.thigh.girth = thigh_share * body.hip.girth.value();
+    return jeans_for_body(profile, body);
+  };
+  constexpr double millimetre = 0.00051;  // to which eases are rounded
+  EXPECT_NEAR(jeans_with(0.6).thigh_ease.value(), 0.008 + 0.6 * 0.02, millimetre);
+  EXPECT_EQ(jeans_with(0.6).hip_ease, 0);
+  EXPECT_NEAR(jeans_with(0.545).thigh_ease.value(), 0.028 + 0.9 * 0.03, millimetre);
+  EXPECT_NEAR(jeans_with(0.545).hip_ease, 0.35 * 0.03, millimetre);
+  EXPECT_EQ(jeans_with(0.58).thigh_ease, 0.028);
+  EXPECT_EQ(jeans_with(0.58).hip_ease, 0);
+  EXPECT_EQ(jeans_with(0.7).thigh_ease, -0.013);
+  BodyLandmarks unknown = find_landmarks(profile);
+  unknown.thigh.girth.reset();
+  EXPECT_EQ(jeans_for_body(profile, unknown).thigh_ease, 0.008);
+}
+
 }  // namespace
 }  // namespace mssim
