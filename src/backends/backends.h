@@ -108,7 +108,7 @@ std::string unsupported_reason(const BackendInfo& backend, const Integrator& int
 /// BackendFailure.
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
-                                      const ExecutionOptions& options);
+                                      const ExecutionOptions& asked);
 
 /// Makes a backend for a system of one body. The system must outlive the backend.
 using MakeBackend = std::function<std::unique_ptr<Backend>(const System& system)>;
@@ -131,7 +131,7 @@ inline bool has_windows(const BackendInfo& backend) {
 /// Makes the backend for a garment. Throws Unavailable, or Unsupported if it cannot dress.
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,
                                                        const Integrator& integrator, double dt_s,
-                                                       const ExecutionOptions& options);
+                                                       const ExecutionOptions& asked);
 
 /// Whether the backend implements Algorithm 1 (garment/stepping/); others refuse garments.
 inline bool dresses(const BackendInfo& backend) { return backend.make_dressing != nullptr; }

@@ -283,8 +283,8 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
     const auto row = std::ranges::find_if(
         earlier, [&](const ResultRow& other) { return same_combination(other, combination.row); });
     if (row != earlier.end()) {
-      static_cast<Samples&>(combination.row) = *row;
-      static_cast<MeasuredCosts&>(combination.row) = *row;
+      static_cast<Samples&>(combination.row) = static_cast<const Samples&>(*row);
+      static_cast<MeasuredCosts&>(combination.row) = static_cast<const MeasuredCosts&>(*row);
     }
     complete = std::min(complete, combination.row.samples_ms.size());
   }

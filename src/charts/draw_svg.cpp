@@ -131,7 +131,8 @@ class Drawing {
   /// A series and its entry in the legend, whose columns are filled one after the other.
   void series(std::size_t s, std::size_t row) {
     const double column_width = (chart_width - 2 * chart_edge) / static_cast<double>(layout_.legend_columns);
-    const double x = chart_edge + column_width * static_cast<double>(row / layout_.legend_rows),
+    const std::size_t column = row / layout_.legend_rows;
+    const double x = chart_edge + column_width * static_cast<double>(column),
                  y = layout_.legend + legend_row * (static_cast<double>(row % layout_.legend_rows) + 0.5);
     text(layout_.names[s], x + legend_sample - 6, y);
     line_and_points(s, x + 9, y);

@@ -68,15 +68,15 @@ class Font {
     require_success(FT_Set_Char_Size(face_, 0, size, 0, 0), "a size of letters");
     // No hinting: its result differs between releases of FreeType; outlines do not.
     require_success(FT_Load_Char(face_, character, FT_LOAD_RENDER | FT_LOAD_NO_HINTING), "a letter");
-    const FT_GlyphSlot slot = face_->glyph;
-    GlyphMask mask{slot->bitmap_left,
-                   slot->bitmap_top,
-                   static_cast<int>(slot->bitmap.width),
-                   static_cast<int>(slot->bitmap.rows),
-                   static_cast<int>(std::lround(static_cast<double>(slot->advance.x) / 64)),
+    const FT_GlyphSlotRec& glyph = *face_->glyph;
+    GlyphMask mask{glyph.bitmap_left,
+                   glyph.bitmap_top,
+                   static_cast<int>(glyph.bitmap.width),
+                   static_cast<int>(glyph.bitmap.rows),
+                   static_cast<int>(std::lround(static_cast<double>(glyph.advance.x) / 64)),
                    {}};
     for (int row = 0; row < mask.height; ++row) {
-      const unsigned char* begin = slot->bitmap.buffer + std::ptrdiff_t{row} * slot->bitmap.pitch;
+      const unsigned char* begin = glyph.bitmap.buffer + std::ptrdiff_t{row} * glyph.bitmap.pitch;
       mask.coverage.insert(mask.coverage.end(), begin, begin + mask.width);
     }
     return mask;

@@ -74,7 +74,7 @@ std::string Movie::take_bytes() {
   WebPDataInit(&data);
   const bool whole = WebPAnimEncoderAdd(encoder_.get(), nullptr, milliseconds_at(frames_), nullptr) &&
                      WebPAnimEncoderAssemble(encoder_.get(), &data);
-  const std::string bytes(reinterpret_cast<const char*>(data.bytes), data.size);
+  std::string bytes(reinterpret_cast<const char*>(data.bytes), data.size);
   WebPDataClear(&data);
   if (!whole)
     throw std::runtime_error(std::string("libwebp cannot finish the movie: ") +

@@ -330,8 +330,7 @@ Picture drawn(const Subject& subject, const Shot& shot) {
   const Lights lights(shot.direction);
   const std::vector<Vec3d> normals = vertex_normals(subject.surface);
   std::vector<PointLight> light(normals.size());
-  const int team = openmp_team(shot.threads);
-#pragma omp parallel for num_threads(team)
+#pragma omp parallel for num_threads(openmp_team(shot.threads))
   for (std::size_t point = 0; point < normals.size(); ++point) light[point] = lights.on(normals[point]);
   const Shadow shadow(subject.surface, lights.key(), shot.threads);
   const Surface seen = seen_by(camera, subject.surface);

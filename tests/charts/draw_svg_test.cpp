@@ -10,8 +10,6 @@
 namespace mssim {
 namespace {
 
-namespace fs = std::filesystem;
-
 Chart small_chart(ChartForm form) {
   Chart chart;
   chart.id = "small";

@@ -75,7 +75,7 @@ class SupervisedProcesses : public TemporaryFolderTest {
     std::error_code error;
     for (std::filesystem::directory_iterator entry("/proc", error), end; entry != end; entry.increment(error))
       if (const std::string name = entry->path().filename();
-          name.find_first_not_of("0123456789") == name.npos)
+          name.find_first_not_of("0123456789") == std::string::npos)
         if (proc_text(name + "/environ").find(mark) != std::string::npos) marked.push_back(std::stoi(name));
     return marked;
   }

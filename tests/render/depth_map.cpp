@@ -17,9 +17,8 @@
 #include "output/traces/trace_reader.h"
 #include "render/draw.h"
 
+namespace mssim {
 namespace {
-
-using namespace mssim;
 
 /// What a picture of the last frame shows.
 Surface last_surface(const TraceReader& trace) {
@@ -55,15 +54,16 @@ void write_depths(Surface surface, const Shot& shot, const std::string& file) {
 }
 
 }  // namespace
+}  // namespace mssim
 
 int main(int count, char** arguments) try {
   const std::vector<std::string> given(arguments + 1, arguments + count);
-  PictureOptions options;
-  options.view = view_direction(given.at(1)).value();
+  mssim::PictureOptions options;
+  options.view = mssim::view_direction(given.at(1)).value();
   options.width = static_cast<std::uint32_t>(std::stoul(given.at(2)));
   options.height = static_cast<std::uint32_t>(std::stoul(given.at(3)));
-  const TraceReader trace(given.at(0));
-  write_depths(last_surface(trace), shot_of(trace, options), given.at(4));
+  const mssim::TraceReader trace(given.at(0));
+  mssim::write_depths(mssim::last_surface(trace), mssim::shot_of(trace, options), given.at(4));
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "depth_map: " << error.what() << '\n';

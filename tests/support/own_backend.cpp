@@ -183,7 +183,7 @@ class Connection {
     if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
       throw std::runtime_error("cannot connect");
   }
-  bool read_line(std::string& line) {
+  bool read_line(std::string& line) const {
     line.clear();
     for (char c = 0; ::read(socket_, &c, 1) == 1;) {
       if (c == '\n') return true;

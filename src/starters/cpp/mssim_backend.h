@@ -281,7 +281,7 @@ class Lines {
     for (;;) {
       const std::size_t end = heard_.find('\n');
       if (end != std::string::npos) {
-        const std::string line = heard_.substr(0, end);
+        std::string line = heard_.substr(0, end);
         heard_.erase(0, end + 1);
         return line;
       }
@@ -293,7 +293,7 @@ class Lines {
     }
   }
 
-  void tell(const std::string& line) {
+  void tell(const std::string& line) const {
     const std::string bytes = line + '\n';
     for (std::size_t sent = 0; sent < bytes.size();) {
       const ssize_t count = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
@@ -427,7 +427,7 @@ struct Simulation {
     return static_cast<std::streamsize>(introduction.system.nodes() * sizeof(Vector));
   }
 
-  void set() {
+  void set() const {
     Vectors x(introduction.system.nodes()), v(x.size());
     std::ifstream file(introduction.state_file, std::ios::binary);
     file.read(reinterpret_cast<char*>(x.data()), bytes()).read(reinterpret_cast<char*>(v.data()), bytes());
@@ -435,7 +435,7 @@ struct Simulation {
     backend->set(x, v);
   }
 
-  void get() {
+  void get() const {
     Vectors x(introduction.system.nodes()), v(x.size());
     const std::size_t nodes = x.size();
     backend->get(x, v);
@@ -482,7 +482,7 @@ std::string outcome_of(Call call) {
 
 inline void hold_conversation(Lines& lines, const Prepare& prepare) {
   std::unique_ptr<Simulation> simulation;
-  const std::string ready = std::string("ready ") + protocol;
+  std::string ready = std::string("ready ") + protocol;
   const std::string outcome = outcome_of([&] {
     simulation = std::make_unique<Simulation>(lines, prepare);
     const About& about = simulation->backend->about;

@@ -214,7 +214,7 @@ State state_of_any_number_of_threads(const System& system, double dt_s, int step
     EXPECT_TRUE(backend->progress().draping);
     return backend->state();
   };
-  const State one = run(1);
+  State one = run(1);
   for (const int threads : {2, 3, 5, 8}) EXPECT_TRUE(same_state(run(threads), one)) << threads;
   return one;
 }
