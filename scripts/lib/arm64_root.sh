@@ -1,15 +1,27 @@
 # shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
-# The libraries for arm64 with which scripts/test --arm64 links. Sourced after prepare.sh.
+# The libraries for arm64 with which scripts/test --arm64 and scripts/package --arm64 link. Sourced after prepare.sh.
 #
 # They have a folder of their own, and are not installed as packages of a second architecture: dpkg may refuse those, or remove others for
 # them, and a foreign architecture remains. Root is not needed.
 
+# extract_packages FOLDER DEB...: their files, and what dpkg-query --admindir=FOLDER/var/lib/dpkg knows of them, without their scripts.
+extract_packages() {
+  local folder=$1 database=$1/var/lib/dpkg deb
+  shift
+  mkdir -p "$database/info"
+  for deb in "$@"; do
+    dpkg-deb --extract "$deb" "$folder" &&
+      { dpkg-deb --field "$deb" && printf 'Status: install ok installed\n\n'; } >>"$database/status" &&
+      dpkg-deb --fsys-tarfile "$deb" | tar -t | sed 's,^\.,,; s,/$,,; s,^$,/.,' >"$database/info/$(dpkg-deb --field "$deb" Package).list" || return
+  done
+}
+
 # ensure_arm64_root: fills build/arm64-root, unless it has the packages of scripts/packages.txt already.
 ensure_arm64_root() {
   local folder=$root/build/arm64-root new=$root/build/arm64-root.new log=$root/build/arm64-root.log lock
-  # The last two belong to the compiler, whose package brings them only for this machine's architecture.
+  # Two belong to the compiler, whose package brings them only for this machine's architecture; the others go into an archive.
   local -a wanted
-  mapfile -t wanted < <(packages_for library && printf '%s\n' libstdc++6 libgomp1)
+  mapfile -t wanted < <(packages_for library && printf '%s\n' libstdc++6 libgomp1 tetgen libaec-dev)
   make_folder "$root/build"
   exec {lock}>"$root/build/.arm64-root.lock"
   flock "$lock"
@@ -24,7 +36,7 @@ ensure_arm64_root() {
     {
       "${apt[@]}" update || true
       "${apt[@]}" install --yes --download-only --no-install-recommends "${wanted[@]}" &&
-        printf '%s\0' "$new"/apt/archives/*.deb | xargs -0 -I{} dpkg-deb --extract {} "$new"
+        extract_packages "$new" "$new"/apt/archives/*.deb
     } </dev/null >"$log" 2>&1 || {
       cat "$log" >&2
       say "the libraries for arm64 could not be fetched; this needs network access and Debian's package archive"

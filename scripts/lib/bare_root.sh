@@ -9,12 +9,12 @@ enter_bare_roots() {
   cd -- "$root/build/bare-debian" || exit
 }
 
-# new_bare_root RELEASE FOLDER: installs Debian 12 or 13 into the folder, or says why not and exits.
+# new_bare_root RELEASE FOLDER [ARCHITECTURE]: installs Debian 12 or 13 into the folder, or says why not and exits.
 new_bare_root() {
   local names=([12]=bookworm [13]=trixie)
   rm -rf -- "$2"
   say "installing Debian $1 (log: $PWD/$2.log)"
-  debootstrap --variant=minbase "${names[$1]}" "$2" >"$2.log" 2>&1 || {
+  debootstrap --variant=minbase ${3:+"--arch=$3"} "${names[$1]}" "$2" >"$2.log" 2>&1 || {
     tail -n 3 "$2.log" >&2
     say "Debian $1 cannot be installed; this needs network access and permission to mount"
     exit "$exit_missing"

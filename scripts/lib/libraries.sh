@@ -5,9 +5,20 @@
 # shellcheck disable=SC2034 # read by those who source this
 readonly c_libraries=(libc.so.6 libm.so.6 libmvec.so.1 libpthread.so.0 libdl.so.2 librt.so.1 libutil.so.1 libanl.so.1 libresolv.so.2)
 
-# libraries_of PROGRAM...: name and file of each shared library that they load, also indirectly, but for the C library.
+# The system that the programs are for: this one, or the folder of arm64_root.sh.
+target_root=''
+
+# libraries_of PROGRAM...: name and file of each shared library that they load, also indirectly, but for the C library and the loader.
 libraries_of() {
-  ldd "$@" | awk -v parts=" ${c_libraries[*]} " '$2 == "=>" && !index(parts, " " $1 " ") { print $1, $3 }' | sort -u
+  local program
+  for program in "$@"; do
+    if [[ $target_root ]]; then
+      "$root/scripts/lib/run_arm64" "$target_root/lib/ld-linux-aarch64.so.1" --list "$program" # as ldd does
+    else
+      ldd "$program"
+    fi
+  done | awk -v parts=" ${c_libraries[*]} " -v folder="$target_root" \
+    '$2 == "=>" && $1 !~ "/" && !index(parts, " " $1 " ") { print $1, folder $3 }' | sort -u
 }
 
 # copy_libraries FOLDER PROGRAM...: copies them into the folder, or names one that is missing and exits.
@@ -26,6 +37,7 @@ owners_of() {
   local -a files=() paths=()
   for file in "$@"; do
     file=$(readlink -f -- "$file")
+    file=${file#"$target_root"}
     files+=("${file#/usr}")
     # A package may list a file under a folder that is a link into /usr today.
     paths+=("${file#/usr}" "/usr${file#/usr}")

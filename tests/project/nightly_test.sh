@@ -9,7 +9,7 @@ trap 'rm -rf "$place"' EXIT
 mkdir -p "$place/scripts"
 cp -r "$2/.ci" "$place"
 cp -r "$2/scripts/lib" "$place/scripts"
-mapfile -t parts < <(grep -oE 'scripts/[a-z-]+( --[a-z0-9]+( [0-9]+)?)?$' "$2/.ci/nightly")
+mapfile -t parts < <(grep -oE 'scripts/[a-z-]+( --[a-z0-9]+( [0-9]+)?)*$' "$2/.ci/nightly")
 ((${#parts[@]} >= 5)) || { echo "only ${#parts[@]} parts are known" && exit 1; }
 for part in "${parts[@]}"; do
   # shellcheck disable=SC2016 # the stand-ins expand it

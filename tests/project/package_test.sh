@@ -29,6 +29,7 @@ refuses 2 'name what to make'
 refuses 2 'rpm' rpm
 refuses 2 'wheel' archive wheel
 refuses 2 'with --check' archive 12
+refuses 2 '--arm64 goes with archive, wheel or --check' deb --arm64
 refuses 2 "$place.* has no bin/mssim" archive --build "$place"
 
 for kind in archive wheel deb recipes; do
