@@ -158,6 +158,7 @@ std::string jeans_scene(const fs::path& file, const MeasuredFile& found) {
     section["hem_height_m"] = jeans.hem_height;
     section["knee_m"] = jeans.knee;
     section["hem_m"] = jeans.hem;
+    section["hip_ease_m"] = jeans.hip_ease;
     section["thigh_ease_m"] = jeans.thigh_ease.value();
     section["waist_ease_m"] = jeans.waist_ease;
     section["crotch_ease_m"] = jeans.crotch_ease;

@@ -5,4 +5,4 @@ set -euo pipefail
 [ -z "${3-}" ] || exit 77
 MSSIM_BIN=$(dirname "$1")
 export MSSIM_BIN
-"$2/scripts/dress-persons" woman-161 woman-161-no-arms woman-tall-slim woman-tall-heavy man-10339
+"$2/scripts/dress-persons" woman-161 woman-312 woman-tall-slim woman-tall-heavy man-10339
