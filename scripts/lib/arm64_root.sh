@@ -19,7 +19,8 @@ extract_packages() {
 # ensure_arm64_root: fills build/arm64-root, unless it has the packages of scripts/packages.txt already.
 ensure_arm64_root() {
   local folder=$root/build/arm64-root new=$root/build/arm64-root.new log=$root/build/arm64-root.log lock
-  # Two belong to the compiler, whose package brings them only for this machine's architecture; the others go into an archive.
+  # libstdc++6 and libgomp1 belong to the compiler, whose package brings them only for this machine's architecture. tetgen goes into an
+  # archive, and HDF5 compresses with libaec.
   local -a wanted
   mapfile -t wanted < <(packages_for library && printf '%s\n' libstdc++6 libgomp1 tetgen libaec-dev)
   make_folder "$root/build"
@@ -42,7 +43,8 @@ ensure_arm64_root() {
       say "the libraries for arm64 could not be fetched; this needs network access and Debian's package archive"
       exit "$exit_missing"
     }
-    # The work of the package's installation script.
+    # The work of installation scripts.
+    [[ -e $new/lib ]] || ln -s usr/lib "$new/lib"
     ln -s hdf5-serial.pc "$new/usr/lib/aarch64-linux-gnu/pkgconfig/hdf5.pc"
     # The linker for PoCL (see run_arm64): a program of this machine that uses the libraries in the folder.
     mkdir "$new/host"

@@ -16,7 +16,7 @@ new_bare_root() {
   say "installing Debian $1 (log: $PWD/$2.log)"
   debootstrap --variant=minbase ${3:+"--arch=$3"} "${names[$1]}" "$2" >"$2.log" 2>&1 || {
     tail -n 3 "$2.log" >&2
-    say "Debian $1 cannot be installed; this needs network access and permission to mount"
+    say "Debian $1 cannot be installed; this needs network access and permission to mount${3:+; for $3 on another machine, also binfmt_misc}"
     exit "$exit_missing"
   }
 }

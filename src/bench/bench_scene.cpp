@@ -518,6 +518,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
   for (Combination& combination : all) {
     if (combination.backend) require_prompt_steps(combination);
+    if (combination.backend && !stopped) count_events(combination, job);
     if (job.fps && combination.backend && !stopped) {
       watch.progress(fmt::format("frames: {} {}", combination.row.integrator, combination.row.backend), 1);
       time_frames(combination, job, watch.stop);

@@ -32,9 +32,9 @@ std::string event_obstacle(int error) {
       return "the system offers no counters of the processor's events: use a machine that is not virtual";
     case EACCES:
     case EPERM:
+    case ENOSYS:
       return "the system does not let this user count events: lower kernel.perf_event_paranoid to 2 "
-             "(sysctl), "
-             "or let the container call perf_event_open";
+             "(sysctl), or let the container call perf_event_open";
     default:
       return fmt::format("the processor's events cannot be counted: {}",
                          std::generic_category().message(error));

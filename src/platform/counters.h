@@ -39,13 +39,13 @@ struct CountedEvent {
   std::uint64_t config = 0;
 };
 
-/// How often three events happen in user code of this process's threads. A thread has counters of its own, so
-/// what other programs do does not count.
+/// How often three events happen in user code of this process's threads, and of processes that they start
+/// meanwhile. A thread has counters of its own, so what other programs do does not count.
 class EventCounters {
  public:
   static constexpr std::size_t count = 3;
   using Events = std::array<CountedEvent, count>;
-  /// Cycles, instructions, and misses of the last cache (or what the processor's maker takes for them).
+  /// Cycles, instructions, and cache misses: of the last cache on Intel, of the second on AMD's Zen.
   static const Events of_processor;
 
   explicit EventCounters(const Events& events = of_processor);
@@ -54,7 +54,8 @@ class EventCounters {
   /// Counts from now on, in all threads that there are, and in those that they start.
   void start();
   /// Stops counting. The events since start(); if the processor has fewer counters than are in use, an
-  /// estimate from the time for which it counted. Nothing if it did not count in a thread that ran.
+  /// estimate from the time for which it counted. Nothing if it did not count in a thread that ran, or if
+  /// start() could not open a file for each thread and event.
   std::optional<std::array<double, count>> stop();
 
  private:

@@ -1,7 +1,6 @@
 #include "bench/job/job.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -24,7 +23,6 @@ struct SampleTime {
   double wall_s = 0;
   double processor_s = 0;
   std::optional<double> joules = {};  ///< of the machine's processors
-  std::optional<std::array<double, EventCounters::count>> events = {};
 };
 
 /// Returns to the state from which samples start.
@@ -33,6 +31,14 @@ void restart(Combination& combination) {
     combination.windows->restart();
   else
     combination.backend->set_state(*combination.start);
+}
+
+/// The same, with threads awake and caches filled.
+void warm_up(Combination& combination) {
+  restart(combination);
+  if (combination.step_seconds >= long_step_s) return;
+  combination.backend->step(1);
+  restart(combination);
 }
 
 template <class Work>
@@ -45,20 +51,14 @@ double seconds_of(const Work& work) {
 /// Times the steps of one sample.
 SampleTime time_sample(Combination& combination, int steps) {
   Backend& backend = *combination.backend;
-  restart(combination);
-  if (combination.step_seconds < long_step_s) {
-    backend.step(1);  // wakes threads and caches up
-    restart(combination);
-  }
+  warm_up(combination);
   combination.energy.joules();
-  if (backend.steps_in_process()) combination.event_counters.start();
-  // Read last before the steps and first after them: reading the other counters takes CPU time.
+  // Read last before the steps and first after them: reading the counters of energy takes CPU time.
   const double processor_before = backend.processor_seconds();
   // No clock resolves less than 1 ns.
   const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));
   const double processor_s = backend.processor_seconds() - processor_before;
-  const auto events = combination.event_counters.stop();
-  return {wall_s, processor_s, combination.energy.joules(), events};
+  return {wall_s, processor_s, combination.energy.joules()};
 }
 
 /// Description of a row beyond its names.
@@ -183,7 +183,6 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   combination.start = &start;
   combination.in_double = info.in_double;
   combination.energy = PackageEnergy(job.root);
-  combination.event_counters = EventCounters(job.events);
   ResultRow& row = combination.row;
   row.scene = job.name;
   row.nodes = job.windowed ? job.windowed->nodes() : job.system->nodes();
@@ -296,10 +295,6 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
     }
     combination.processors.push_back(time.processor_s / time.wall_s);
     if (time.joules) combination.joules.push_back(*time.joules / combination.steps);
-    if (time.events) {
-      combination.events.push_back(*time.events);
-      for (double& events : combination.events.back()) events /= combination.steps;
-    }
     ms = 1000 * time.wall_s / combination.steps;
   });
   return ms;
@@ -333,6 +328,23 @@ void time_frames(Combination& combination, const SceneJob& job, const std::funct
   });
 }
 
+void count_events(Combination& combination, const SceneJob& job) {
+  EventCounters counters(job.events);
+  if (!counters.obstacle().empty() || !combination.backend->steps_in_process()) return;
+  attempt(combination, [&] {
+    warm_up(combination);
+    counters.start();
+    combination.backend->step(combination.steps);
+    if (const auto events = counters.stop()) {
+      MeasuredCosts& costs = combination.row;
+      costs.cycles_per_step = (*events)[0] / combination.steps;
+      costs.instructions_per_step = (*events)[1] / combination.steps;
+      costs.cache_misses_per_step = (*events)[2] / combination.steps;
+    }
+    combination.backend->rest();
+  });
+}
+
 void require_prompt_steps(Combination& combination) {
   constexpr std::size_t fewest_samples = 3;
   if (combination.steps == 1 || combination.windows || combination.sample_seconds.size() < fewest_samples)
@@ -351,22 +363,13 @@ void require_prompt_steps(Combination& combination) {
 void summarise_costs(const Combination& combination, ResultRow& row) {
   if (!combination.processors.empty()) row.processors_used = median(combination.processors);
   if (!combination.joules.empty()) row.joules_per_step = median(combination.joules);
-  const auto median_over = [](const auto& samples, const auto& cost) {
-    std::vector<double> values;
-    for (const auto& sample : samples) values.push_back(cost(sample));
-    return median(values);
-  };
-  if (!combination.events.empty()) {
-    const auto events_per_step = [&](std::size_t event) {
-      return median_over(combination.events, [&](const auto& events) { return events[event]; });
-    };
-    row.cycles_per_step = events_per_step(0);
-    row.instructions_per_step = events_per_step(1);
-    row.cache_misses_per_step = events_per_step(2);
-  }
   const std::vector<Communication>& samples = combination.communication;
   if (samples.empty()) return;
-  const auto median_of = [&](const auto& cost) { return median_over(samples, cost); };
+  const auto median_of = [&](const auto& cost) {
+    std::vector<double> values;
+    for (const Communication& sample : samples) values.push_back(cost(sample));
+    return median(values);
+  };
   row.waiting_share = median_of([](const Communication& sample) { return sample.waiting; });
   row.packing_share = median_of([](const Communication& sample) { return sample.packing; });
   row.bytes_per_step = median_of([](const Communication& sample) { return sample.bytes; });

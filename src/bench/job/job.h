@@ -99,8 +99,8 @@ struct SceneJob : BenchSettings {
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   /// Approximate share of the time before the rounds in the whole; for the progress only.
   double preparation = 0.3;
-  std::filesystem::path root = "/";  ///< for PackageEnergy
-  EventCounters::Events events = EventCounters::of_processor;
+  std::filesystem::path root = "/";                            ///< for PackageEnergy
+  EventCounters::Events events = EventCounters::of_processor;  ///< for count_events
   std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
 };
 
@@ -122,8 +122,6 @@ struct Combination {
   std::vector<double> processors;       ///< processor seconds per second, for each sample of this run
   std::vector<double> joules;           ///< J per step, for each sample of this run, if the system tells
   PackageEnergy energy;
-  std::vector<std::array<double, EventCounters::count>> events;  ///< per step, as `joules`
-  EventCounters event_counters;
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
   std::vector<double> sample_seconds;        ///< wall time of each sample of this run
@@ -180,6 +178,10 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
 /// would, the row has a note instead. Ends without a result if `stop` returns true. The row fails if the
 /// result is not finite, or if the backend's program fails.
 void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop);
+
+/// Counts the events of job.events in the steps of one more sample, which is not timed because counting takes
+/// time, if the system can count them and this process takes the steps.
+void count_events(Combination& combination, const SceneJob& job);
 
 /// Fails the combination if its samples show that steps are not taken while the clock runs, but when the
 /// state is requested: the more steps there were, the longer reading it then takes. The criterion: reading a

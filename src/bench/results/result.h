@@ -225,11 +225,10 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"joules_per_step", "J",
      "energy that the processors' packages used in the timed samples, whoever used them; the median",
      &ResultRow::joules_per_step},
-    {"cycles_per_step", "",
-     "processor cycles in user code of mssim's threads in the timed samples; the median",
+    {"cycles_per_step", "", "processor cycles in user code of mssim's threads, in a sample that is not timed",
      &ResultRow::cycles_per_step},
-    {"instructions_per_step", "", "instructions of the same threads", &ResultRow::instructions_per_step},
-    {"cache_misses_per_step", "", "their accesses to memory that no cache answered",
+    {"instructions_per_step", "", "instructions there", &ResultRow::instructions_per_step},
+    {"cache_misses_per_step", "", "misses there of the cache that the processor's maker chose",
      &ResultRow::cache_misses_per_step},
 });
 

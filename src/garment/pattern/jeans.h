@@ -80,8 +80,8 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
 
 /// Measures of jeans for a body, in whole millimetres; girth, crotch and offset of the body are measured
 /// later, on drafting. The jeans are worn as on the reference body: their upper edge is a fifth of the way
-/// from waist to hip below the waist, and their legs are wider than the body's at every height. Their eases
-/// at hip and thigh grow as the thigh's girth shrinks over the hip's.
+/// from waist to hip below the waist, and their legs are wider than the body's at every height. The thinner
+/// the thighs are for the hip, the larger are the eases at hip and thigh.
 JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& body);
 
 }  // namespace mssim

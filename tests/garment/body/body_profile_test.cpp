@@ -247,5 +247,14 @@ TEST(JeansForBody, HaveAnEaseThatFitsTheThighs) {
   EXPECT_EQ(jeans_for_body(profile, unknown).thigh_ease, 0.008);
 }
 
+TEST(JeansForBody, AreNarrowerAtTheWaistOfABodyThatHardlyWidensBelow) {
+  const auto waist_ease = [](const BodyMeasures& measures) {
+    const BodyProfile profile(mannequin(measures));
+    return jeans_for_body(profile, find_landmarks(profile)).waist_ease;
+  };
+  EXPECT_EQ(waist_ease({}), 0.01);
+  EXPECT_EQ(waist_ease({.waist = {0.97, 1.04}}), -0.015);
+}
+
 }  // namespace
 }  // namespace mssim
