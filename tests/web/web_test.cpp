@@ -9,6 +9,8 @@
 
 #include "output/folders/provenance_file.h"
 #include "output/tables/results.h"
+#include "tests/support/sentence_of.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 
 namespace mssim {
@@ -101,6 +103,14 @@ TEST(WebResults, AreRefusedIfMadeUp) {
   expect_refused("a backend by half of its name", [](ResultRow& row) { row.backend = "was"; });
   expect_refused("an implicit integrator", [](ResultRow& row) { row.integrator = "xpbd"; });
   expect_refused("verified without an error", [](ResultRow& row) { row.position_error.reset(); });
+}
+
+TEST(WebResults, AreRefusedInPrintableText) {
+  std::vector<ResultRow> rows = rows_of_a_page();
+  rows[1].scene = "cl\x7fth\n4900";
+  rows[1].ms_per_step = 0.5;
+  EXPECT_THAT(sentence_of<UsageError>([&] { parse_web_results("page.json", document_of(rows).dump()); }),
+              HasSubstr("cl\\u007fth\\n4900, "));
 }
 
 TEST(WebResults, AreRefusedIfDamaged) {

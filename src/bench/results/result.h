@@ -238,10 +238,10 @@ bool same_combination(const A& a, const B& b) {
   return a.scene == b.scene && a.backend == b.backend && a.integrator == b.integrator;
 }
 
-/// "scene, backend, integrator", for messages.
+/// "scene, backend, integrator", for messages; names from a file may hold any characters.
 template <class A>
 std::string combination_name(const A& a) {
-  return a.scene + ", " + a.backend + ", " + a.integrator;
+  return printable(a.scene + ", " + a.backend + ", " + a.integrator, 300);
 }
 
 /// Whether the row is ok and verified, so that its time counts.
