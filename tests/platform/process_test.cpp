@@ -1,5 +1,6 @@
 #include "platform/process.h"
 
+#include "tests/support/address_space.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/testing.h"
 
@@ -74,6 +75,7 @@ TEST_F(ChildProcesses, AreEndedWithAllThatTheyStartedWhenTheirTimeIsOver) {
 }
 
 TEST_F(ChildProcesses, ThatTakeMoreThanTheyMaySayThat) {
+  if (!AddressSpaceLimit(rlim_t{1} << 46).holds()) GTEST_SKIP() << "this system limits no address space";
   constexpr std::uint64_t memory_bytes = std::uint64_t{64} << 20;
   // A child begins with the memory of this process, which is not to be taken for its own.
   for (const std::uint64_t held : {std::uint64_t{0}, 2 * memory_bytes}) {

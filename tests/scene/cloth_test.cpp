@@ -1,4 +1,3 @@
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -10,6 +9,7 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "scene/spec/scene_spec.h"
+#include "tests/support/address_space.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
@@ -204,19 +204,15 @@ TEST(BuildCloth, RefusesAClothGreaterThanTheMemoryWithBothNumbers) {
 
 TEST(BuildCloth, ObeysTheAddressSpaceLimit) {
   const SceneSpec spec = cloth_spec(1000, 1000);  // 384 MB
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
-  rlimit tight = before;
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  tight.rlim_cur = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (std::uint64_t{200} << 20);
-  ASSERT_EQ(setrlimit(RLIMIT_AS, &tight), 0);
-  rlimit set{};
-  ASSERT_EQ(getrlimit(RLIMIT_AS, &set), 0);
-  if (set.rlim_cur != tight.rlim_cur)
-    GTEST_SKIP() << "this system limits no address space; qemu-user does not";
-  const std::string error = refusal(spec);
-  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  std::string error;
+  {
+    const AddressSpaceLimit limit(pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) +
+                                  (std::uint64_t{200} << 20));
+    if (!limit.holds()) GTEST_SKIP() << "this system limits no address space";
+    error = refusal(spec);
+  }
   EXPECT_THAT(error,
               testing::MatchesRegex(".*needs at least 0.38 GB of memory, but 0.2[01] GB are available.*"));
   EXPECT_EQ(refusal(spec), "");
