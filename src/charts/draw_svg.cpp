@@ -50,9 +50,8 @@ class Drawing {
     head(notes);
     grid_and_axes();
     texts();
-    std::size_t row = 0;
     for (std::size_t s = 0; s < chart_.series.size(); ++s)
-      if (!values_.series[s].empty()) series(s, row++);
+      if (!values_.series[s].empty()) series(s);
     return std::move(svg_) + "</svg>";
   }
 
@@ -128,14 +127,15 @@ class Drawing {
     text(layout_.x_label, (layout_.left + layout_.right) / 2, layout_.x_label_middle, middle);
   }
 
-  /// A series and its entry in the legend, whose columns are filled one after the other.
-  void series(std::size_t s, std::size_t row) {
-    const double column_width = (chart_width - 2 * chart_edge) / static_cast<double>(layout_.legend_columns);
-    const std::size_t column = row / layout_.legend_rows;
-    const double x = chart_edge + column_width * static_cast<double>(column),
-                 y = layout_.legend + legend_row * (static_cast<double>(row % layout_.legend_rows) + 0.5);
-    text(layout_.names[s], x + legend_sample - 6, y);
-    line_and_points(s, x + 9, y);
+  /// A series and its entry in the legend.
+  void series(std::size_t s) {
+    const SeriesEntry& entry = layout_.legend[s];
+    double y = entry.middle;
+    for (const std::string& line : entry.lines) {
+      text(line, entry.left + legend_sample - 6, y);
+      y += line_height;
+    }
+    line_and_points(s, entry.left + 9, entry.middle);
   }
 
   void line_and_points(std::size_t s, double sample_x, double sample_y) {

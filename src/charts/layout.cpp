@@ -169,16 +169,29 @@ void lay_out_foot(ChartLayout& layout, const Chart& chart) {
 }
 
 void lay_out_legend(ChartLayout& layout, const Chart& chart, const PlottedValues& values) {
-  std::vector<std::string> in_legend;
+  std::vector<std::size_t> shown;  // series
+  double width = 0;                // of the widest name
   for (std::size_t s = 0; s < chart.series.size(); ++s) {
-    layout.names.push_back(shown_text(chart.series[s].name, letters_that_fit(inner_width - legend_sample)));
-    if (!values.series[s].empty()) in_legend.push_back(layout.names.back());
+    layout.legend.push_back(
+        {shown_lines(chart.series[s].name, letters_that_fit(inner_width - legend_sample))});
+    if (values.series[s].empty()) continue;
+    shown.push_back(s);
+    width = std::max(width, widest(layout.legend[s].lines));
   }
-  layout.legend = layout.x_label_middle + line_height;
-  layout.legend_columns =
-      in_legend.size() > 2 && 2 * (widest(in_legend) + legend_sample) < inner_width ? 2 : 1;
-  layout.legend_rows = (in_legend.size() + layout.legend_columns - 1) / layout.legend_columns;
-  layout.height = layout.legend + legend_row * static_cast<double>(layout.legend_rows) + chart_edge;
+  const bool halves = shown.size() > 2 && 2 * (width + legend_sample) < inner_width;
+  const std::size_t rows = halves ? (shown.size() + 1) / 2 : shown.size();
+  const double top = layout.x_label_middle + line_height;
+  double y = top, bottom = top;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (i == rows) y = top;
+    SeriesEntry& entry = layout.legend[shown[i]];
+    entry.left = chart_edge + (i < rows ? 0 : inner_width / 2);
+    entry.middle = y + legend_row / 2;
+    y += legend_row;
+    if (entry.lines.size() > 1) y += line_height * static_cast<double>(entry.lines.size() - 1);
+    bottom = std::max(bottom, y);
+  }
+  layout.height = bottom + chart_edge;
 }
 
 }  // namespace

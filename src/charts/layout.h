@@ -77,20 +77,25 @@ inline constexpr double legend_row = 21;
 inline constexpr double legend_sample = 60;  ///< the sample before a name in the legend
 inline constexpr double chart_edge = 8;      ///< margin of the chart
 
+/// A series in the legend.
+struct SeriesEntry {
+  std::vector<std::string> lines;  ///< its name
+  double left = 0, middle = 0;     ///< of its sample and its first line
+};
+
 /// Positions of the parts of a chart, in units from its upper left corner, from top to bottom: title, label
 /// of the y axis (horizontal), plot, ticks and label of the x axis, legend.
 struct ChartLayout {
   AxisScale x, y;
   std::vector<std::string> title, subtitle;  ///< lines
   std::string x_label, y_label;
-  std::vector<std::string> names;  ///< of the series in the legend
-  std::size_t legend_columns = 1, legend_rows = 1;
   double left = 0, right = 0, top = 0, bottom = 0;  ///< of the plot
   double y_label_middle = 0, x_label_middle = 0;    ///< from the top
   double tick_labels = 0;                           ///< along x: the middle of their labels in the first row
   /// For each tick along x, the row of its label; none if there is no room for it.
   std::vector<std::optional<int>> tick_rows;
-  double legend = 0, height = 0;  ///< top of the legend; height of the chart
+  std::vector<SeriesEntry> legend;  ///< of each series; the columns are filled one after the other
+  double height = 0;
 };
 
 /// None if there is no value.

@@ -243,6 +243,30 @@ TEST(ChartLayout, LabelsThatStandTooCloseTakeTurns) {
   EXPECT_GT(layout_with_ticks_at({1000, 9000, 10000}).height, layout_with_ticks_at({1000, 10000}).height);
 }
 
+TEST(ChartLayout, LongNamesTakeSeveralLinesOfTheLegend) {
+  Chart chart = chart_of({.name = "short", .x = {1}, .y = {1}});
+  const double height = chart_layout(chart, plotted_values(chart)).value().height;
+  const std::string name = "Multi-thread CPU, Nexus 7, published in 2016, slope 0.89";
+  chart.series.insert(chart.series.begin(), {.name = name, .x = {1}, .y = {1}});
+  const ChartLayout layout = chart_layout(chart, plotted_values(chart)).value();
+  const std::vector<std::string>& lines = layout.legend.at(0).lines;
+  ASSERT_THAT(lines, SizeIs(2));
+  EXPECT_EQ(lines[0] + " " + lines[1], name);
+  EXPECT_EQ(layout.legend[1].middle - layout.legend[0].middle, legend_row + line_height);
+  EXPECT_EQ(layout.height - height, legend_row + line_height);
+}
+
+TEST(ChartLayout, ShortNamesStandInTwoColumnsOfTheLegend) {
+  Chart chart = chart_of({.name = "a", .x = {1}, .y = {1}});
+  for (const char* name : {"nothing to show", "b", "c"}) chart.series.push_back({.name = name});
+  for (const std::size_t shown : {2U, 3U}) chart.series[shown].x = chart.series[shown].y = {1};
+  const std::vector<SeriesEntry> legend = chart_layout(chart, plotted_values(chart)).value().legend;
+  EXPECT_EQ(legend.at(2).left, legend[0].left);
+  EXPECT_EQ(legend[2].middle - legend[0].middle, legend_row);
+  EXPECT_GT(legend.at(3).left, chart_width / 2 - 1);
+  EXPECT_EQ(legend[3].middle, legend[0].middle);
+}
+
 TEST(ChartLayout, HasASubtitleBelowTheTitle) {
   Chart chart = chart_of({.name = "a", .x = {1}, .y = {1}});
   chart.title = "title";
