@@ -15,7 +15,7 @@ expect 2 --serve web --out page.html --port 8000
 touch file
 expect 4 'file.*folder' web --serve --results file
 
-# Making a page takes one processor seconds: both are made at once.
+# Making a page takes one processor seconds, many more with a sanitizer: both are made at once.
 chromium=$(command -v chromium) || chromium=''
 [[ ! $chromium ]] || { "$mssim" web --serve --once --results sent >address </dev/null 2>serve.log & server=$!; }
 ends 0 web --out page.html
@@ -24,7 +24,7 @@ if grep -qE '(src|href)="?https?:|@import|import\(' page.html; then fail "the pa
 
 # HEAD is answered like GET, without the body.
 begins web --serve
-soon 60 test -s "$work/out" || fail "mssim does not serve the page"
+soon 300 test -s "$work/out" || fail "mssim does not serve the page"
 python3 - "$(grep -o '[0-9]*' "$work/out")" <<'PYTHON' || fail "HEAD is not answered like GET"
 import socket, sys
 
@@ -87,7 +87,7 @@ head -c 1000 result.json >cut.json
 expect 2 cut.json report cut.json --no-runs --out damaged.html
 
 # The page sends its results to mssim.
-soon 60 test -s address || fail "mssim does not serve the page: $(<serve.log)"
+soon 300 test -s address || fail "mssim does not serve the page: $(<serve.log)"
 address=$(<address) port=$(grep -o '[0-9]*' address)
 (work=$(mktemp -d) && expect 2 "cannot serve on port $port.*--port" web --serve --port "$port" && rm -r "$work") || exit 1
 profile=$(mktemp -d)
