@@ -392,7 +392,8 @@ class SampleSecrets {
   std::uint32_t present_ = 0, checked_ = 0;  ///< wave numbers of these rounds
 };
 
-/// Expected time of SampleSecrets::compare after samples as long as the combinations' are now.
+/// Longest time that SampleSecrets::compare probably takes after samples as long as the combinations' are
+/// now.
 Clock::duration expected_check(const SceneJob& job, const std::vector<Combination>& combinations,
                                const std::vector<AfterReference>& references) {
   if (job.garment || job.windowed || job.verified) return {};

@@ -26,7 +26,7 @@ constexpr double built_spring_s = 1.5e-7;   // building the scene
 constexpr double moved_node_s = 4e-8;       // setting a state
 constexpr double peaks_s = 0.5;             // for one working set, with one thread and with all
 constexpr double samples_to_calibrate = 3;  // trials of growing length, then until the backend is warm
-constexpr double checked_step = 3.5;    // cost of the check per step of a sample, in steps of the reference
+constexpr double checked_step = 3.5;    // a sample's step in the check, at most, relative to the reference's
 constexpr double garment_step = 1.7;    // a garment's step of the plain list, relative to a cloth's
 constexpr double verified_garment = 4;  // a garment's verification step, relative to a cloth's
 

@@ -191,9 +191,10 @@ SampleEnd sample_end(const System& system, const State& state, int steps, std::s
 /// walk does. A second reference, whose state is rounded to single precision after every step, shows this.
 /// Backends in single precision end 0.5 to 1.7 times as far from the first reference as it does with
 /// semi-euler, and 2 to 4 times with rk4, whose steps round four times (cloths and bodies of the paper, 100
-/// to 2,000 steps). If it is more, four times the second reference's deviation per rounding is allowed, in
-/// scenes of up to a million nodes. After a node has met the floor, the way of the fastest node in four steps
-/// is added, because a rounding may delay a landing by a step.
+/// to 2,000 steps). If that is more, four times the second reference's deviation per rounding is allowed, in
+/// scenes of up to a million nodes. It takes one and a half times as long as the first, and only runs if an
+/// end exceeds the tolerance otherwise. After a node has met the floor, the way of the fastest node in four
+/// steps is added, because a rounding may delay a landing by a step.
 std::vector<std::string> check_samples(const System& system, const Integrator& integrator, double dt_s,
                                        const State& start, std::size_t first,
                                        std::span<const SampleEnd> ends);

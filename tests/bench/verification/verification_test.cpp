@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/list_backends.h"
 #include "integrators/all_integrators.h"
@@ -255,6 +256,51 @@ TEST(Verification, FailsWhereTheEnergyIsOffByMoreThanAHundredth) {
     EXPECT_NEAR(verification.energy_drift, off, 2e-4);
     EXPECT_EQ(verification.failure.has_value(), std::abs(off) > 0.01) << off;
   }
+}
+
+/// Ends of samples of `stepped`, which all start from `start`, after as many steps.
+std::vector<SampleEnd> ends_of(const System& stepped, const State& start, const std::vector<int>& steps) {
+  const auto backend = make_serial(stepped, integrators[0], backend_dt_s, {});
+  std::vector<SampleEnd> ends;
+  for (const int count : steps) {
+    backend->set_state(start);
+    backend->step(count);
+    ends.push_back(sample_end(stepped, backend->state(), count, 0));
+  }
+  return ends;
+}
+
+TEST(SampleCheck, AllowsWhatFoldsMakeOfRoundingsAndNoMore) {
+  System cloth = low_cloth();
+  for (Vec3d& x : cloth.start.position) x.x *= 0.9;  // pressed from the sides, it folds
+  const State start = sample_start(cloth, 7);
+  std::vector<SampleEnd> ends = ends_of(cloth, start, {40, 20, 40});
+  const auto reference = make_reference(cloth, integrators[0], backend_dt_s);
+  reference->set_state(start);
+  reference->step(40);
+  const State end = reference->state();
+  EXPECT_GT(position_deviation(cloth, end, {ends[0].positions, end.velocity}),
+            position_tolerance(cloth, integrators[0], 40))
+      << "folds enlarge roundings beyond the random walk, or this tests nothing";
+  ends[2].positions[240].y += 0.01 * mean_rest_length(cloth);
+  const std::vector<std::string> reasons = check_samples(cloth, integrators[0], backend_dt_s, start, 0, ends);
+  EXPECT_EQ(reasons[0], "");
+  EXPECT_EQ(reasons[1], "");
+  EXPECT_NE(reasons[2].find("position error"), std::string::npos) << reasons[2];
+}
+
+TEST(SampleCheck, FindsASampleThatIsWrongAtItsEnd) {
+  const System cloth = low_cloth();
+  const State start = sample_start(cloth, 7);
+  std::vector<SampleEnd> ends = ends_of(cloth, start, {100, 100, 100, 300});
+  ends[1].positions[40].z += 1e-4;
+  ends[2].energy_j *= 1.1;
+  const std::vector<std::string> reasons = check_samples(cloth, integrators[0], backend_dt_s, start, 0, ends);
+  ASSERT_EQ(reasons.size(), 4U);
+  EXPECT_EQ(reasons[0], "");
+  EXPECT_NE(reasons[1].find("position error"), std::string::npos) << reasons[1];
+  EXPECT_NE(reasons[2].find("energy"), std::string::npos) << reasons[2];
+  EXPECT_EQ(reasons[3], "");
 }
 
 TEST(Verification, StopsBeforeTheFloor) {
