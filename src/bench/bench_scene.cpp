@@ -264,7 +264,8 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
   std::vector<ResultRow> rows;
   for (const Combination& combination : combinations) {
     const auto serial = std::ranges::find_if(combinations, [&](const Combination& other) {
-      return other.integrator == combination.integrator && other.row.backend == baseline_backend().name;
+      return other.integrator == combination.integrator && other.row.backend == baseline_backend().name &&
+             counts(other.row);
     });
     ResultRow& row = rows.emplace_back(combination.row);
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);

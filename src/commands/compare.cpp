@@ -77,9 +77,11 @@ constexpr auto files = std::to_array<std::pair<const char*, ComparisonFormat>>(
 
 int report(const RunComparison& comparison, const CompareOptions& options) {
   std::cout << to_text(comparison, options.format, terminal_of(STDOUT_FILENO).utf8);
-  if (!options.out.empty())
-    for (const auto& [name, format] : files)
-      write_file_atomically(std::filesystem::path(options.out) / name, to_text(comparison, format));
+  if (!options.out.empty()) {
+    std::vector<FolderFile> written;
+    for (const auto& [name, format] : files) written.push_back({name, to_text(comparison, format)});
+    write_files_atomically(options.out, written);
+  }
   tell_first(regressions(comparison));
   const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
   if (undecided > 0)

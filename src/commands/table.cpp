@@ -51,30 +51,39 @@ void print(const ReportInput& input, bool as_latex) {
       std::cout << (as_latex ? latex(page.page, page.name, page.remark) : markdown(page.page) + '\n');
 }
 
-/// Makes a PDF of each chart beside it. Returns how many: none, and says so, without the program for it.
-std::size_t convert(const std::vector<fs::path>& charts) {
+bool is_chart(const FolderFile& file) { return file.name.ends_with(".svg"); }
+
+std::string pdf_of(const FolderFile& chart) {
+  return fs::path(chart.name).replace_extension(".pdf").string();
+}
+
+/// Each chart as PDF: none, and says so, without the program for it.
+std::vector<FolderFile> pdfs_of(std::span<const FolderFile> files) {
   constexpr unsigned most_seconds = 60;
-  if (charts.empty()) return 0;
+  std::vector<FolderFile> pdfs;
+  if (std::ranges::none_of(files, is_chart)) return pdfs;
   const auto program = find_program("rsvg-convert");
   if (!program) {
     std::cerr << "mssim: the charts are only SVG, because rsvg-convert is not in PATH: install Debian's "
                  "package librsvg2-bin and give --overwrite, too\n";
-    return 0;
+    return pdfs;
   }
-  const fs::path made = temporary_folder_of_process() / "chart.pdf";
-  for (const fs::path& chart : charts) {
-    const ChildResult result =
-        run({*program,
-             {"--format=pdf", "--output=" + made.string(), fs::absolute(chart).string()},
-             {},
-             made.parent_path(),
-             most_seconds,
-             most_seconds});
-    if (const std::string failure = failed_end(result, "converting " + chart.string()); !failure.empty())
+  const fs::path folder = temporary_folder_of_process(), from = folder / "chart.svg",
+                 to = folder / "chart.pdf";
+  for (const FolderFile& chart : files) {
+    if (!is_chart(chart)) continue;
+    write_file_atomically(from, chart.text);
+    const ChildResult result = run({*program,
+                                    {"--format=pdf", "--output=" + to.string(), from.string()},
+                                    {},
+                                    folder,
+                                    most_seconds,
+                                    most_seconds});
+    if (const std::string failure = failed_end(result, "converting " + chart.name); !failure.empty())
       throw Error(exit_unavailable, "rsvg-convert " + failure);
-    write_file_atomically(fs::path(chart).replace_extension(".pdf"), read_file(made));
+    pdfs.push_back({pdf_of(chart), read_file(to)});
   }
-  return charts.size();
+  return pdfs;
 }
 
 int table(const TableOptions& options) {
@@ -91,17 +100,23 @@ int table(const TableOptions& options) {
     print(input, options.latex);
     return exit_ok;
   }
-  const std::vector<PaperFile> files = paper_files(input);
+  std::vector<FolderFile> files = paper_files(input);
   const fs::path out = options.out;
-  for (const PaperFile& file : files) require_free(out / file.name, "--out", options.overwrite);
-  make_folder(out);
-  std::vector<fs::path> charts;
-  for (const PaperFile& file : files) {
-    write_file_atomically(out / file.name, file.text);
-    if (fs::path(file.name).extension() == ".svg") charts.push_back(out / file.name);
+  std::vector<fs::path> old_pdfs;  // they must not stand under the captions of new charts
+  for (const FolderFile& file : files) {
+    require_free(out / file.name, "--out", options.overwrite);
+    if (!is_chart(file)) continue;
+    require_free(out / pdf_of(file), "--out", options.overwrite);
+    old_pdfs.push_back(out / pdf_of(file));
   }
-  const std::size_t count = files.size() + convert(charts);
-  std::cerr << "mssim: wrote " << pluralize(count, "file") << " to " << printable(out.string()) << '\n';
+  std::vector<FolderFile> pdfs = pdfs_of(files);
+  if (!pdfs.empty()) old_pdfs.clear();
+  std::ranges::move(pdfs, std::back_inserter(files));
+  make_folder(out);
+  write_files_atomically(out, files);
+  for (const fs::path& old : old_pdfs) fs::remove(old);
+  std::cerr << "mssim: wrote " << pluralize(files.size(), "file") << " to " << printable(out.string())
+            << '\n';
   return exit_ok;
 }
 

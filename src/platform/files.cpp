@@ -281,6 +281,13 @@ void write_file_atomically(const fs::path& file, std::string_view text) {
   written.move_into_place();
 }
 
+void write_files_atomically(const fs::path& folder, std::span<const FolderFile> files) {
+  std::vector<AtomicFile> written;
+  written.reserve(files.size());
+  for (const FolderFile& file : files) written.emplace_back(folder / file.name).append(file.text);
+  for (AtomicFile& file : written) file.move_into_place();
+}
+
 int reserve_space(int descriptor, std::uint64_t bytes) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) return errno;

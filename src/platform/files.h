@@ -95,6 +95,15 @@ class AtomicFile {
 /// Writes a whole file with AtomicFile. Throws WriteError, after removing FILE.part.
 void write_file_atomically(const std::filesystem::path& file, std::string_view text);
 
+/// A file by its name in a folder.
+struct FolderFile {
+  std::string name, text;
+};
+
+/// Writes all files into a folder, and replaces none before all are on the disk under temporary names. Throws
+/// WriteError.
+void write_files_atomically(const std::filesystem::path& folder, std::span<const FolderFile> files);
+
 /// Reserves `bytes` after the end of an open file without changing its size, for writers whose files do not
 /// survive a failed write. Returns 0 or the errno of the failure; 0 also if the file system cannot reserve.
 int reserve_space(int descriptor, std::uint64_t bytes);

@@ -195,9 +195,13 @@ JudgedClaim judge_rows(const Claim& claim, const Measured& measured, std::string
   else if (!claim.needs.empty())
     judged.measured = "needs " + claim.needs;
   else
-    judged.measured = fmt::format("needs verified rows of `{}`{}{}", test.fast,
-                                  test.slow == test.fast ? "" : fmt::format(" and `{}`", test.slow),
-                                  has_threads(measured.legend, test.fast) ? " on several threads" : "");
+    judged.measured = fmt::format(
+        "needs verified rows of `{}`{}{}{}", test.fast,
+        test.slow == test.fast ? "" : fmt::format(" and `{}`", test.slow),
+        test.slow_integrator.empty()
+            ? ""
+            : fmt::format(" with {} and {}", listed(test.integrators, "or"), test.slow_integrator),
+        has_threads(measured.legend, test.fast) ? " on several threads" : "");
   return judged;
 }
 

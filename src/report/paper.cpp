@@ -58,9 +58,9 @@ std::vector<Chart> charts_of(const ReportFolder& folder, const ReportInput& inpu
 }
 
 /// Adds the charts and the file that includes them.
-void add_figures(std::vector<PaperFile>& files, const std::string& prefix, const ReportFolder& folder,
+void add_figures(std::vector<FolderFile>& files, const std::string& prefix, const ReportFolder& folder,
                  const ReportInput& input) {
-  PaperFile figures{prefix + "figures.tex", {}};
+  FolderFile figures{prefix + "figures.tex", {}};
   for (const Chart& chart : charts_of(folder, input)) {
     const DrawnChart drawn = draw_svg(chart);
     if (drawn.svg.empty()) continue;
@@ -116,17 +116,20 @@ std::string scenes_of(const ReportFolder& folder, const ReportInput& input) {
   std::vector<std::string> published, garments, others;
   for (const PublishedTable& table : input.published)
     for (const PaperScene& scene : table.scenes_of(folder.rows)) add_once(published, scene.name);
+  const auto is_in = [](const std::vector<std::string>& names, const ResultRow& row) {
+    return std::ranges::find(names, row.scene) != names.end();
+  };
   for (const ResultRow& row : folder.rows)
-    if (row.dressing)
-      add_once(garments, row.scene);
-    else if (std::ranges::find(published, row.scene) == published.end())
-      add_once(others, row.scene);
+    if (row.dressing) add_once(garments, row.scene);
+  for (const ResultRow& row : folder.rows)
+    if (!is_in(garments, row) && !is_in(published, row)) add_once(others, row.scene);
   std::string text;
   if (!published.empty())
-    text +=
-        names_in(published) + " have the nodes and springs that Hong et al.\\ published~\\cite{hong2016}.\n";
+    text += names_in(published) + (published.size() == 1 ? " has" : " have") +
+            " the nodes and springs that Hong et al.\\ published~\\cite{hong2016}.\n";
   if (!garments.empty())
-    text += names_in(garments) + " are garments, dressed and draped after Vassilev~\\cite{vassilev}.\n";
+    text += names_in(garments) + (garments.size() == 1 ? " is a garment" : " are garments") +
+            ", dressed and draped after Vassilev~\\cite{vassilev}.\n";
   if (!others.empty()) text += "Neither paper has " + names_in(others) + ".\n";
   return text;
 }
@@ -158,6 +161,13 @@ std::string timing_of(const ReportFolder& folder) {
                     decimal(100 * interval_confidence));
 }
 
+/// Whether the page of mssim web measured the rows.
+bool is_from_page(const ReportFolder& folder) {
+  return std::ranges::any_of(folder.rows, [](const ResultRow& row) {
+    return std::ranges::find(browser_backends, row.backend, &BrowserBackend::name) != browser_backends.end();
+  });
+}
+
 std::string verification_of(const ReportFolder& folder) {
   bool has_garments = false, has_others = false;
   double error = 0;
@@ -172,10 +182,10 @@ std::string verification_of(const ReportFolder& folder) {
         "Every combination was compared with a double-precision reference of the same integrator after at "
         "most {} steps.\nNo node may be farther from it than $4\\sqrt{{n}}\\,2^{{-24}}\\,|x|$, where $n$ is "
         "the number of roundings of a position and $|x|$ the largest coordinate. The total energy may differ "
-        "by at most \\qty{{{}}}{{\\percent}} of the kinetic and elastic energy.\nThe states at the end of "
-        "one round of samples were compared, too. Explicit integrators in one process also stepped a small "
-        "scene with the same laws and a floor.\n",
-        verification_steps, decimal(100 * energy_tolerance));
+        "by at most \\qty{{{}}}{{\\percent}} of the kinetic and elastic energy.\n{}Explicit "
+        "integrators in one process also stepped a small scene with the same laws and a floor.\n",
+        verification_steps, decimal(100 * energy_tolerance),
+        is_from_page(folder) ? "" : "The states at the end of one round of samples were compared, too. ");
   if (has_garments)
     text +=
         "Garments were compared with a double-precision reference in stretches of five steps, while their "
@@ -188,7 +198,7 @@ std::string verification_of(const ReportFolder& folder) {
   return text;
 }
 
-PaperFile methods_of(const ReportFolder& folder, const ReportInput& input, const std::string& prefix) {
+FolderFile methods_of(const ReportFolder& folder, const ReportInput& input, const std::string& prefix) {
   std::string text = "% As " + input.made_by + " measures, filled from the folder's files.\n" +
                      paragraph("Machine", machine_of(folder)) + paragraph("Scenes", scenes_of(folder, input));
   if (!folder.rows.empty())
@@ -232,31 +242,50 @@ Document claims_of(const ReportFolder& folder, const ReportInput& input) {
           measured_on(pointers_to(folder.rows), folder.where_from()), std::move(table)};
 }
 
-PaperFile artifact_of(const ReportFolder& folder, const ReportInput& input, const std::string& prefix) {
-  const Provenance& provenance = *folder.provenance;
-  std::string command = "scripts";
-  for (const std::string& word : provenance.command_line)
-    command += (&word == &provenance.command_line.front() ? "/" : " ") + shell_word(word);
+/// A command or address, which may be broken after the commas of a list of names.
+std::string breakable_code(const std::string& code) {
+  std::string text;
+  for (const char character : latex_prose("`" + code + "`"))
+    text += character == ',' ? std::string(",\\allowbreak{}") : std::string(1, character);
+  return text;
+}
+
+/// How to measure again.
+std::string commands_of(const ReportFolder& folder) {
+  const BuildInfo& build = folder.provenance->build;
+  const bool knows_commit = build.commit != "unknown", from_page = is_from_page(folder);
+  std::vector<std::string> words = folder.provenance->command_line;
+  std::string command = "scripts", settings;
+  if (from_page) {  // behind "mssim web" are the settings in the page's address
+    if (words.size() > 2) settings = words[2];
+    words = {"mssim", "web", "--out", "web.html"};
+  }
+  for (const std::string& word : words) command += (&word == &words.front() ? "/" : " ") + shell_word(word);
   double minutes = 0;
   for (const ResultRow& row : folder.rows)
     for (std::size_t i = 0; i < row.samples_ms.size(); ++i)
       minutes += row.samples_ms[i] * row.sample_steps[i] / 60000;
-  // Lists of names, which are longer than a line.
-  std::string breakable;
-  for (const char character : latex_prose("`" + command + "`"))
-    breakable += character == ',' ? std::string(",\\allowbreak{}") : std::string(1, character);
+  std::string text = fmt::format(
+      "In a clone of mssim on Debian 12 or 13, {} installs what is missing, builds mssim and {}{}{}:\n"
+      "\\begin{{quote}}\\raggedright\n{}{}\n\\end{{quote}}\n",
+      knows_commit ? "the first command selects the commit, and the second" : "this command",
+      from_page ? "writes the page that measured" : "measures",
+      knows_commit ? "" : "; the results do not name the commit",
+      build.dirty ? "; the program that was measured had uncommitted changes" : "",
+      knows_commit ? latex_prose("`git checkout " + build.commit + "`") + "\\\\\n" : "",
+      breakable_code(command));
+  if (!settings.empty())
+    text += "The page measures at once if its address ends in " + breakable_code(settings) + ".\n";
+  if (minutes > 0)
+    text += fmt::format(
+        "The timed samples alone took \\qty{{{}}}{{\\minute}}; warm-up and verification come on top.",
+        three_digits(minutes));
+  return text;
+}
+
+FolderFile artifact_of(const ReportFolder& folder, const ReportInput& input, const std::string& prefix) {
   std::string text = latex(environment_of(folder), prefix + "artifact", "");
-  text += paragraph(
-      "Commands",
-      "In a clone of mssim on Debian 12 or 13, the first command selects the commit, and the second installs "
-      "what is missing, builds mssim and measures" +
-          std::string(provenance.build.dirty ? "; the program that was measured had uncommitted changes"
-                                             : "") +
-          ":\n\\begin{quote}\\raggedright\n" + latex_prose("`git checkout " + provenance.build.commit + "`") +
-          "\\\\\n" + breakable + "\n\\end{quote}\n" +
-          (minutes > 0 ? "The timed samples alone took \\qty{" + three_digits(minutes) +
-                             "}{\\minute}; warm-up and verification come on top."
-                       : std::string()));
+  text += paragraph("Commands", commands_of(folder));
   const Document claims = claims_of(folder, input);
   text += claims.empty() ? paragraph("Claims", "These rows decide no claim of the two papers.")
                          : latex(claims, prefix + "claims", rounds_in(folder));
@@ -312,8 +341,8 @@ std::vector<TablePage> table_pages(const ReportFolder& folder, const ReportInput
   return pages;
 }
 
-std::vector<PaperFile> paper_files(const ReportInput& input) {
-  std::vector<PaperFile> files;
+std::vector<FolderFile> paper_files(const ReportInput& input) {
+  std::vector<FolderFile> files;
   std::string sources = read_file(data_folder() / "published/sources.bib"), body, appendix;
   for (const ReportFolder& folder : input.folders) {
     const std::vector<TablePage> pages = table_pages(folder, input);
@@ -321,7 +350,7 @@ std::vector<PaperFile> paper_files(const ReportInput& input) {
     if (input.folders.size() > 1)
       prefix =
           fmt::format("{}-{}-", &folder - input.folders.data() + 1, plain_name(short_name(folder).string()));
-    const auto add = [&](PaperFile file, std::string& part) {
+    const auto add = [&](FolderFile file, std::string& part) {
       part += "\\input{" + file.name.substr(0, file.name.rfind('.')) + "}\n";
       files.push_back(std::move(file));
     };

@@ -13,6 +13,7 @@
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
+#include "platform/files.h"
 
 namespace mssim {
 
@@ -154,15 +155,10 @@ struct TablePage {
 /// rows with their intervals. Throws InputError for a folder without provenance.
 std::vector<TablePage> table_pages(const ReportFolder& folder, const ReportInput& input);
 
-/// A text file by its name.
-struct PaperFile {
-  std::string name, text;
-};
-
 /// What a LaTeX paper about the folders needs: for each folder its table_pages() as NAME.tex, its charts as
 /// SVG and figures.tex, which includes them as PDF, methods.tex and artifact.tex; sources.bib, and mssim.tex,
 /// a document of all of them. If there are several folders, names begin with that of the folder. Throws
 /// like table_pages(), and std::runtime_error if the data folder is missing.
-std::vector<PaperFile> paper_files(const ReportInput& input);
+std::vector<FolderFile> paper_files(const ReportInput& input);
 
 }  // namespace mssim

@@ -58,7 +58,8 @@ ResultRow checked(const std::filesystem::path& file, const ResultRow& row, const
 bool is_web_results(const std::filesystem::path& path) {
   std::error_code error;
   return path.extension() == ".json" && std::filesystem::is_regular_file(path, error) &&
-         path.filename() != "provenance.json" && path.filename() != "benchmark.json";
+         path.filename() != "provenance.json" && path.filename() != "benchmark.json" &&
+         path.filename() != "github.json";
 }
 
 MeasuredRun read_web_results(const std::filesystem::path& file) {

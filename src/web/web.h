@@ -16,7 +16,8 @@ namespace mssim {
 /// Throws like prepare_scene.
 std::string web_page();
 
-/// Whether the path is that of a file that the page may have saved: a JSON file, no folder.
+/// Whether the path is that of a file that the page may have saved: a JSON file, no folder and none
+/// of a result folder.
 bool is_web_results(const std::filesystem::path& path);
 
 /// The rows of a file that the page has saved, {mssim_web_results, provenance, timings_csv, samples_csv}, as

@@ -17,7 +17,9 @@ make() {
   for pair in "$@"; do
     backend=${pair%%=*}
     IFS=: read -r ms spread count <<<"${pair#*=}"
-    grep "^cloth2500,.*,$backend,.*,semi-euler," "$source_run/timings.csv" >>"$folder/timings.csv"
+    awk -F, -v OFS=, -v b="$backend" -v n="${count:-15}" 'NR == 1 { for (i = 1; i <= NF; ++i) place[$i] = i }
+      $1 == "cloth2500" && $place["backend"] == b && $place["integrator"] == "semi-euler" { $place["rounds"] = n; print }
+      ' "$source_run/timings.csv" >>"$folder/timings.csv"
     awk -v b="$backend" -v ms="$ms" -v s="${spread:-0.02}" -v n="${count:-15}" 'BEGIN {
         for (i = 1; i <= n; ++i) print "cloth2500," b ",semi-euler," i ",10," ms * (1 + s * (2 * (i - 1) / (n - 1) - 1)) ","
       }' >>"$folder/samples.csv"
@@ -54,7 +56,10 @@ compare 0 "$work/base" "$work/noisy"
 says 'serial .* undecided  [0-9]* samples per side would decide'
 warns '1 of 2 combinations is undecided'
 compare 0 "$work/few" "$work/few-slower"
-says 'serial .* undecided  5 samples per side would decide'
+says 'serial .* undecided  at least 5 samples per side are needed'
+compare 0 "$work/few" "$work/few-slower" --format json
+says '"low": null'
+says '"high": null'
 compare 0 "$work/base" "$work/few"
 warns 'only BASE has: cloth2500, openmp, semi-euler$'
 compare 0 "$work/few" "$work/base/timings.csv"
@@ -93,6 +98,16 @@ expect 2 'comparison.json already exists.*--overwrite' compare "$work/base" "$wo
 compare 1 "$work/base" "$work/slower" --format json --out "$work/kept/comparison" --overwrite
 cmp "$work/out" "$work/kept/comparison/comparison.json" || fail "the kept JSON is not the printed one"
 expect 4 'timings.csv' compare "$work/base" "$work/slower" --out "$work/base/timings.csv"
+# A full disk leaves both files as they were.
+cp -r "$work/kept/comparison" "$work/before"
+on_full_disk 1 'comparison.json' compare "$work/base" "$work/base" --out "$work/kept/comparison" --overwrite
+diff -r "$work/before" "$work/kept/comparison" || fail "a comparison is half new"
+
+# Damaged files are named, with the row.
+cp -r "$work/base" "$work/cut"
+sed -i '$d' "$work/cut/samples.csv"
+expect 2 'cut/samples.csv: cloth2500, openmp, semi-euler has [0-9]* samples*, but [0-9]* rounds.*measure' \
+  compare "$work/base" "$work/cut"
 
 # Runs that are not alike.
 cp -r "$work/base" "$work/cpu"

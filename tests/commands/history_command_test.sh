@@ -96,7 +96,24 @@ done
 ends 0 report "$source_run" --no-runs --out plain.html
 ! grep -q 'id="history"' plain.html || fail "a report without a history has its section"
 
+# A machine without any verified row has no lines, and takes no column from the others.
+make run serial=1
+sed -i 's/,true,ok,/,false,ok,/' run/timings.csv
+ends 0 history add run --file unverified.jsonl --commit first
+ends 0 history show --file unverified.jsonl --format csv
+says '^machine,scene,backend,integrator,device,since,commits,ms,ratio,low,high,verdict$'
+ends 0 history add other --file unverified.jsonl --commit first
+ends 0 history show --file unverified.jsonl --format csv
+says '^machine,scene,backend,integrator,device,since,commits,ms,ratio,low,high,verdict$'
+ends 0 history show --file unverified.jsonl --format json
+says '"scene": "cloth2500"'
+
 # Bad files and bad usage.
+cat h.jsonl h.jsonl >bad.jsonl
+lines=$(wc -l <h.jsonl)
+expect 2 "bad.jsonl, line $((lines + 1)): an earlier line has commit .*remove" history show --file bad.jsonl
+printf '\n' >bad.jsonl
+ends 0 history add run --file bad.jsonl --commit first
 sed '3s/"threads":[0-9]*/"threads":"two"/' h.jsonl >bad.jsonl
 expect 2 'bad.jsonl, line 3: /threads.*two.*give' history show --file bad.jsonl
 expect 2 'bad.jsonl, line 3: /threads' history add run --file bad.jsonl --commit new

@@ -125,6 +125,30 @@ mkdir "$work/no-programs"
 PATH=$work/no-programs ends 0 table "$results/table1/zen4" --format latex --out "$work/svg"
 warns 'librsvg2-bin'
 [ -s "$work/svg/mssim.tex" ] && [ -z "$(find "$work/svg" -name '*.pdf')" ] || fail "without rsvg-convert: $(ls "$work/svg")"
+# The PDF of an earlier chart does not stay under the caption of the new one; nor is one replaced unasked.
+rm "$work"/svg/*.tex "$work"/svg/*.svg "$work/svg/sources.bib"
+echo old >"$work/svg/chart-roofline.pdf"
+PATH=$work/no-programs ends 2 table "$results/table1/zen4" --format latex --out "$work/svg"
+warns 'chart-roofline.pdf already exists.*--overwrite'
+PATH=$work/no-programs ends 0 table "$results/table1/zen4" --format latex --out "$work/svg" --overwrite
+[ ! -e "$work/svg/chart-roofline.pdf" ] || fail "an old PDF stands under a new caption"
+# A full disk leaves a paper as it was.
+cp -r "$work/svg" "$work/before"
+(ulimit -f 8 && PATH=$work/no-programs ends 4 table "$results/garment/zen5" --format latex --out "$work/svg" --overwrite)
+diff -r "$work/before" "$work/svg" || fail "a paper is half new"
+
+# What a page measured: how to measure it again, and no check that the page does not make.
+ends 0 table "$results/web/zen4-swiftshader-busy" --format latex --out "$work/web"
+grep -qF 'scripts/mssim web -{}-{}out web.html' "$work/web/artifact.tex" || fail "how to make the page: $(cat "$work/web/artifact.tex")"
+! grep -q 'end of one round' "$work/web/methods.tex" || fail "the page does not compare the ends of samples"
+grep -q 'end of one round' "$work/table1/methods.tex" || fail "the check of samples is missing"
+# A garment is in a paper, though some of its rows are not dressed.
+! grep -q 'Neither paper' "$work/garment/methods.tex" || fail "jeans are in no paper: $(cat "$work/garment/methods.tex")"
+# A commit that is not known cannot be checked out.
+cp -r "$results/table1/zen4" "$work/no-commit"
+sed -i 's/"commit": "[^"]*"/"commit": "unknown"/' "$work/no-commit/provenance.json"
+ends 0 table "$work/no-commit" --format latex --out "$work/no-commit-paper"
+! grep -q 'git checkout' "$work/no-commit-paper/artifact.tex" || fail "an unknown commit is checked out"
 
 # Several folders, one of them of a guide.
 ends 0 table "$results/table1/zen4" "$results/guide/zen4" --format latex --out "$work/both"

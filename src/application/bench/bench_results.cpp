@@ -69,13 +69,19 @@ fs::path folder_of(const fs::path& path) {
 /// Limit of a time, so that numbers derived from it are finite.
 constexpr double longest_ms = 1e12;
 
-/// Throws UsageError unless the row has a time above zero in every round.
+/// Throws UsageError unless the row has a time, and a sample above zero of every round.
 void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.status != "ok") return;
   const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
   if (row.samples_ms.empty())
     throw UsageError(where +
                      "no samples, although its status in timings.csv is ok; measure the folder again");
+  if (row.samples_ms.size() != static_cast<std::size_t>(row.rounds))
+    throw UsageError("{}{}, but {} in timings.csv: one of the files is damaged; measure the folder again",
+                     where, pluralize(row.samples_ms.size(), "sample"), pluralize(row.rounds, "round"));
+  if (row.ms_per_step && !(*row.ms_per_step > 0 && *row.ms_per_step <= longest_ms))
+    throw UsageError("{}: {} has an ms_per_step of {:.6g}, which is no time; measure the folder again",
+                     (folder / "timings.csv").string(), combination_name(row), *row.ms_per_step);
   for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
     if (!(row.samples_ms[round] > 0 && row.samples_ms[round] <= longest_ms))
       throw UsageError(

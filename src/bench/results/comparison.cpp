@@ -63,7 +63,9 @@ ComparedRow compare_rows(const ResultRow& base, const ResultRow& next, double th
   row.verdict = verdict_of(*row.ratio, threshold);
   if (row.verdict == Verdict::undecided)
     row.samples_needed =
-        samples_needed(*row.ratio, std::min(base.samples_ms.size(), next.samples_ms.size()), threshold);
+        row.ratio->covers
+            ? samples_needed(*row.ratio, std::min(base.samples_ms.size(), next.samples_ms.size()), threshold)
+            : fewest_samples;
   return row;
 }
 
@@ -179,7 +181,9 @@ ComparedRow compare_pairs(const PairedTimes& times, double threshold) {
   row.new_samples_ms = times.new_ms;
   row.ratio = ratio_at_look(times);
   if (times.base_ms.size() >= first_look_pairs) row.verdict = verdict_of(*row.ratio, threshold);
-  if (row.verdict == Verdict::undecided)
+  if (row.verdict == Verdict::undecided && !row.ratio->covers)
+    row.samples_needed = first_look_pairs;
+  else if (row.verdict == Verdict::undecided)
     if (const auto needed = samples_needed(*row.ratio, times.base_ms.size(), threshold))
       row.samples_needed = look_at(*needed).pairs;
   return row;

@@ -6,12 +6,13 @@
 #include "text/text.h"
 
 namespace mssim {
-namespace {
 
 std::string machine_of(const HistoryEntry& entry) {
   return fmt::format("{}, {}, {}", entry.processor, pluralize(entry.logical_cpus, "logical CPU"),
                      pluralize(entry.threads, "thread"));
 }
+
+namespace {
 
 bool is_of(const HistorySeries& series, const HistoryRow& row) {
   return same_combination(series, row) && series.device == row.device && series.nodes == row.nodes;

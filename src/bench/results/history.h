@@ -36,6 +36,9 @@ struct HistoryEntry {
   std::vector<HistoryRow> rows;
 };
 
+/// Name of the machine: processor, logical CPUs and threads.
+std::string machine_of(const HistoryEntry& entry);
+
 /// An entry of a run. Without a `commit`, that of the program, which ends in ", changed" if its sources
 /// differed from it. Throws UsageError for no rows, and for a program of an unknown commit.
 HistoryEntry entry_of(const Provenance& provenance, std::span<const ResultRow> rows,

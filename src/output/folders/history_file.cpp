@@ -104,19 +104,32 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
     // Messages about the syntax count lines, too: those before this one are kept as empty ones.
     read_fields(where, std::string(number - 1, '\n') + std::string(line),
                 [&](FieldVisitor& fields) { visit_entry(fields, entry, where); });
+    if (std::any_of(history.begin(), history.end() - 1, [&](const HistoryEntry& earlier) {
+          return earlier.commit == entry.commit && machine_of(earlier) == machine_of(entry);
+        }))
+      throw UsageError("{}: an earlier line has commit {} on {}, too; remove one of the two lines", where,
+                       printable(entry.commit), printable(machine_of(entry)));
   }
   return history;
 }
 
-std::vector<HistoryEntry> read_history(const std::filesystem::path& file) {
+namespace {
+
+std::vector<HistoryEntry> entries_in(const std::filesystem::path& file) {
   try {
-    std::vector<HistoryEntry> history = parse_history(file, read_file(file, largest_history_bytes));
-    if (history.empty())
-      throw UsageError("{} has no entries: add a result folder with mssim history add", file.string());
-    return history;
+    return parse_history(file, read_file(file, largest_history_bytes));
   } catch (const ReadError& error) {
     throw UsageError(error.sentence(file, "give a file that mssim history add wrote"));
   }
+}
+
+}  // namespace
+
+std::vector<HistoryEntry> read_history(const std::filesystem::path& file) {
+  std::vector<HistoryEntry> history = entries_in(file);
+  if (history.empty())
+    throw UsageError("{} has no entries: add a result folder with mssim history add", file.string());
+  return history;
 }
 
 void change_history(const std::filesystem::path& file,
@@ -124,8 +137,7 @@ void change_history(const std::filesystem::path& file,
   AtomicFile written(target_of(file));
   std::vector<HistoryEntry> history;
   std::error_code error;
-  if (std::filesystem::exists(file, error) && !std::filesystem::is_empty(file, error))
-    history = read_history(file);
+  if (std::filesystem::exists(file, error)) history = entries_in(file);
   change(history);
   for (const HistoryEntry& entry : history) written.append(history_line(entry) + '\n');
   written.move_into_place();

@@ -41,8 +41,8 @@ constexpr auto row_files = std::to_array<RowFile>({
 std::string csv_of(std::string_view table) { return std::string(table) + ".csv"; }
 std::string markdown_of(std::string_view table) { return std::string(table) + ".md"; }
 
-std::vector<ResultFolder::File> files_of(const ResultTable& table) {
-  std::vector<ResultFolder::File> files{{csv_of(table.name), table_csv(table.data)}};
+std::vector<FolderFile> files_of(const ResultTable& table) {
+  std::vector<FolderFile> files{{csv_of(table.name), table_csv(table.data)}};
   if (!table.page.empty()) files.push_back({markdown_of(table.name), markdown(table.page)});
   return files;
 }
@@ -127,14 +127,14 @@ void ResultFolder::begin() const {
 }
 
 void ResultFolder::write(std::span<const ResultRow> rows) {
-  std::vector<File> files;
+  std::vector<FolderFile> files;
   for (const ResultTable& table : tables_(rows, provenance_))
     std::ranges::move(files_of(table), std::back_inserter(files));
   for (const RowFile& file : row_files)
     if (std::string text = file.text(rows, provenance_); !text.empty())
       files.push_back({file.name, std::move(text)});
   const std::vector<std::string> stems = file_stems(rows);
-  std::vector<File> programs;
+  std::vector<FolderFile> programs;
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!rows[i].program_output.empty()) programs.push_back({output_of(stems[i]), rows[i].program_output});
   write_files(std::move(files), programs);
@@ -145,7 +145,7 @@ void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
 }
 
 void ResultFolder::write(std::span<const ResultTable> tables) {
-  std::vector<File> files;
+  std::vector<FolderFile> files;
   for (const ResultTable& table : tables) std::ranges::move(files_of(table), std::back_inserter(files));
   write_files(std::move(files));
 }
@@ -154,17 +154,17 @@ void ResultFolder::write(std::span<const StructureRow> rows) {
   write_files(files_of(structure_table(rows, provenance_)));
 }
 
-void ResultFolder::write_files(std::vector<File> files, const std::vector<File>& programs) {
+void ResultFolder::write_files(std::vector<FolderFile> files, const std::vector<FolderFile>& programs) {
   if (replaces_) files.insert(files.begin(), {provenance_name, provenance_text(provenance_) + '\n'});
   std::vector<AtomicFile> written;
   written.reserve(files.size());
-  for (const File& file : files) written.emplace_back(folder_ / file.name).append(file.text);
+  for (const FolderFile& file : files) written.emplace_back(folder_ / file.name).append(file.text);
   if (!programs.empty() && fs::is_symlink(folder_ / programs_name))
     throw WriteError("cannot write into {}: it is a link; remove it or choose another folder",
                      (folder_ / programs_name).string());
   if (std::exchange(replaces_, false)) clear();
   if (!programs.empty()) make_folder(folder_ / programs_name);
-  for (const File& output : programs) write_file_atomically(folder_ / output.name, output.text);
+  for (const FolderFile& output : programs) write_file_atomically(folder_ / output.name, output.text);
   for (AtomicFile& file : written) file.move_into_place();
 }
 

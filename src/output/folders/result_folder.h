@@ -61,13 +61,9 @@ class ResultFolder {
   /// Writes table2.csv and table2.md. Throws WriteError.
   void write(std::span<const StructureRow> rows);
 
-  struct File {
-    std::string name, text;
-  };
-
  private:
   /// Writes everything under temporary names to the disk before any file is replaced, except `programs`.
-  void write_files(std::vector<File> files, const std::vector<File>& programs = {});
+  void write_files(std::vector<FolderFile> files, const std::vector<FolderFile>& programs = {});
   void clear() const;
 
   std::filesystem::path folder_;

@@ -10,8 +10,9 @@ namespace {
 Cell remark(const ComparedRow& row) {
   if (row.verdict == Verdict::lost) return row.reason;
   if (row.verdict != Verdict::undecided) return {};
-  return row.samples_needed ? fmt::format("{} samples per side would decide", *row.samples_needed)
-                            : "many samples would be needed";
+  if (!row.samples_needed) return "many samples would be needed";
+  return row.ratio->covers ? fmt::format("{} samples per side would decide", *row.samples_needed)
+                           : fmt::format("at least {} samples per side are needed", *row.samples_needed);
 }
 
 Cell ratio_cell(const ComparedRow& row, bool utf8 = true) {
@@ -26,18 +27,16 @@ Cell ratio_cell(const ComparedRow& row, bool utf8 = true) {
 Table rows_of(const RunComparison& comparison, bool utf8) {
   Table table;
   for (const ComparedRow& row : comparison.rows) {
-    const auto of_ratio = [&](double RatioEstimate::*value) {
-      return row.ratio ? Cell((*row.ratio).*value) : Cell();
-    };
+    const bool has_interval = row.ratio && row.ratio->covers;
     table.add({{"scene", row.scene},
                {"backend", row.backend},
                {"integrator", row.integrator},
                {"base_ms", row.base_ms},
                {"new_ms", row.new_ms},
                {"ratio", ratio_cell(row, utf8)},
-               {"low", of_ratio(&RatioEstimate::low)},
-               {"high", of_ratio(&RatioEstimate::high)},
-               {"p", of_ratio(&RatioEstimate::p)},
+               {"low", has_interval ? Cell(row.ratio->low) : Cell()},
+               {"high", has_interval ? Cell(row.ratio->high) : Cell()},
+               {"p", row.ratio ? Cell(row.ratio->p) : Cell()},
                {"verdict", name_of(row.verdict)},
                {"remark", remark(row)}});
   }
@@ -67,14 +66,16 @@ Cell verdict_cell(const ComparedRow& row) {
 Document comparison_page(const RunComparison& comparison) {
   Table rows;
   for (const ComparedRow& row : comparison.rows)
-    rows.add({{"scene", row.scene},
-              {"backend", '`' + row.backend + '`'},
-              {"integrator", row.integrator},
-              {"BASE ms", row.base_ms},
-              {"NEW ms", row.ratio ? Cell(row.new_ms) : Cell()},
-              {"NEW / BASE", ratio_cell(row)},
-              {"95 % interval", row.ratio ? Cell(interval_text(row.ratio->low, row.ratio->high)) : Cell()},
-              {"verdict", verdict_cell(row)}});
+    rows.add(
+        {{"scene", row.scene},
+         {"backend", '`' + row.backend + '`'},
+         {"integrator", row.integrator},
+         {"BASE ms", row.base_ms},
+         {"NEW ms", row.ratio ? Cell(row.new_ms) : Cell()},
+         {"NEW / BASE", ratio_cell(row)},
+         {"95 % interval",
+          row.ratio && row.ratio->covers ? Cell(interval_text(row.ratio->low, row.ratio->high)) : Cell()},
+         {"verdict", verdict_cell(row)}});
   Table means;
   for (const MeanRatio& mean : comparison.means)
     means.add({{"geometric mean of", mean.backend.empty() ? "all" : '`' + mean.backend + '`'},

@@ -19,21 +19,25 @@ std::string short_commit(const std::string& commit) {
 }  // namespace
 
 Table history_table(const MachineHistory& machine, double threshold) {
-  Table table;
+  Table table{{{"scene"},
+               {"backend"},
+               {"integrator"},
+               {"device"},
+               {"since"},
+               {"commits"},
+               {"ms"},
+               {"ratio"},
+               {"low"},
+               {"high"},
+               {"verdict"}},
+              {}};  // also without a series
   for (const HistorySeries& series : machine.series) {
     const auto add = [&](std::size_t entry, Cell count, Cell ms, const RatioEstimate* ratio,
                          const std::string& verdict) {
-      table.add({{"scene", series.scene},
-                 {"backend", series.backend},
-                 {"integrator", series.integrator},
-                 {"device", device_name(series.device)},
-                 {"since", short_commit(machine.entries[entry]->commit)},
-                 {"commits", std::move(count)},
-                 {"ms", std::move(ms)},
-                 {"ratio", ratio ? Cell(ratio->ratio) : Cell()},
-                 {"low", ratio ? Cell(ratio->low) : Cell()},
-                 {"high", ratio ? Cell(ratio->high) : Cell()},
-                 {"verdict", verdict.empty() ? Cell() : Cell(verdict)}});
+      table.rows.push_back({series.scene, series.backend, series.integrator, device_name(series.device),
+                            short_commit(machine.entries[entry]->commit), std::move(count), std::move(ms),
+                            ratio ? Cell(ratio->ratio) : Cell(), ratio ? Cell(ratio->low) : Cell(),
+                            ratio ? Cell(ratio->high) : Cell(), verdict.empty() ? Cell() : Cell(verdict)});
     };
     const std::span<const double> times = series.ms;
     for (std::size_t level = 0; level <= series.changes.size(); ++level) {
