@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "garment/contact/solid.h"
+#include "garment/stepping/dressing_backend.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
@@ -52,7 +53,11 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
   scene.counts = counts_of(scene.spec, scene.system);
   scene.note = difference(scene.spec, scene.counts, parts.stated);
   append_sentence(scene.note, built.note);
-  scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
+  const bool is_garment = scene.body != nullptr;
+  scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s
+                               : auto_dt(mode_bound(scene.system), [&](const Integrator& integrator) {
+                                   return !is_garment || dresses(integrator);
+                                 });
   return scene;
 }
 

@@ -47,13 +47,14 @@ Vec3d to_tenths(const Vec3d& point) {
 /// The results of `mssim measure` for a body: rows of measure, value, unit and note.
 class BodyListing {
  public:
-  /// `how`: the source of all three values.
-  void add_stance(const BodyStance& stance, const std::string& how) {
+  /// The rest: the sources of the three values.
+  void add_stance(const BodyStance& stance, const std::string& of_unit, const std::string& of_up,
+                  const std::string& of_facing) {
     const auto units = length_units();
     const auto* unit = found_in(units, stance.unit_m, &LengthUnit::metres);
-    add("unit", stance.unit_m, "m", unit ? fmt::format("{}, {}", unit->name, how) : how);
-    add("up", up_axis_names.at(static_cast<std::size_t>(stance.up)), "", how);
-    add("facing", facing_names.at(static_cast<std::size_t>(stance.facing)), "", how);
+    add("unit", stance.unit_m, "m", unit ? fmt::format("{}, {}", unit->name, of_unit) : of_unit);
+    add("up", up_axis_names.at(static_cast<std::size_t>(stance.up)), "", of_up);
+    add("facing", facing_names.at(static_cast<std::size_t>(stance.facing)), "", of_facing);
     if (stance.turn_deg != 0)
       add("turn", stance.turn_deg, "degrees", "about the upright axis, towards its left");
     if (!(stance.move == Vec3d{}))
@@ -235,7 +236,9 @@ MeasuredFile measure_file(const MeasureOptions& options) {
     std::cerr << "mssim: not certain of " << printable(doubt, 1000) << '\n';
   surface = stood_up(std::move(surface), guess.stance);
   BodyListing listing;
-  listing.add_stance(guess.stance, "found");
+  const auto source = [](bool is_given) { return is_given ? "given" : "found"; };
+  listing.add_stance(guess.stance, source(!options.unit.empty()), source(options.up.has_value()),
+                     source(options.facing.has_value()));
   BodyFile body{options.body, guess.stance, std::nullopt};
   try {
     std::vector<Opening> openings = openings_of(surface);
@@ -274,8 +277,8 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
               << " is written, but does not work yet: " << escaped(error.what()) << '\n';
     return exit_not_verified;
   }
-  const std::string scene_name = escaped(options.scene);
-  std::cerr << "mssim: wrote " << scene_name << "; mssim run --scene " << scene_name << " dresses it\n";
+  std::cerr << "mssim: wrote " << escaped(options.scene) << "; mssim run --scene "
+            << escaped(shell_word(options.scene)) << " dresses it\n";
   return exit_ok;
 }
 
@@ -293,7 +296,8 @@ int measure_scene(const MeasureOptions& options) {
   const BodyProfile body = measured_body(spec).profile;
   tell_of_ignored_parts(body);
   BodyListing listing;
-  listing.add_stance(file ? file->stance : BodyStance{}, "from the scene");
+  const char* const source = "from the scene";
+  listing.add_stance(file ? file->stance : BodyStance{}, source, source, source);
   listing.add_measures(body, find_landmarks(body));
   tell(options, listing);
   return exit_ok;

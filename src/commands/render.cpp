@@ -85,7 +85,11 @@ std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceC
                                       bool has_legend) {
   std::vector<std::size_t> chosen = chosen_frames(options.frames, content.time_s);
   if (const auto moments = moments_on_sheet(options, has_legend)) return spread_over(chosen, *moments);
-  return options.movie ? chosen : std::vector{chosen.back()};
+  if (options.movie) return chosen;
+  if (!options.frames.frames.empty() && chosen.size() > 1)
+    throw UsageError("--frames names {}, and a picture shows one: name one, or give --sheet or --movie, too",
+                     pluralize(chosen.size(), "frame"));
+  return {chosen.back()};
 }
 
 /// Frame rate at which a movie runs in simulated time.
@@ -154,6 +158,8 @@ int render(const RenderOptions& options) {
   fs::path trace = options.trace;
   if (is_scene(options.trace) && (trace.extension() == ".json" || !fs::exists(trace)))
     throw UsageError("\"{0}\" is a scene, not a trace: did you mean --scene {0}?", printable(options.trace));
+  if (!trace.empty() && options.run.fps && !options.movie)
+    throw UsageError("--fps with a trace is that of a movie: give --movie, too, or leave --fps out");
   const fs::path out = target_of(output_of(options));
   require_extension({options.movie && !options.movie->empty() ? "--movie" : "--out", out},
                     options.movie ? "an animated WebP" : "PNG",

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "integrators/integrator.h"
 
 namespace mssim {
@@ -35,7 +37,8 @@ double largest_stable_dt(const Integrator& integrator, const ModeBound& bound);
 /// (`-frozen`) and explicit Euler are excluded: with little damping, no useful dt keeps them from growing.
 /// Half, because the limit is valid for small motions about the rest shape: a strained spring also resists
 /// sideways, without damping. Half the dt leaves room for four times the stiffness; the floor's impulses are
-/// not modes at all. Throws std::invalid_argument if nothing bounds dt.
-double auto_dt(const ModeBound& bound);
+/// not modes at all. `steps`: whether the scene can be stepped with a method; others are left out. Throws
+/// std::invalid_argument if nothing bounds dt.
+double auto_dt(const ModeBound& bound, const std::function<bool(const Integrator& integrator)>& steps = {});
 
 }  // namespace mssim

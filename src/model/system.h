@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -219,9 +220,9 @@ Spectrum spectrum_at(const System& system, const State& state);
 struct FrameGrid {
   double steps_per_frame = 1;  ///< at least 1, so that no two frames are the same step
 
-  /// Number of steps before frame `frame`.
+  /// Number of steps before frame `frame`; at most 2^62, which no simulation takes.
   std::int64_t step_of(std::int64_t frame) const {
-    return std::llround(static_cast<double>(frame) * steps_per_frame);
+    return std::llround(std::min(static_cast<double>(frame) * steps_per_frame, 0x1p62));
   }
 };
 

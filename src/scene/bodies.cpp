@@ -311,6 +311,17 @@ class MeshedShapes {
   std::vector<std::size_t> of_body_;  ///< [bodies] the index of its shape
 };
 
+double longest_part(const Vec3d& r) { return std::max({std::abs(r.x), std::abs(r.y), std::abs(r.z)}); }
+
+/// The unit vector along `axis`, which may be so short that its square is 0.
+Vec3d direction_of(const Vec3d& axis) {
+  constexpr double surely_not_too_short = 1e-6;
+  if (const double l = length(axis); l > surely_not_too_short) return 1 / l * axis;
+  const double longest = longest_part(axis);
+  const Vec3d longer{axis.x / longest, axis.y / longest, axis.z / longest};
+  return 1 / length(longer) * longer;
+}
+
 /// Rodrigues' rotation by `angle` (radians) about the unit vector `axis`.
 Vec3d turned(const Vec3d& r, const Vec3d& axis, double angle) {
   const double c = std::cos(angle);
@@ -320,7 +331,7 @@ Vec3d turned(const Vec3d& r, const Vec3d& axis, double angle) {
 void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const MeshedShape& shape,
               const BodiesSpec& bodies, const BodySpec& body) {
   const auto first = static_cast<std::uint32_t>(system.nodes());
-  const Vec3d axis = 1 / length(body.turn_axis) * body.turn_axis;
+  const Vec3d axis = direction_of(body.turn_axis);
   for (const Vec3d& node : shape.mesh.nodes) {
     const Vec3d r = turned(node, axis, body.turn_deg * std::numbers::pi / 180);
     system.start.position.push_back(body.centre_m + r);
@@ -408,7 +419,7 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
 void check(const SceneSpec& spec) {
   const BodiesSpec& bodies = bodies_of(spec);
   for (std::size_t i = 0; i < bodies.list.size(); ++i)
-    if (!(length(bodies.list[i].turn_axis) > 1e-6))
+    if (!(longest_part(bodies.list[i].turn_axis) > 0))
       refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
 }
 

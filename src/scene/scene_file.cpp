@@ -39,10 +39,11 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
         {{kind->name, kind->description}, [&, kind](FieldVisitor& body) { kind->visit_fields(body, spec); }});
   fields.one_of({"kind", "The scene kind; also the key of the section with its content."}, kinds);
   fields.text({"description", "One line for listings."}, Presence::required, spec.description);
-  fields.number_or_auto({"dt_s",
-                         "Length of a time step, s; \"auto\" is half of the smallest stability limit of Hong "
-                         "et al.'s integrators."},
-                        spec.dt_s, above(0, 1));
+  fields.number_or_auto(
+      {"dt_s",
+       "Length of a time step, s; \"auto\" is half of the smallest stability limit of those "
+       "integrators of Hong et al. that can step the scene."},
+      spec.dt_s, above(0, 1));
   fields.number({"gravity_m_per_s2", "Gravitational acceleration, downwards, m/s^2."}, spec.gravity_m_per_s2,
                 from(0, 1000));
   fields.number(

@@ -47,6 +47,13 @@ check 0 jeans1k --format csv
 [ "$(column_of "$work/out" backend)" = "$(backends_for garment)" ] || fail "backends of a garment: $(cat "$work/out")"
 [ "$(grep -c '^jeans1k,garment,1054,.*,semi-euler,' "$work/out")" -eq "$(backends_for garment | wc -l)" ] || fail "combinations of a garment"
 
+# Its "auto" is half of its own limit, not of that of methods that cannot dress it.
+sed 's/"dt_s": [^,]*/"dt_s": "auto"/' "$source/scenes/jeans1k.json" >"$work/jeans-auto.json"
+check 0 "$work/jeans-auto.json" --format csv
+awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) place[$i] = i }
+  NR == 2 { ratio = $place["dt_s"] / $place["largest_stable_dt_s"]; exit !(ratio > 0.499 && ratio < 0.501) }' "$work/out" ||
+  fail "the automatic step of a garment: $(cat "$work/out")"
+
 # What is wrong is said as run says it, and nothing is printed of the others.
 sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
 expect 2 'typo.json: /cloth/rowz is not a known key.*did you mean "rows"' check cloth2500 "$work/typo.json"

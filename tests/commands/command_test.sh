@@ -17,6 +17,9 @@ expect 2 'did you mean gather?): known are serial, mutex-per-group' bench --suit
 expect 2 'unknown backend "atomic"' bench --scene cloth2500 --backend atomic
 expect 2 'duration' run --scene cloth2500 --duration 1e-9
 expect 2 'fps' run --scene cloth2500 --fps 1e9
+# As few frames as one wants: the first and the last.
+ends 0 run --scene cloth2500 --duration 0.0002 --backend serial --fps 1e-16 --energy-curve few.csv
+[ "$(grep -c '^[0-9]' few.csv)" -eq 2 ] || fail "frames: $(cat few.csv)"
 expect 2 'dt' run --scene cloth2500 --dt -1
 expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
 

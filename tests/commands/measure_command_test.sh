@@ -84,6 +84,7 @@ measure 0 "$work/makehuman.obj" --format csv
 # What is given beats what is found.
 measure 0 "$work/scan.obj" --unit mm --up z --facing -y --format csv
 [ "$(of_listing "$work/out" facing)" = -y ] || fail "a facing that is given"
+for value in unit up facing; do grep -q "^$value,.*given" "$work/out" || fail "$value is not called given: $(cat "$work/out")"; done
 measure 0 "$work/person.obj" --facing=-z --format csv
 [ "$(of_listing "$work/out" facing)" = -z ] || fail "a facing that is given wrongly"
 measure 0 "$work/person.obj" --unit 0.5 --format csv
@@ -92,6 +93,8 @@ warns 'not certain of unit: the body is 0.84 m high'
 
 # The scene that is written names the body from where it stands, is valid, and dresses it.
 mkdir "$work/scenes"
+measure 0 "$work/scan.obj" --scene "$work/scenes/my own.json"
+warns "mssim run --scene '$work/scenes/my own.json' dresses it"
 measure 0 "$work/scan.obj" --scene "$work/scenes/my.json"
 warns "wrote $work/scenes/my.json; mssim run --scene"
 grep -q '"file": "../scan.obj"' "$work/scenes/my.json" || fail "the path of the body: $(cat "$work/scenes/my.json")"

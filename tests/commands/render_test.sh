@@ -91,6 +91,8 @@ expect 2 'exclude each other' render t.h5 --scene cloth2500
 expect 2 '"top" is not a view; give front' render t.h5 --view top
 expect 2 'up to 2048 pixels' render t.h5 --size 3000x10
 expect 2 'no frame 99; the last one is 4' render t.h5 --frames 0,99
+expect 2 '--frames names 3 frames.*--sheet or --movie' render t.h5 --frames 0-2
+expect 2 '--fps .*--movie' render t.h5 --fps 5
 expect 2 '"3" is not a number of pictures' render t.h5 --sheet 3
 expect 2 'exclude each other' render t.h5 --movie --sheet 2x2
 cp t.h5 same.png

@@ -113,6 +113,9 @@ TEST(AutoDt, IsHalfOfTheSmallestLimitOfTheRealMethods) {
   const double smallest =
       std::min({limit("semi-euler", bound), limit("midpoint", bound), limit("rk4", bound)});
   EXPECT_DOUBLE_EQ(auto_dt(bound), smallest / 2);
+  const auto is_semi_euler = [](const Integrator& integrator) { return integrator.name == "semi-euler"; };
+  EXPECT_DOUBLE_EQ(auto_dt(bound, is_semi_euler), limit("semi-euler", bound) / 2);
+  EXPECT_GT(limit("semi-euler", bound), smallest);
 }
 
 TEST(AutoDt, RefusesASystemThatDoesNotBoundIt) { EXPECT_THROW(auto_dt({}), std::invalid_argument); }

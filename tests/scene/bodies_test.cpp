@@ -306,6 +306,12 @@ INSTANTIATE_TEST_SUITE_P(
                     BadBodies{"\"density_kg_per_m3\": 1000", "\"density_kg_per_m3\": 0",
                               "/bodies/density_kg_per_m3", "is 0"}));
 
+TEST_F(BodiesFile, MayTurnAboutAnAxisOfAnyLength) {
+  const System usual = build_system(load_scene(scene(good_)));
+  const System shorter = build_system(load_scene(scene(with_change(good_, "[0, 0, 0.5]", "[0, 0, 1e-300]"))));
+  EXPECT_EQ(shorter.start.position, usual.start.position);
+}
+
 TEST_F(BodiesFile, WithoutAListIsRefused) {
   const std::size_t begin = good_.find("[{"), end = good_.find("}]");
   std::string text = good_;

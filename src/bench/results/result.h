@@ -174,7 +174,8 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      &ResultRow::speedup_vs_serial},
     {"paper_ms", "ms", "time published for this scene, integrator and configuration", &ResultRow::paper_ms},
     {"position_error", "",
-     "largest distance of a node from the double-precision reference after 100 steps, in mean rest lengths",
+     "largest distance of a node from the double-precision reference after 100 steps, in mean rest lengths; "
+     "empty if nothing could be compared",
      &ResultRow::position_error},
     {"energy_drift", "",
      "total energy less the reference's, over the reference's kinetic plus elastic energy; of a scene at "

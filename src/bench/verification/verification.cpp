@@ -287,13 +287,13 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   result.energy_drift = deviation.energy;
 
   const std::string steps = pluralize(reference.steps, "step");
-  if (!(result.position_error <= reference.tolerance))
+  if (!(deviation.position <= reference.tolerance))
     result.failure = fmt::format("position error {:.6g} of a rest length exceeds {:.6g} after {}",
-                                 result.position_error, reference.tolerance, steps);
-  else if (!(std::abs(result.energy_drift) <= energy_tolerance))
+                                 deviation.position, reference.tolerance, steps);
+  else if (!(std::abs(deviation.energy) <= energy_tolerance))
     result.failure =
         fmt::format("energy is off by {:.6g} of the energy in motion, more than {:.6g}, after {}",
-                    result.energy_drift, energy_tolerance, steps);
+                    deviation.energy, energy_tolerance, steps);
   return result;
 }
 
@@ -378,6 +378,7 @@ EnergyLedger::EnergyLedger(const System& system, const Integrator& integrator, d
     : system_(system),
       floorless_(without_floor(system)),
       dt_s_(dt_s),
+      ahead_s_(integrator.ahead * dt_s),
       reference_(make_reference(floorless_, integrator, dt_s)),
       pinned_(system.nodes(), 0),
       touches_(system.nodes(), 0) {
@@ -386,12 +387,20 @@ EnergyLedger::EnergyLedger(const System& system, const Integrator& integrator, d
 
 void EnergyLedger::step(Backend& backend) {
   const State before = backend.state();
-  reference_->set_state(before);
+  State start = before;
+  bool was_put_on_floor = false;  // by move_back(), from where the step starts
+  for (std::size_t i = 0; ahead_s_ != 0 && i < system_.nodes(); ++i) {
+    if (pinned_[i] != 0 || start.position[i].y != system_.floor.height || !(start.velocity[i].y > 0))
+      continue;
+    start.position[i].y -= ahead_s_ * start.velocity[i].y;
+    was_put_on_floor = true;
+  }
+  reference_->set_state(start);
   reference_->step(1);
   const State landing = reference_->state();
   const double damping = dt_s_ / 2 * (damping_power(system_, before) + damping_power(system_, landing));
   losses_.damping += damping;
-  double& rest = account_for_contact(landing) ? losses_.bounce : losses_.integration;
+  double& rest = account_for_contact(landing) || was_put_on_floor ? losses_.bounce : losses_.integration;
   rest += energy_of(system_, before).total() - energy_of(system_, landing).total() - damping;
   backend.step(1);
 }
@@ -401,18 +410,23 @@ bool EnergyLedger::account_for_contact(const State& landing) {
   State after = landing;
   bool contact = false;
   for (std::size_t i = 0; i < system_.nodes(); ++i) {
-    touches_[i] = pinned_[i] == 0 && landing.position[i].y < floor.height;
+    Vec3d &x = after.position[i], &v = after.velocity[i];
+    x += ahead_s_ * v;  // the position that the stages see
+    touches_[i] = pinned_[i] == 0 && x.y < floor.height;
     if (touches_[i] == 0) continue;
     contact = true;
-    Vec3d &x = after.position[i], &v = after.velocity[i];
     const Vec3d falling = v;
-    const double depth = floor.height - x.y;
     touch_floor(x, v, floor.height, floor.restitution, floor.friction);
-    const double mass = system_.node_mass[i];
+    x.y = std::max(x.y - ahead_s_ * v.y, floor.height);  // as move_back() does
+    x.x -= ahead_s_ * v.x;
+    x.z -= ahead_s_ * v.z;
+    const double mass = system_.node_mass[i], rise = x.y - landing.position[i].y;
     losses_.friction += mass / 2 * (falling.x * falling.x + falling.z * falling.z - v.x * v.x - v.z * v.z);
-    losses_.bounce += mass / 2 * (falling.y * falling.y - v.y * v.y) - mass * system_.gravity * depth;
+    losses_.bounce += mass / 2 * (falling.y * falling.y - v.y * v.y) - mass * system_.gravity * rise;
   }
   if (!contact) return false;
+  for (std::size_t i = 0; ahead_s_ != 0 && i < system_.nodes(); ++i)
+    if (touches_[i] == 0) after.position[i] = landing.position[i];
   for (const Spring& spring : system_.springs)
     if (touches_[spring.first] != 0 || touches_[spring.second] != 0)
       losses_.bounce += elastic_energy(system_, spring, landing) - elastic_energy(system_, spring, after);

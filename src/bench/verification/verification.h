@@ -116,9 +116,10 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
 
 /// Comparison of a backend with the reference.
 struct Verification {
-  double position_error = 0;  ///< largest distance between the same node's positions, in mean rest lengths
-  double energy_drift =
-      0;  ///< total energy less the reference's, divided by the reference's energy in motion
+  /// Largest distance between the same node's positions, in mean rest lengths; none if nothing was compared.
+  std::optional<double> position_error;
+  /// Total energy less the reference's, divided by the reference's energy in motion; none as above.
+  std::optional<double> energy_drift;
   std::optional<std::uint64_t> state_hash;  ///< of the state after the last step (model/system.h)
   std::optional<std::string> failure;       ///< empty: verified
 };
@@ -213,10 +214,12 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
 ///   integration  in all other steps, the rest of the loss: the integrator's error.
 /// The integrator's error cannot be separated from the floor's loss while a node touches the floor. The floor
 /// holds a node by putting it back after it has fallen through for a step; with semi-implicit Euler, both are
-/// of the same order and opposite signs. A backend with a wrong force, floor or integrator violates the
-/// balance. A correct backend in single precision keeps it over ten to twenty thousand steps, relative to the
-/// largest change of the kinetic energy: to 1e-4 for cloths and for bodies on a floor at height 0, and to
-/// about 1e-3 on a floor so high that the steps of nodes at rest on it are of the size of a rounding.
+/// of the same order and opposite signs. The floor meets the positions that the stages see, which are ahead
+/// of the state's with some integrators (step_ahead); what move_back() puts on the floor counts as bounce. A
+/// backend with a wrong force, floor or integrator violates the balance. A correct backend in single
+/// precision keeps it over ten to twenty thousand steps, relative to the largest change of the kinetic
+/// energy: to 1e-4 for cloths and for bodies on a floor at height 0, and to about 1e-3 on a floor so high
+/// that the steps of nodes at rest on it are of the size of a rounding.
 ///
 /// `integration` includes the error of the trapezoidal rule. In a second with bounces, relative to the
 /// kinetic energy of the fall, the small bodies of the paper lose or gain 0.001 by it with semi-implicit
@@ -240,6 +243,7 @@ class EnergyLedger {
   const System& system_;
   System floorless_;  // `system_` with the floor out of reach
   double dt_s_;
+  double ahead_s_;                      // of the positions that the stages see (Integrator::ahead)
   std::unique_ptr<Backend> reference_;  // of floorless_
   std::vector<std::uint8_t> pinned_;    // [nodes]
   std::vector<std::uint8_t> touches_;   // [nodes] whether the current step ends on the floor

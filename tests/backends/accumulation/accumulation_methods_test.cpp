@@ -210,7 +210,7 @@ TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {
     const double dt_s = backend_dt_of(integrator);
     const Reference reference = run_reference(system, integrator, dt_s);
     const auto distance = [&](Backend& backend) {
-      return verify(backend, system, reference, dt_s).position_error;
+      return verify(backend, system, reference, dt_s).position_error.value();
     };
     const double usual = distance(*make_serial(system, integrator, dt_s, {1, ""}));
     EXPECT_GT(usual, 0);

@@ -82,8 +82,9 @@ void expect_found(const std::vector<Mistake>& all, const System& system, double 
       System wrong = system;
       mistake.make(wrong);
       const Verification verification = verified(wrong);
-      EXPECT_TRUE(verification.failure) << mistake.name << ", " << integrator.name << ": error "
-                                        << verification.position_error << " of " << reference.tolerance;
+      EXPECT_TRUE(verification.failure)
+          << mistake.name << ", " << integrator.name << ": error " << verification.position_error.value_or(-1)
+          << " of " << reference.tolerance;
     }
   }
 }
@@ -253,7 +254,7 @@ TEST(Verification, FailsWhereTheEnergyIsOffByMoreThanAHundredth) {
     reference.energy.gravitational = weight - off * moving;
     const auto backend = make_serial(system, integrators[0], backend_dt_s, {});
     const Verification verification = verify(*backend, system, reference, backend_dt_s);
-    EXPECT_NEAR(verification.energy_drift, off, 2e-4);
+    EXPECT_NEAR(verification.energy_drift.value(), off, 2e-4);
     EXPECT_EQ(verification.failure.has_value(), std::abs(off) > 0.01) << off;
   }
 }
@@ -348,7 +349,9 @@ TEST(BlowUp, OfTheReferenceFailsEveryRow) {
   ASSERT_TRUE(reference.failure);
   EXPECT_NE(reference.failure->find("blew up at step"), std::string::npos) << *reference.failure;
   const auto backend = make_serial(system, integrators[0], 50 * backend_dt_s, {});
-  EXPECT_EQ(verify(*backend, system, reference, 50 * backend_dt_s).failure, reference.failure);
+  const Verification found = verify(*backend, system, reference, 50 * backend_dt_s);
+  EXPECT_EQ(found.failure, reference.failure);
+  EXPECT_FALSE(found.position_error || found.energy_drift) << "nothing was compared";
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ TEST(GarmentVerification, PassesTheBackendsThatDress) {
     EXPECT_FALSE(found.failure) << *found.failure;
     EXPECT_GT(found.position_error, 0) << "single precision cannot be exact";
     EXPECT_LT(found.position_error, scene.reference.tolerance / 2);
-    EXPECT_LT(std::abs(found.energy_drift), 1e-4);
+    EXPECT_LT(std::abs(*found.energy_drift), 1e-4);
   }
 }
 
@@ -316,7 +316,7 @@ TEST(GarmentVerification, FindsEveryMistake) {
     System wrong = jeans().system;
     mistake.make(wrong);
     const Verification found = verify_stepping(wrong);
-    ASSERT_TRUE(found.failure) << mistake.name << ": error " << found.position_error << " of "
+    ASSERT_TRUE(found.failure) << mistake.name << ": error " << *found.position_error << " of "
                                << jeans().reference.tolerance;
     EXPECT_NE(found.failure->find(mistake.found_while), std::string::npos)
         << mistake.name << ": " << *found.failure;

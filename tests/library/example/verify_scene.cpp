@@ -22,8 +22,8 @@ int main(int argc, char** argv) {
     const auto backend = mssim::make_backend(*info, system, integrator, dt_s, {.threads = 2});
     const mssim::Verification result =
         mssim::verify(*backend, system, mssim::run_reference(system, integrator, dt_s), dt_s);
-    std::cout << spec.name << ' ' << info->name << ' ' << result.position_error << '\n';
     if (result.failure) throw mssim::Error(mssim::exit_not_verified, *result.failure);
+    std::cout << spec.name << ' ' << info->name << ' ' << *result.position_error << '\n';
   } catch (const mssim::Error& error) {
     std::cerr << "verify_scene: " << error.what() << '\n';
     return error.exit_code;
