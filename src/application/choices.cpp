@@ -421,8 +421,12 @@ void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const
 }
 
 void require_device(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
-  if (!given.device.empty() && std::ranges::any_of(rows, &BackendInfo::uses_device))
-    find_opencl_device(given.device);
+  if (given.device.empty()) return;
+  if (std::ranges::none_of(rows, &BackendInfo::uses_device))
+    throw UsageError(
+        "--device is for backends that use OpenCL, and none of these does: add --backend opencl, or leave it "
+        "out");
+  find_opencl_device(given.device);
 }
 
 int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution) {

@@ -147,7 +147,8 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
 /// in processes.
 void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
 
-/// Throws Unavailable if --device is given, one of these rows needs a device, and no device has that name.
+/// If --device is given, throws UsageError if none of these rows needs a device, and Unavailable if no device
+/// has that name.
 void require_device(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
 
 /// Largest number of processes of any of these rows.

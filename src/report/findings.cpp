@@ -111,6 +111,16 @@ std::vector<std::string> noise_seen(const Provenance& provenance) {
       provenance.noise, [](const std::string& sentence) { return sentence.substr(0, sentence.find(": ")); });
 }
 
+bool is_from_page(const ReportFolder& folder) {
+  return std::ranges::any_of(folder.rows, [](const ResultRow& row) {
+    return std::ranges::find(browser_backends, row.backend, &BrowserBackend::name) != browser_backends.end();
+  });
+}
+
+std::string_view when_noisy(const ReportFolder& folder) {
+  return is_from_page(folder) ? "During the run" : "When the run started";
+}
+
 std::string range_of(const ReportFolder& folder, int ResultRow::*count) {
   int least = 0, most = 0;
   for (const ResultRow& row : folder.rows)

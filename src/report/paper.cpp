@@ -108,7 +108,7 @@ std::string machine_of(const ReportFolder& folder) {
   for (const Finding& finding : row_findings(folder.rows, provenance))
     text += '\n' + latex_prose(finding.sentence);
   if (const std::vector<std::string> noise = noise_seen(provenance); !noise.empty())
-    text += "\nWhen the run started: " + latex_text(join(noise, "; ")) + ".";
+    text += fmt::format("\n{}: {}.", when_noisy(folder), latex_text(join(noise, "; ")));
   return text;
 }
 
@@ -159,13 +159,6 @@ std::string timing_of(const ReportFolder& folder) {
                     "rounds they are the smallest and the largest sample.\nA speed-up is the median of the "
                     "ratios within each round, with an interval of the same kind.",
                     decimal(100 * interval_confidence));
-}
-
-/// Whether the page of mssim web measured the rows.
-bool is_from_page(const ReportFolder& folder) {
-  return std::ranges::any_of(folder.rows, [](const ResultRow& row) {
-    return std::ranges::find(browser_backends, row.backend, &BrowserBackend::name) != browser_backends.end();
-  });
 }
 
 std::string verification_of(const ReportFolder& folder) {

@@ -77,14 +77,20 @@ std::string range_of(const ReportFolder& folder, int ResultRow::*count);
 /// The last two names of the folder's path: folders of several suites may have the same last name.
 std::filesystem::path short_name(const ReportFolder& folder);
 
+/// Whether the page of mssim web measured the rows.
+bool is_from_page(const ReportFolder& folder);
+
+/// When noise_seen() was: mssim looks for it before it measures, the page while it does.
+std::string_view when_noisy(const ReportFolder& folder);
+
 /// The table of times: one line per row. Times are the second column, so that a narrow screen shows them.
 Table times_of(RowPointers rows, const ReportFolder& folder);
 
 /// Explains the columns of times_of(), with the marks of a Document.
 inline constexpr std::string_view how_to_read_times =
     "*ms per step* are medians over the rounds. Intervals contain the true median in 95 % of all cases. With "
-    "fewer than six rounds they are the smallest and the largest sample. Speed-ups are over `serial`: "
-    "medians of the ratios within each round.";
+    "fewer than six rounds they are the smallest and the largest sample. Speed-ups are over `serial`, in a "
+    "browser over `javascript`: medians of the ratios within each round.";
 
 /// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);

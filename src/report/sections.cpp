@@ -37,9 +37,9 @@ std::string of_each_folder(const ReportInput& input, Content content, const std:
 /// A warning above the times; empty if mssim found no noise.
 std::string noise_note(const ReportFolder& folder) {
   const std::vector<std::string> noise = noise_seen(folder.where_from());
-  return noise.empty()
-             ? ""
-             : paragraph("When this run started: " + html_text(join(noise, "; ")) + ".", of_problems);
+  return noise.empty() ? ""
+                       : paragraph(fmt::format("{}: {}.", when_noisy(folder), html_text(join(noise, "; "))),
+                                   of_problems);
 }
 
 // Machine and provenance

@@ -180,8 +180,11 @@ def check_without(browser, page):
     browser.open(page, query_of("cloth2500", rounds=2, threads=3))
     rows = rows_of(without := browser.results())
     expect({row["backend"]: row["threads"] for row in rows} == {"javascript": "1", "wasm": "1", "wasm-threads": "3"}, f"threads: {rows}")
+    expect(json.loads(without)["provenance"]["threads"]["asked_for"] == 3, f"threads of the run: {without}")
     expect("webgpu" not in [row["backend"] for row in rows] and all(map(is_timed, rows)), f"rows without WebGPU: {rows}")
     expect("WebGPU" in browser.value("element('notes').textContent"), "the page does not say that there is no WebGPU")
+    browser.open(page, query_of("cloth2500,nosuch", rounds=0))
+    browser.until("element('state').textContent.includes('auto nosuch, rounds 0 (1 to 100)')")
     browser.is_isolated = False
     browser.open(page, query_of("cloth2500"))
     rows = rows_of(browser.results())

@@ -392,10 +392,12 @@ TEST(ReportPage, SaysAtTheTopOfAFolderWhatDisturbedIt) {
   ReportFolder folder;
   folder.rows = {measured_row("serial", 1, 1.0)};
   folder.provenance = made_up_provenance();
-  EXPECT_FALSE(has(report_page(input_of(folder)), "When this run started"));
+  EXPECT_FALSE(has(report_page(input_of(folder)), "When the run started"));
   folder.provenance->noise = {"other programs are running (load 9.5 over the last minute): end them"};
-  expect_in_order(report_page(input_of(folder)),
-                  {"<h2>Times</h2>", "(load 9.5 over the last minute).</p>", "<table>"});
+  expect_in_order(report_page(input_of(folder)), {"<h2>Times</h2>", "When the run started",
+                                                  "(load 9.5 over the last minute).</p>", "<table>"});
+  folder.rows = {measured_row("javascript", 1, 1.0)};
+  EXPECT_TRUE(has(report_page(input_of(folder)), "During the run: other programs"));
 }
 
 TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {

@@ -118,12 +118,13 @@ void ResultFolder::clear() const {
 void ResultFolder::go_on_with(const Provenance& earlier) {
   provenance_.earlier_starts_utc = earlier.earlier_starts_utc;
   provenance_.earlier_starts_utc.push_back(earlier.started_utc);
+  goes_on_ = true;
 }
 
 void ResultFolder::begin() const {
   AtomicFile file(folder_ / provenance_name);
   file.append(provenance_text(provenance_) + '\n');
-  if (!replaces_) file.move_into_place();
+  if (!replaces_ && !goes_on_) file.move_into_place();
 }
 
 void ResultFolder::write(std::span<const ResultRow> rows) {
@@ -155,7 +156,8 @@ void ResultFolder::write(std::span<const StructureRow> rows) {
 }
 
 void ResultFolder::write_files(std::vector<FolderFile> files, const std::vector<FolderFile>& programs) {
-  if (replaces_) files.insert(files.begin(), {provenance_name, provenance_text(provenance_) + '\n'});
+  if (std::exchange(goes_on_, false) || replaces_)
+    files.insert(files.begin(), {provenance_name, provenance_text(provenance_) + '\n'});
   std::vector<AtomicFile> written;
   written.reserve(files.size());
   for (const FolderFile& file : files) written.emplace_back(folder_ / file.name).append(file.text);
@@ -173,6 +175,12 @@ std::vector<ResultRow> read_results(const fs::path& folder) {
   std::vector<ResultRow> rows = read_timings(CsvTable(folder / timings_name));
   read_samples(CsvTable(folder / samples_name), rows);
   if (fs::exists(folder / garment_name)) read_dressings(CsvTable(folder / garment_name), rows);
+  // A run that was ended between two files leaves a round that timings.csv, the last one, does not have.
+  for (ResultRow& row : rows) {
+    const auto rounds = static_cast<std::size_t>(std::max(0, row.rounds));
+    row.samples_ms.resize(std::min(row.samples_ms.size(), rounds));
+    row.sample_steps.resize(row.samples_ms.size());
+  }
   return rows;
 }
 

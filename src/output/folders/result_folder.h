@@ -40,7 +40,8 @@ class ResultFolder {
   /// Makes the first write replace the results of an earlier run, including its provenance. They stay until
   /// then.
   void replace_results() { replaces_ = true; }
-  /// Adds the start of the run whose rows stay to this run's provenance.
+  /// Adds the start of the run whose rows stay to this run's provenance, which replaces that run's with the
+  /// first new rows.
   void go_on_with(const Provenance& earlier);
   /// Writes provenance.json, or only tests writing if an earlier run's stays for now. So a folder that cannot
   /// be written is found before anything is measured. Throws WriteError.
@@ -70,7 +71,7 @@ class ResultFolder {
   FolderLock lock_;
   Provenance provenance_;
   TableMaker tables_;
-  bool replaces_ = false;
+  bool replaces_ = false, goes_on_ = false;  ///< until the first write
 };
 
 /// The rows that an earlier run left in a folder, with their samples and dressings; none without timings.csv.

@@ -355,8 +355,9 @@ class Session {
                                         'last third of its rounds: the device may have become hot');
     const provenance = {...data.provenance, started_utc: this.started, command_line: ['mssim', 'web', ...about.settings],
                         cpu: {...data.provenance.cpu, model: about.device, logical_cpus: about.logicalCpus},
-                        operating_system: about.system, kernel: about.browser, memory_bytes: about.memoryBytes,
-                        opencl_devices: about.adapters, noise: [...notes, ...about.limits]};
+                        operating_system: about.system, kernel: [about.browser, ...about.limits].join('; '), memory_bytes: about.memoryBytes,
+                        threads: {...data.provenance.threads, asked_for: Math.max(1, ...this.rows.map(row => row.threads))},
+                        opencl_devices: about.adapters, noise: notes};
     const quoted = value => /[",\n\r]/.test(value) ? `"${String(value).replaceAll('"', '""')}"` : String(value);
     const csv = lines => lines.map(line => line.map(quoted).join(',') + '\n').join('');
     const names = ['scene', 'backend', 'integrator'];

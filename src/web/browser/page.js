@@ -43,7 +43,7 @@ async function about() {
     settings: [location.search].filter(Boolean), device: hints.model || `a device with ${system}`, system,
     browser: navigator.userAgent, logicalCpus: navigator.hardwareConcurrency || 0, memoryBytes: (navigator.deviceMemory || 0) * 2 ** 30,
     adapters: adapter ? [`WebGPU: ${adapterName()}`] : [],
-    limits: adapter ? [`the adapter's limits: ${['maxStorageBufferBindingSize', 'maxBufferSize', 'maxComputeWorkgroupsPerDimension']
+    limits: adapter ? [`adapter limits ${['maxStorageBufferBindingSize', 'maxBufferSize', 'maxComputeWorkgroupsPerDimension']
       .map(name => `${name} ${adapter.limits[name]}`).join(', ')}`] : [],
   };
 }
@@ -221,7 +221,19 @@ element('save').addEventListener('click', async () => {
   setTimeout(() => URL.revokeObjectURL(url), 60000);
 });
 element('send').addEventListener('click', send);
-element('send').hidden = !['localhost', '127.0.0.1'].includes(location.hostname);
+// mssim web --serve is on the loopback address; results go nowhere else.
+const isServed = ['localhost', '127.0.0.1'].includes(location.hostname);
+element('send').hidden = !isServed;
+
+/** Why the settings in the address cannot be measured; empty if they can. */
+function wrongSetting() {
+  const unknown = (name, known) => listIn(name).filter(value => !known.some(one => one.name === value)).map(value => `${name} ${value}`);
+  const numbers = {rounds: [1, 100], threads: [2, 99], seconds: [0.001, 10]};
+  const beyond = Object.entries(numbers).filter(([name, [least, most]]) => address.has(name) && !(address.get(name) >= least && address.get(name) <= most))
+    .map(([name, [least, most]]) => `${name} ${address.get(name)} (${least} to ${most})`);
+  const all = [...unknown('auto', data.scenes), ...unknown('integrators', data.integrators), ...beyond];
+  return all.length ? `The address has settings that this page does not know: ${all.join(', ')}. Change them, and load the page again.` : '';
+}
 
 const box = (value, checked) => create('label', {}, create('input', {type: 'checkbox', value, checked}), value);
 const [autoScenes, integrators] = [listIn('auto'), listIn('integrators')];
@@ -238,6 +250,8 @@ element('version').textContent = `Made by mssim ${build.version}, commit ${build
   device?.destroy();
   await animate();
   if (!autoScenes.length) return showKept();
+  const wrong = wrongSetting();
+  if (wrong) return void (element('state').textContent = wrong);
   await measure();
-  await send();
+  if (isServed) await send();
 })();

@@ -166,7 +166,8 @@ TEST_F(HistoryFile, ReadsBackWhatWasWritten) {
 
 TEST_F(HistoryFile, NamesTheLineThatIsWrong) {
   const std::string line = history_line(entry(1, 0.5));
-  EXPECT_EQ(refusal(line + "\r\n\n" + line), "accepted");
+  EXPECT_EQ(refusal(line + "\r\n\n" + history_line(entry(2, 0.5))), "accepted");
+  EXPECT_THAT(refusal(line + "\r\n\n" + line), AllOf(HasSubstr("h.jsonl, line 3"), HasSubstr("commit-1")));
   EXPECT_THAT(refusal(line + '\n' + line.substr(0, 100) + '\n'), HasSubstr("h.jsonl, line 2"));
   EXPECT_THAT(refusal("\n\n" + with_change(line, "\"threads\":2", "\"threads\":-2")),
               AllOf(HasSubstr("h.jsonl, line 3"), HasSubstr("/threads"), HasSubstr("-2")));

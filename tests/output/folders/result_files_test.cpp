@@ -1,3 +1,4 @@
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "output/folders/provenance_file.h"
@@ -63,6 +64,31 @@ TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
   EXPECT_TRUE(back[1].verified);
   EXPECT_EQ(back[2].status, rows[2].status);
   EXPECT_EQ(back[2].ms_per_step, std::nullopt);
+}
+
+TEST_F(ResultFiles, LeaveOutARoundThatOnlyTheSamplesHave) {
+  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).write(rows);
+  const std::vector<double> before = rows[0].samples_ms;
+  rows[0].samples_ms.push_back(7);
+  rows[0].sample_steps.push_back(10);
+  std::ofstream(folder() / "samples.csv") << samples_csv(rows);  // ended before the other files
+  const std::vector<ResultRow> back = read_results(folder());
+  EXPECT_EQ(back.at(0).samples_ms, before);
+  EXPECT_EQ(back.at(0).sample_steps.size(), before.size());
+}
+
+TEST_F(ResultFiles, GoOnUnderTheProvenanceOfTheRunThatAddsRows) {
+  const std::string file = (folder() / "provenance.json").string();
+  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).begin();
+  Provenance later = made_up_provenance();
+  later.started_utc = "2030-01-01T00:00:00Z";
+  ResultFolder results(folder(), later, paper_tables(legend, published_tables()));
+  results.go_on_with(made_up_provenance());
+  results.begin();
+  EXPECT_THAT(read_file(file), Not(HasSubstr("2030"))) << "nothing of it is measured yet";
+  results.write(std::vector{measured_row("serial", 0.5, 1.0)});
+  EXPECT_THAT(read_file(file), AllOf(HasSubstr("2030"), HasSubstr(made_up_provenance().started_utc)));
 }
 
 TEST_F(ResultFiles, SamplesAreListedRoundByRound) {
