@@ -107,7 +107,7 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
     if (std::any_of(history.begin(), history.end() - 1, [&](const HistoryEntry& earlier) {
           return earlier.commit == entry.commit && machine_of(earlier) == machine_of(entry);
         }))
-      throw UsageError("{}: an earlier line has commit {} on {}, too; remove one of the two lines", where,
+      throw InputError("{}: an earlier line has commit {} on {}, too; remove one of the two lines", where,
                        printable(entry.commit), printable(machine_of(entry)));
   }
   return history;
