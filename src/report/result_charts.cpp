@@ -143,7 +143,8 @@ Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, dou
 }  // namespace
 
 BackendLook look_on(std::string_view device, std::string_view backend, const Provenance& provenance) {
-  std::string name(backend), family(backend);
+  // The baseline of a page looks like the other one: they never meet in a chart.
+  std::string name(backend), family(backend == browser_baseline_name ? baseline_name : backend);
   if (is_this_processor(device, provenance))
     family = name += on_the_cpu;
   else if (!device.empty())
@@ -162,15 +163,20 @@ bool is_for_gpus(std::string_view backend, const PaperLegend& legend) {
 }
 
 std::vector<std::string> families_of_backends(const PaperLegend& legend) {
-  std::vector<std::string> families;
-  const auto is_variant = [](const PaperLegend::Backend& backend) {
-    return backend.name.find(':') != std::string::npos;
-  };
-  for (const PaperLegend::Backend& backend : legend.backends)
-    if (!is_variant(backend)) families.push_back(backend.name);
-  for (const PaperLegend::Backend& backend : legend.backends)
-    if (!is_variant(backend) && is_for_gpus(backend.name, legend))
-      families.push_back(backend.name + on_the_cpu);
+  // There are twelve colours. Those of the paper's configurations come first, each with its row on the CPU,
+  // and leave one for another row in their charts.
+  std::vector<std::string> families, of_pages;
+  for (const PaperLegend::Backend& backend : legend.backends) {
+    if (backend.configuration.empty() || backend.name.find(':') != std::string::npos ||
+        backend.name == browser_baseline_name)
+      continue;
+    const bool is_of_page =
+        std::ranges::find(browser_backends, backend.name, &BrowserBackend::name) != browser_backends.end();
+    std::vector<std::string>& list = is_of_page ? of_pages : families;
+    list.push_back(backend.name);
+    if (is_for_gpus(backend.name, legend)) list.push_back(backend.name + on_the_cpu);
+  }
+  families.insert(families.end(), of_pages.begin(), of_pages.end());
   return families;
 }
 

@@ -1,6 +1,7 @@
 
 #include <span>
 
+#include "application/bench/suites.h"
 #include "charts/layout.h"
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
@@ -72,6 +73,14 @@ TEST(SpeedupCharts, OpenclOnTheProcessorLooksLikeNoGpu) {
   const auto looks = looks_of(on_cpu.series, families);
   EXPECT_EQ(std::set(looks.begin(), looks.end()).size(), on_cpu.series.size());
   for (const char* family : {"opencl", "hybrid", "opencl on the CPU", "hybrid on the CPU"})
+    EXPECT_THAT(families, Contains(family));
+}
+
+TEST(FamiliesOfBackends, LeaveAColourForAnotherRow) {
+  const std::vector<std::string> families = families_of_backends(paper_legend());
+  EXPECT_LT(families.size(), series_colours.size());
+  for (const char* family : {"serial", "threads-mutex", "openmp", "opencl", "opencl on the CPU", "hybrid",
+                             "hybrid on the CPU", "webgpu", "webgpu on the CPU", "wasm", "wasm-threads"})
     EXPECT_THAT(families, Contains(family));
 }
 
