@@ -280,18 +280,13 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
   return rows;
 }
 
-/// Gives the combinations their earlier samples, as many as all of them have, and returns how many. What had
-/// no time before has none now: measuring it again would cost the others their rounds.
+/// Gives the combinations their earlier samples, as many as all of them have, and returns how many.
 int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>& earlier) {
   std::size_t complete = SIZE_MAX;
   for (Combination& combination : combinations) {
     if (!combination.backend) continue;
     const auto row = std::ranges::find_if(
         earlier, [&](const ResultRow& other) { return same_combination(other, combination.row); });
-    if (row != earlier.end() && row->status != "ok") {
-      fail(combination, row->status);
-      continue;
-    }
     if (row != earlier.end()) {
       static_cast<Samples&>(combination.row) = static_cast<const Samples&>(*row);
       static_cast<MeasuredCosts&>(combination.row) = static_cast<const MeasuredCosts&>(*row);

@@ -198,19 +198,6 @@ TEST_F(BenchScene, GoesOnWithTheRoundsThatAllCombinationsHave) {
   }
 }
 
-TEST_F(BenchScene, GoesOnWithAllRoundsAlthoughARowHasFailed) {
-  job_.earlier = run();
-  job_.earlier[2].samples_ms.resize(1);
-  job_.earlier[2].sample_steps.resize(1);
-  job_.earlier[2].status = "failed: it ended";
-  const auto rounds = static_cast<std::size_t>(job_.rounds++);
-  kept_.clear();
-  const std::vector<ResultRow> rows = run();
-  EXPECT_EQ(kept_.size(), 1U) << "only the last round is new";
-  EXPECT_EQ(rows[2].status, "failed: it ended");
-  EXPECT_EQ(rows[0].samples_ms.size(), rounds + 1);
-}
-
 TEST_F(BenchScene, StopsWithTheRoundsThatAreComplete) {
   run();
   const int asked_in_all = std::exchange(asked_, 0);

@@ -25,7 +25,7 @@ expect 2 'names traces after their scene, and "caf.xe9.h5" has a .\\., which rea
   bench --scene "$work/caf"$'\xe9'".json" --trace --out "$work/never"
 
 # Words that are no UTF-8 anywhere else.
-ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --format json --device $'\xff' --out "$work/f"$'\xfe'
+ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --format json --out "$work/f"$'\xfe'
 [ -s "$work/f"$'\xfe'/provenance.json ] || fail "there is no provenance in a folder of that name"
 expect 3 'there are' list backends --format json --device $'\xff'
 OMP_DISPLAY_AFFINITY=$'\xff' ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out "$work/g"
