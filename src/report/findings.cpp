@@ -112,9 +112,7 @@ std::vector<std::string> noise_seen(const Provenance& provenance) {
 }
 
 bool is_from_page(const ReportFolder& folder) {
-  return std::ranges::any_of(folder.rows, [](const ResultRow& row) {
-    return std::ranges::find(browser_backends, row.backend, &BrowserBackend::name) != browser_backends.end();
-  });
+  return std::ranges::any_of(folder.rows, is_browser_backend, &ResultRow::backend);
 }
 
 std::string_view when_noisy(const ReportFolder& folder) {

@@ -170,9 +170,7 @@ std::vector<std::string> families_of_backends(const PaperLegend& legend) {
     if (backend.configuration.empty() || backend.name.find(':') != std::string::npos ||
         backend.name == browser_baseline_name)
       continue;
-    const bool is_of_page =
-        std::ranges::find(browser_backends, backend.name, &BrowserBackend::name) != browser_backends.end();
-    std::vector<std::string>& list = is_of_page ? of_pages : families;
+    std::vector<std::string>& list = is_browser_backend(backend.name) ? of_pages : families;
     list.push_back(backend.name);
     if (is_for_gpus(backend.name, legend)) list.push_back(backend.name + on_the_cpu);
   }

@@ -34,8 +34,7 @@ ResultRow checked(const std::filesystem::path& file, const ResultRow& row, const
   };
   const Integrator* integrator = find_integrator(row.integrator);
   require(integrator != nullptr && !is_implicit(*integrator), "there is no such explicit integrator");
-  require(std::ranges::find(browser_backends, row.backend, &BrowserBackend::name) != browser_backends.end(),
-          "no page measures such a backend");
+  require(is_browser_backend(row.backend), "no page measures such a backend");
   require(row.nodes > 0 && row.springs_unique > 0 && row.dt_s > 0, "it has no nodes, springs or step");
   require(!row.verified || row.position_error, "it is verified without an error");
   // Beyond these, ratios and rates may not be finite.

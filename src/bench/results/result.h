@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -26,6 +27,10 @@ inline constexpr auto browser_backends = std::to_array<BrowserBackend>({
     {"wasm-threads", "multi-thread-cpu"},
     {"webgpu", "gpu"},
 });
+/// Whether the page measures a backend of this name.
+constexpr bool is_browser_backend(std::string_view name) {
+  return std::ranges::find(browser_backends, name, &BrowserBackend::name) != browser_backends.end();
+}
 /// What `serial` is to the others, in a browser.
 inline constexpr std::string_view browser_baseline_name = browser_backends[0].name;
 
