@@ -39,8 +39,9 @@ std::int64_t count_steps(const SimulationPlan& plan) {
 FrameGrid frame_grid(double frames_per_second, double dt_s) {
   const double steps_per_frame = 1 / (frames_per_second * dt_s);
   if (!(steps_per_frame >= 1))
-    throw UsageError("--fps {:.6g} is more than one frame per step of {:.6g} s; take --fps {:.6g} or less",
-                     frames_per_second, dt_s, dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s));
+    throw UsageError(
+        "{:.6g} frames per second are more than one per step of {:.6g} s; give --fps {:.6g} or less",
+        frames_per_second, dt_s, dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s));
   return {steps_per_frame};
 }
 

@@ -67,8 +67,9 @@ constexpr auto table = std::to_array<BackendInfo>({
 /// The names of the backends that have a feature, in words.
 std::string names_of(bool (*has)(const BackendInfo& row)) {
   std::vector<std::string_view> names;
-  for (const BackendInfo& row : table)
-    if (has(row)) names.push_back(row.name);
+  for (const std::span<const BackendInfo> rows : {backends(), garment_backends()})
+    for (const BackendInfo& row : rows)
+      if (has(row)) names.push_back(row.name);
   return listed(names);
 }
 

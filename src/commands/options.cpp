@@ -202,8 +202,9 @@ void require_free(const std::filesystem::path& file, std::string_view option, bo
                      printable(file.string(), 1000), option);
 }
 
-void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads,
-                       std::vector<std::string>* sets) {
+std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& options,
+                                        std::vector<int>* threads, std::vector<std::string>* sets) {
+  std::vector<Argument> of_backends;
   constexpr std::string_view several = "; each of several gets rows of its own";
   const std::string meaning =
       "Threads, and compute units of an OpenCL device that is a CPU (default: one per available CPU)";
@@ -212,34 +213,41 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vec
   else
     arguments.add_number("--threads N,...", *threads, meaning + std::string(several),
                          whole_numbers(1, most_threads));
-  arguments.add_number("--ranks N", options.ranks,
-                       "Processes of the backend mpi, of --threads threads each; mpi:N sets it for one row "
-                       "(default: as many as --threads, of one thread each)",
-                       whole_number(1, most_ranks));
-  arguments.add("--launcher COMMAND", options.launcher,
-                "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)");
-  arguments.add("--device N|NAME", options.device,
-                "OpenCL device: its number or a part of its name or platform (see mssim list devices)");
-  arguments.add_choice<DeviceMemory>(
+  of_backends.push_back(
+      arguments.add_number("--ranks N", options.ranks,
+                           "Processes of the backend mpi, of --threads threads each; mpi:N sets it for one "
+                           "row (default: as many as --threads, of one thread each)",
+                           whole_number(1, most_ranks)));
+  of_backends.push_back(
+      arguments.add("--launcher COMMAND", options.launcher,
+                    "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)"));
+  of_backends.push_back(
+      arguments.add("--device N|NAME", options.device,
+                    "OpenCL device: its number or a part of its name or platform (see mssim list devices)"));
+  of_backends.push_back(arguments.add_choice<DeviceMemory>(
       "--memory", options.memory,
       {{name_of(DeviceMemory::copy), DeviceMemory::copy},
        {name_of(DeviceMemory::shared), DeviceMemory::shared}},
       "How host and OpenCL device exchange data: shared (without copying if the device can) or copy "
-      "(default: shared)");
-  arguments.add_choice<Roots>(
+      "(default: shared)"));
+  of_backends.push_back(arguments.add_choice<Roots>(
       "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
       "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and a "
       "Newton step) or exact (bitwise identical on every processor with fused multiply-adds) (default: "
-      "fast)");
+      "fast)"));
   const std::string of_sets =
       "Instruction set of the vector code of openmp, gather-vectors and mpi (default: the best)";
-  (sets == nullptr ? arguments.add("--instruction-set NAME", options.instruction_set, of_sets)
-                   : arguments.add_list("--instruction-set NAME,...", *sets, of_sets + std::string(several)))
-      .offers([] {
-        std::vector<std::string> names;
-        for (const std::string_view set : instruction_sets()) names.emplace_back(instruction_set_name(set));
-        return names;
-      });
+  of_backends.push_back(
+      (sets == nullptr
+           ? arguments.add("--instruction-set NAME", options.instruction_set, of_sets)
+           : arguments.add_list("--instruction-set NAME,...", *sets, of_sets + std::string(several)))
+          .offers([] {
+            std::vector<std::string> names;
+            for (const std::string_view set : instruction_sets())
+              names.emplace_back(instruction_set_name(set));
+            return names;
+          }));
+  return of_backends;
 }
 
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
@@ -275,7 +283,7 @@ void declare_stepping(Arguments& arguments, RunOptions& options, const std::stri
   arguments.add_number("--fps N", options.fps, about_fps, positive_number());
   of_a_simulation(arguments.add_number("--dt SECONDS", options.dt_s, "Time step (default: the scene's)",
                                        positive_number()));
-  declare_execution(arguments, options.execution);
+  for (const Argument& argument : declare_execution(arguments, options.execution)) of_a_simulation(argument);
 }
 
 }  // namespace mssim

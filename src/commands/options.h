@@ -103,9 +103,11 @@ void require_free(const std::filesystem::path& file, std::string_view option, bo
 
 /// Declares --threads, --ranks, --launcher, --device, --memory, --roots and --instruction-set. If `threads`
 /// is given, --threads takes several numbers into it; if `sets` is given, --instruction-set takes several
-/// names into it. All must outlive the parsing.
-void declare_execution(Arguments& arguments, ExecutionOptions& options, std::vector<int>* threads = nullptr,
-                       std::vector<std::string>* sets = nullptr);
+/// names into it. All must outlive the parsing. Returns the options of backends: all but --threads, by which
+/// other work is divided, too.
+std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& options,
+                                        std::vector<int>* threads = nullptr,
+                                        std::vector<std::string>* sets = nullptr);
 
 /// Declares --backend-folder. `options` must outlive the parsing.
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options);

@@ -67,6 +67,7 @@ class ClothPiece final : public Piece {
   void step(int count) override { kernel_.step(*bands_, count); }
   RankCosts costs() const override { return messages_->costs(); }
   int threads() const override { return static_cast<int>(bands_->threads); }
+  int steps_per_pass() const override { return static_cast<int>(bands_->steps_per_pass); }
   std::string note() const override {
     return fmt::format("{}, {} an exchange", instruction_set_name(kernel_.instruction_set),
                        pluralize(bands_->steps_per_pass, "step"));

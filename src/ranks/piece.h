@@ -64,6 +64,8 @@ class Piece {
   virtual RankCosts costs() const { return {}; }
 
   virtual int threads() const = 0;
+  /// As Backend::steps_per_pass.
+  virtual int steps_per_pass() const { return 0; }
   /// How it steps, for readers of its times.
   virtual std::string note() const = 0;
 };

@@ -109,6 +109,7 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   library = library.substr(0, library.find(','));
   if (host_count > 1) requests.answer("device " + pluralize(host_count, "host"));
   requests.answer(fmt::format("threads {}", session.ranks() * piece.threads()));
+  if (piece.steps_per_pass() > 0) requests.answer(fmt::format("pass {}", piece.steps_per_pass()));
   requests.answer("precision single");
   requests.answer("tells costs");
   requests.answer(fmt::format(

@@ -212,7 +212,7 @@ Document environment_of(const ReportFolder& folder) {
   line("processor", cpu_name(machine));
   line("logical CPUs", std::to_string(machine.logical_cpus));
   line("memory", three_digits(static_cast<double>(machine.memory_bytes) / (1U << 30U)) + " GiB");
-  line("OpenCL devices", join(provenance.opencl_devices, "\n"));
+  line(is_from_page(folder) ? "WebGPU adapter" : "OpenCL devices", join(provenance.opencl_devices, "\n"));
   line("system", machine.operating_system);
   line("kernel", machine.kernel);
   line("compiler", provenance.build.compiler + ", " + provenance.build.build_type);

@@ -60,7 +60,7 @@ done
 mkdir never
 expect 2 '.--duration must give between one step and' run --scene jeans1k --duration 1e-9 --trace never/a.h5
 expect 2 '--losses cannot be used with a garment' run --scene jeans1k --losses --trace never/a.h5
-expect 2 'fps .* is more than one frame per step of .*; take --fps ' run --scene jeans1k --fps 1e5 --trace never/a.h5
+expect 2 'frames per second .* than one per step of .*; give --fps ' run --scene jeans1k --fps 1e5 --trace never/a.h5
 expect 4 'cannot write no/such/a.h5' run --scene jeans1k --trace no/such/a.h5
 expect 2 '"a.xdmf" is not a name of the form NAME.h5' run --scene jeans1k --trace never/a.xdmf
 [ -z "$(ls never)" ] || fail "left: $(ls never)"

@@ -111,7 +111,10 @@ ends 0 render t.h5 --size 80x60 --out linked/link.png
 for place in /dev/stdout /dev/fd/1 /proc/self/fd/1; do expect 4 "cannot write $place: .*choose another file name" render t.h5 --out "$place"; done
 cmp -s "$2/scenes/cloth2500.json" mine.json || fail "the scene is written over"
 expect 2 'a movie has 0.1 to 1000' render t.h5 --movie --fps 5000
-expect 2 '--backend' render t.h5 --backend serial
+for given in '--backend serial' '--ranks 2' '--launcher srun' '--device 0' '--memory copy' '--roots exact' '--instruction-set avx2'; do
+  # shellcheck disable=SC2086 # an option and its value
+  expect 2 "${given% *}.*--scene" render t.h5 $given
+done
 expect 2 'no scene is named' render --scene clth2500
 head -c 5000 t.h5 >cut.h5
 expect 2 'cut.h5' render cut.h5

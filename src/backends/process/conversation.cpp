@@ -35,7 +35,7 @@ bool is_readable(int descriptor) {
 /// The printable form of a line for a sentence.
 std::string in_quotes(std::string_view line) { return '"' + printable(line) + '"'; }
 
-constexpr int most_threads = 4096;
+constexpr int most_threads = 4096, most_steps_per_pass = 1000;
 
 /// A line's first word, and the rest.
 std::pair<std::string_view, std::string_view> split(std::string_view line) {
@@ -43,7 +43,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view line) {
   return {line.substr(0, space), space == std::string_view::npos ? "" : line.substr(space + 1)};
 }
 
-[[noreturn]] void refuse(const std::string& line, const std::string& asked, const char* expected) {
+[[noreturn]] void refuse(const std::string& line, const std::string& asked, std::string_view expected) {
   throw AnswerFailure(
       fmt::format("answered \"{}\" to \"{}\", where {} is expected", printable(line), asked, expected));
 }
@@ -53,10 +53,11 @@ void refuse_failed(const std::string& line, const std::string& asked) {
   if (word == "failed") throw AnswerFailure("failed at \"" + asked + "\": " + printable(text, longest_shown));
 }
 
-int thread_count(const std::string& line, std::string_view text) {
+/// The number in an answer to `prepare`, from 1 to `most`; `what` names the things that it counts.
+int count_of(std::string_view what, int most, const std::string& line, std::string_view text) {
   const std::optional<int> count = number_in<int>(text);
-  if (!count || *count < 1 || *count > most_threads)
-    refuse(line, "prepare", "a number of threads from 1 to 4096");
+  if (!count || *count < 1 || *count > most)
+    refuse(line, "prepare", fmt::format("a number of {} from 1 to {}", what, most));
   return *count;
 }
 
@@ -185,7 +186,9 @@ bool take_introduction(Introduction& introduction, const std::string& line) {
   if (word == "device" && !text.empty())
     introduction.device = shown;
   else if (word == "threads")
-    introduction.threads = thread_count(line, text);
+    introduction.threads = count_of("threads", most_threads, line, text);
+  else if (word == "pass")
+    introduction.steps_per_pass = count_of("steps", most_steps_per_pass, line, text);
   else if (word == "precision" && !text.empty())
     append_sentence(introduction.note, shown + " precision");
   else if (word == "note" && !text.empty())
@@ -195,9 +198,10 @@ bool take_introduction(Introduction& introduction, const std::string& line) {
   else if (line == "tells costs")
     introduction.tells_costs = true;
   else
-    refuse(line, "prepare",
-           "device, threads, precision, note, untimed, tells costs, ready 1, unsupported, unavailable or "
-           "failed");
+    refuse(
+        line, "prepare",
+        "device, threads, pass, precision, note, untimed, tells costs, ready 1, unsupported, unavailable or "
+        "failed");
   return false;
 }
 

@@ -163,6 +163,7 @@ class ProcessBackend final : public WindowBackend {
 
   std::string device() const override { return introduction_.device; }
   int threads() const override { return introduction_.threads; }
+  int steps_per_pass() const override { return introduction_.steps_per_pass; }
   bool runs_on_host() const override { return introduction_.device == "cpu"; }
   std::string note() const override { return introduction_.note; }
   std::string reason_not_to_time() const override { return introduction_.untimed; }

@@ -86,7 +86,7 @@ constexpr std::string_view how_to_read_paper_table =
     "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are the "
     "paper's numbers (2016), from the CPU and the mobile GPU of a Nexus 7 tablet; its Figure 5 shows ten "
     "threads. They are compared with its *CPU only*. **Measured** lines are ours, medians from the processor "
-    "and devices named above, compared with `serial`. ";
+    "and devices named above, compared with ";
 constexpr std::string_view how_springs_count = "Springs are counted as in the paper: ";
 /// For tables with such rows.
 constexpr std::string_view how_to_read_each =
@@ -158,13 +158,14 @@ class PaperTable {
   }
 
   Document page() const {
-    Document text{Heading{1, std::string(published_.info().title) + ", published and measured"},
-                  measured_on(rows_, provenance_),
-                  Paragraph{fmt::format("{}{}{}{} the unique ones, by inference from its numbers.",
-                                        how_to_read_paper_table, has_each() ? how_to_read_each : "",
-                                        how_springs_count, published_.info().springs_counted)},
-                  Paragraph{std::string(which_methods) + (has_frozen() ? "" : " (`--integrator all`)") +
-                            ", which the paper does not have, evaluate them once per step."}};
+    Document text{
+        Heading{1, std::string(published_.info().title) + ", published and measured"},
+        measured_on(rows_, provenance_),
+        Paragraph{fmt::format("{}`{}`. {}{}{} the unique ones, by inference from its numbers.",
+                              how_to_read_paper_table, baseline(), has_each() ? how_to_read_each : "",
+                              how_springs_count, published_.info().springs_counted)},
+        Paragraph{std::string(which_methods) + (has_frozen() ? "" : " (`--integrator all`)") +
+                  ", which the paper does not have, evaluate them once per step."}};
     for (const auto& integrator : legend_.integrators) {
       if (!has(integrator.name)) continue;
       const std::string evaluations = pluralize(integrator.force_evaluations, "force evaluation");
@@ -197,6 +198,12 @@ class PaperTable {
     return std::ranges::any_of(legend_.integrators, [&](const auto& integrator) {
       return integrator.name != integrator.paper_name && has(integrator.name);
     });
+  }
+
+  /// The backend that the measured times are compared with.
+  std::string_view baseline() const {
+    const auto row = std::ranges::find_if(rows_, is_baseline, &ResultRow::backend);
+    return row == rows_.end() ? baseline_name : std::string_view((*row)->backend);
   }
 
   /// The rows that are shown, in the order of the tables.

@@ -225,12 +225,13 @@ std::string complaint_about_cost(const std::string& line) {
 
 TEST(Answers, SayWhatAProgramIs) {
   Introduction introduction;
-  for (const char* line : {"device a chip", "threads 3", "precision single", "note first", "note second",
-                           "untimed too crowded", "tells costs"})
+  for (const char* line : {"device a chip", "threads 3", "pass 4", "precision single", "note first",
+                           "note second", "untimed too crowded", "tells costs"})
     EXPECT_FALSE(take_introduction(introduction, line)) << line;
   EXPECT_TRUE(take_introduction(introduction, "ready 1"));
   EXPECT_EQ(introduction.device, "a chip");
   EXPECT_EQ(introduction.threads, 3);
+  EXPECT_EQ(introduction.steps_per_pass, 4);
   EXPECT_EQ(introduction.note, "single precision; first; second");
   EXPECT_EQ(introduction.untimed, "too crowded");
   EXPECT_TRUE(introduction.tells_costs);
@@ -241,7 +242,8 @@ TEST(Answers, RefuseAProgramOrItsScene) {
   EXPECT_THROW(take_introduction(introduction, "unsupported red springs"), Unsupported);
   EXPECT_THROW(take_introduction(introduction, "unavailable no chip"), Unavailable);
   EXPECT_THROW(take_introduction(introduction, "failed no licence"), AnswerFailure);
-  for (const char* line : {"", "ready 2", "threads 0", "threads 5000", "tells", "tells jokes", "device"})
+  for (const char* line :
+       {"", "ready 2", "threads 0", "threads 5000", "pass 0", "pass 1001", "tells", "tells jokes", "device"})
     EXPECT_THROW(take_introduction(introduction, line), AnswerFailure) << line;
 }
 
