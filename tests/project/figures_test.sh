@@ -34,7 +34,7 @@ def span(values):
 
 
 # A folder's name, and the processor that it was measured on. The provenance of some says less.
-machines = {"zen4": "Zen 4", "zen5": "Zen 5", "granite-rapids": "Granite Rapids", "emerald-rapids-h100": "Emerald Rapids, H100"}
+machines = {"zen3": "Zen 3", "zen4": "Zen 4", "zen5": "Zen 5", "granite-rapids": "Granite Rapids", "emerald-rapids-h100": "Emerald Rapids, H100"}
 gpu = "emerald-rapids-h100"
 for folder in [folder for suite in suites for folder in glob.glob(f"results/{suite}/*/")]:
     if not os.path.basename(folder[:-1]).startswith(tuple(machines)):
@@ -218,7 +218,7 @@ readme.append(f"Measured on {measured['model']} ({measured['generation']}), {whe
 # docs/papers.md
 with open("results/races/granite-rapids/races.md") as file:
     papers.append(re.search(r"taken to add (the forces of \d+ springs)", file.read()).group(1))
-papers.append(f"three machines of {cpus(chart)} CPUs without a GPU")
+papers.append(f"{['no', 'one', 'two', 'three', 'four', 'five'][len(without_gpu)]} machines of {cpus(chart)} CPUs without a GPU")
 minutes = {}
 for suite in suites:
     with open(f"{work}/{suite}") as file:
