@@ -135,12 +135,8 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
 int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
   if (job.garment) return max_sample_steps;  // its ends are not compared
   if (job.windowed) return verification_steps;
-  int checkable =
+  const int checkable =
       checkable_steps(integrator, {job.system->nodes(), job.system->springs.size(), false, false});
-  // The error of xpbd's small steps in single precision grows faster than a random walk: with openmp, samples
-  // of torus-small and sphere-small are beyond the check's tolerance from 660 steps on.
-  constexpr int most_of_constraints = 300;
-  if (integrator.solver == Solver::constraints) checkable = std::min(checkable, most_of_constraints);
   return comparable_steps(*job.system, integrator, job.dt_s, checkable);
 }
 

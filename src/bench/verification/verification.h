@@ -91,7 +91,8 @@ int position_roundings(const Integrator& integrator);
 
 /// Steps from the start until a rounding error may have doubled, at least 1 and at most `most`; beyond them a
 /// tolerance for roundings is meaningless. Derived from the factors by which the integrator multiplies the
-/// system's modes (stability.h), which lie between those of its spectrum. `most` if it is stable.
+/// system's modes (stability.h), which lie between those of its spectrum. `most` if it is stable. With xpbd
+/// fewer, if its roundings of velocities, which do not behave like a random walk, may exceed the tolerance.
 int comparable_steps(const System& system, const Integrator& integrator, double dt_s, int most);
 
 /// Largest position error, in mean rest lengths, that single precision may cause in `steps` steps.
