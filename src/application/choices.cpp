@@ -373,13 +373,22 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
-const BackendInfo& BackendChoice::add_file(const fs::path& file) { return add(read_description(file)); }
+const BackendInfo& BackendChoice::add_file(const fs::path& file) {
+  BackendProgram program = read_description(file);
+  if (program.name.find_first_of(":,") != std::string::npos)
+    throw UsageError(
+        "{}: in the name of a backend \":\" and \",\" have a meaning (--backend a:2,b): rename it",
+        shown(file));
+  return add(std::move(program));
+}
 
 const BackendInfo& BackendChoice::add(BackendProgram program) {
   if (escaped(program.name) != program.name)
     throw UsageError("a backend cannot be called {}: its name has characters that cannot be shown; rename it",
                      escaped(program.name));
-  if (std::ranges::find(known_, program.name, &BackendInfo::name) != known_.end())
+  // Its name may be a row's, openmp:1.
+  const std::string before_colon = program.name.substr(0, program.name.find(':'));
+  if (std::ranges::find(known_, before_colon, &BackendInfo::name) != known_.end())
     throw UsageError("{} has the same name as mssim's backend {}; rename it", shown(program.program),
                      program.name);
   for (const std::unique_ptr<Row>& row : rows_) {

@@ -200,14 +200,16 @@ class BodiesPiece final : public Piece {
   void step(int count) override { whole_ ? whole_->step(count) : kernel_.step(*bodies_, count); }
   RankCosts costs() const override { return messages_ ? messages_->costs() : RankCosts{}; }
   int threads() const override { return whole_ ? whole_->threads() : static_cast<int>(bodies_->threads); }
+  std::string device() const override {
+    return whole_ ? whole_->device() : std::string("cpu ") + kernel_.instruction_set;
+  }
   std::string note() const override {
     const auto divided = static_cast<std::size_t>(
         std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
     const std::size_t whole = shares_.size() - divided;
-    const std::string_view vectors = instruction_set_name(kernel_.instruction_set);
-    if (divided == 0) return fmt::format("{}, whole bodies", vectors);
-    if (whole == 0) return fmt::format("{}, {} divided", vectors, bodies_in_words(divided));
-    return fmt::format("{}, {} whole, {} divided", vectors, bodies_in_words(whole), divided);
+    if (divided == 0) return "whole bodies";
+    if (whole == 0) return bodies_in_words(divided) + " divided";
+    return fmt::format("{} whole, {} divided", bodies_in_words(whole), divided);
   }
 
  private:

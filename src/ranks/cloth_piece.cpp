@@ -68,10 +68,8 @@ class ClothPiece final : public Piece {
   RankCosts costs() const override { return messages_->costs(); }
   int threads() const override { return static_cast<int>(bands_->threads); }
   int steps_per_pass() const override { return static_cast<int>(bands_->steps_per_pass); }
-  std::string note() const override {
-    return fmt::format("{}, {} an exchange", instruction_set_name(kernel_.instruction_set),
-                       pluralize(bands_->steps_per_pass, "step"));
-  }
+  std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
+  std::string note() const override { return pluralize(bands_->steps_per_pass, "step") + " an exchange"; }
 
  private:
   /// Makes bands and messages, at the scene's start state, with `steps` steps between two messages.

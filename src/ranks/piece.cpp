@@ -52,9 +52,8 @@ class CopiesPiece final : public Piece {
   }
   void step(int count) override { backend_->step(count); }
   int threads() const override { return backend_->threads(); }
-  std::string note() const override {
-    return device_name(backend_->device()) + ", a copy of the scene per rank";
-  }
+  std::string device() const override { return backend_->device(); }
+  std::string note() const override { return "a copy of the scene per rank"; }
 
  private:
   const Session& session_;

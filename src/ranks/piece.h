@@ -66,6 +66,8 @@ class Piece {
   virtual int threads() const = 0;
   /// As Backend::steps_per_pass.
   virtual int steps_per_pass() const { return 0; }
+  /// As Backend::device.
+  virtual std::string device() const = 0;
   /// How it steps, for readers of its times.
   virtual std::string note() const = 0;
 };

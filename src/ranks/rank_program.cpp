@@ -107,7 +107,8 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   MPI_Get_library_version(version.data(), &length);
   std::string library(version.data(), static_cast<std::size_t>(length));
   library = library.substr(0, library.find(','));
-  if (host_count > 1) requests.answer("device " + pluralize(host_count, "host"));
+  requests.answer("device " + (host_count > 1 ? pluralize(host_count, "host") + " of " : "") +
+                  piece.device());
   requests.answer(fmt::format("threads {}", session.ranks() * piece.threads()));
   if (piece.steps_per_pass() > 0) requests.answer(fmt::format("pass {}", piece.steps_per_pass()));
   requests.answer("precision single");

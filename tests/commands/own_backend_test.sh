@@ -138,6 +138,12 @@ ends 0 bench --scene ./small.json --backend beside --integrator semi-euler --rou
 expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder backends
 expect 2 'there are two backends called here' "${bench[@]}" --backend here --backend-folder backends,twin
 expect 2 "has the same name as mssim's backend serial" "${bench[@]}" --backend serial --backend-folder twin
+mkdir -p odd
+for name in 'openmp:1' 'serial:double' 'x,y'; do
+  printf '{"command": ["../spring_list"]}' >"odd/$name.json"
+  expect 2 "$name.json: in the name of a backend" list backends --backend-folder odd
+  rm "odd/$name.json"
+done
 expect 2 '/comand is not a known key' "${bench[@]}" --backend ./wrong.json
 expect 3 'there is no program ./nothing' "${bench[@]}" --backend ./nothing
 expect 3 'wrong.txt .*chmod +x' "${bench[@]}" --backend ./wrong.txt

@@ -127,7 +127,7 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
            "is \"windows\", which needs \"processes\": \"ranks\": add that, or leave it out");
   find_file(program, file);
   if (!program.missing.empty() && !description.install.empty())
-    program.missing += "; " + printable(description.install);
+    program.missing += "; " + printable(description.install, 300);
   return program;
 }
 

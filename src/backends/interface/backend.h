@@ -25,13 +25,13 @@ inline Surroundings surroundings_of(const System& system) {
           static_cast<float>(system.floor.friction)};
 }
 
-/// Costs of communication between processes that step together.
+/// Costs of communication between processes that step together; none of those that they do not tell.
 struct Communication {
-  double waiting = 0;  ///< fraction of the step time that a process waits for others; mean of all
+  std::optional<double> waiting;  ///< fraction of the step time that a process waits for others; mean of all
   /// Fraction of the step time for packing, copying if the CPU does it, and unpacking.
-  double packing = 0;
-  double bytes = 0;     ///< sent per step by the process that sends most
-  double messages = 0;  ///< sent per step by that process
+  std::optional<double> packing;
+  std::optional<double> bytes;     ///< sent per step by the process that sends most
+  std::optional<double> messages;  ///< sent per step by that process
   /// Half of the round-trip time of a message of a few bytes to a neighbour, s, over the slowest link;
   /// nothing if there is no neighbour.
   std::optional<double> latency_s;

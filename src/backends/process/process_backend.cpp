@@ -27,11 +27,14 @@ namespace {
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
                                         const std::filesystem::path& memory, const Integrator& integrator,
                                         const ExecutionOptions& options) {
-  const char* path = std::getenv("PYTHONPATH");
+  const char* inherited = std::getenv("PYTHONPATH");
+  std::string path = inherited == nullptr ? "" : inherited;
+  constexpr std::string_view own_path = "PYTHONPATH=";
+  for (const std::string& given : program.environment)
+    if (given.starts_with(own_path)) path = given.substr(own_path.size());
   const std::string count = std::to_string(processors_of(program, options));
-  std::vector<std::string> all{
-      "MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count, "OMP_NUM_THREADS=" + count,
-      "PYTHONPATH=" + (data_folder() / "python").string() + (path && *path ? std::string(":") + path : "")};
+  std::vector<std::string> all{"MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count,
+                               "OMP_NUM_THREADS=" + count};
   if (program.in_ranks) {
     all.push_back(fmt::format("MSSIM_RANKS={}", ranks_of(program, options).ranks));
     all.push_back("MSSIM_LAUNCHER=" + options.launcher);
@@ -43,6 +46,9 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
     if (!options.instruction_set.empty()) all.push_back("MSSIM_INSTRUCTION_SET=" + options.instruction_set);
   }
   all.insert(all.end(), program.environment.begin(), program.environment.end());
+  // After the description's: mssim's module comes before its folders.
+  all.push_back(std::string(own_path) + (data_folder() / "python").string() + (path.empty() ? "" : ":") +
+                path);
   return all;
 }
 
@@ -164,7 +170,9 @@ class ProcessBackend final : public WindowBackend {
   std::string device() const override { return introduction_.device; }
   int threads() const override { return introduction_.threads; }
   int steps_per_pass() const override { return introduction_.steps_per_pass; }
-  bool runs_on_host() const override { return introduction_.device == "cpu"; }
+  bool runs_on_host() const override {
+    return introduction_.device == "cpu" || introduction_.device.starts_with("cpu ");
+  }
   std::string note() const override { return introduction_.note; }
   std::string reason_not_to_time() const override { return introduction_.untimed; }
   std::string reason_for_excess() const override { return "the program takes them"; }

@@ -363,20 +363,19 @@ void require_prompt_steps(Combination& combination) {
 void summarise_costs(const Combination& combination, ResultRow& row) {
   if (!combination.processors.empty()) row.processors_used = median(combination.processors);
   if (!combination.joules.empty()) row.joules_per_step = median(combination.joules);
-  const std::vector<Communication>& samples = combination.communication;
-  if (samples.empty()) return;
-  const auto median_of = [&](const auto& cost) {
+  const auto summarise = [&](std::optional<double> Communication::*cost, std::optional<double>& column,
+                             double unit) {
     std::vector<double> values;
-    for (const Communication& sample : samples) values.push_back(cost(sample));
-    return median(values);
+    for (const Communication& sample : combination.communication)
+      if (sample.*cost) values.push_back(*(sample.*cost));
+    if (!values.empty()) column = unit * median(values);
   };
-  row.waiting_share = median_of([](const Communication& sample) { return sample.waiting; });
-  row.packing_share = median_of([](const Communication& sample) { return sample.packing; });
-  row.bytes_per_step = median_of([](const Communication& sample) { return sample.bytes; });
-  row.messages_per_step = median_of([](const Communication& sample) { return sample.messages; });
-  const Communication& last = samples.back();
-  if (last.latency_s) row.latency_us = 1e6 * *last.latency_s;
-  if (last.bytes_per_second) row.link_gigabytes_per_second = 1e-9 * *last.bytes_per_second;
+  summarise(&Communication::waiting, row.waiting_share, 1);
+  summarise(&Communication::packing, row.packing_share, 1);
+  summarise(&Communication::bytes, row.bytes_per_step, 1);
+  summarise(&Communication::messages, row.messages_per_step, 1);
+  summarise(&Communication::latency_s, row.latency_us, 1e6);
+  summarise(&Communication::bytes_per_second, row.link_gigabytes_per_second, 1e-9);
 }
 
 }  // namespace mssim

@@ -138,7 +138,7 @@ struct Method {
 
 /// Description of the program for mssim.
 struct About {
-  std::string device = "cpu";        ///< device it runs on; any other value disables the roofline comparison
+  std::string device = "cpu";        ///< device it runs on; unless it begins with cpu, no roofline comparison
   std::string precision = "double";  ///< "single", "double", ...
   std::string note;                  ///< for readers of its times: version, settings
   int threads = 0;                   ///< CPUs that it uses; 0: the number requested
@@ -486,8 +486,8 @@ inline void hold_conversation(Lines& lines, const Prepare& prepare) {
   const std::string outcome = outcome_of([&] {
     simulation = std::make_unique<Simulation>(lines, prepare);
     const About& about = simulation->backend->about;
-    lines.tell("device " + one_line(about.device));
-    lines.tell("precision " + one_line(about.precision));
+    if (!about.device.empty()) lines.tell("device " + one_line(about.device));
+    if (!about.precision.empty()) lines.tell("precision " + one_line(about.precision));
     if (about.threads > 0) lines.tell("threads " + std::to_string(about.threads));
     if (!about.note.empty()) lines.tell("note " + one_line(about.note));
     return ready;

@@ -128,13 +128,13 @@ class Method:
 def say(*, device=None, threads=None, precision=None, note=None):
     """Tells mssim more about the program. `prepare` may call it; the last value counts.
 
-    device      device it runs on (default: cpu; any other value disables the roofline comparison)
+    device      device it runs on (default: cpu; a value that does not begin with cpu disables the roofline comparison)
     threads     CPUs that it uses (default: the number requested)
     precision   "single", "double", ...
     note        for readers of its times: version, settings
     """
     given = {"device": device, "threads": threads, "precision": precision, "note": note}
-    _said.update((field, value) for field, value in given.items() if value is not None)
+    _said.update((field, value) for field, value in given.items() if value not in (None, ""))
 
 
 def serve(prepare, *, device=None, threads=None, precision=None, note=None):

@@ -70,6 +70,9 @@ TEST_F(BackendDescriptionTest, SaysWhatIsMissing) {
               HasSubstr("there is no file ./no-such-file next to "));
   EXPECT_EQ(parse(R"({"command": ["no-such-program"], "install": "install it"})").missing,
             "there is no program no-such-program in PATH; install it");
+  const std::string long_advice(180, 'x');
+  EXPECT_TRUE(parse(R"({"command": ["no-such-program"], "install": ")" + long_advice + "\"}")
+                  .missing.ends_with("; " + long_advice));
 }
 
 TEST_F(BackendDescriptionTest, RefusesWhatItDoesNotKnow) {

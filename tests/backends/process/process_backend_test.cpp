@@ -58,7 +58,8 @@ TEST(ProcessBackend, SaysWhatProcessesSpendOnEachOtherWhereTheProgramTells) {
   EXPECT_EQ(costs->waiting, 0.25);
   EXPECT_EQ(costs->bytes, 96);
   EXPECT_EQ(costs->messages, 2);
-  EXPECT_EQ(costs->latency_s, std::nullopt);
+  for (const auto& untold : {costs->packing, costs->latency_s, costs->bytes_per_second})
+    EXPECT_EQ(untold, std::nullopt);
   backend->step(1);
   EXPECT_TRUE(backend->communication());
   const auto other = make(excessive, system);
