@@ -153,6 +153,11 @@ SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::siz
                                .stop = [&] { return stop.requested(); }});
 }
 
+std::string sentence_of(const SceneGuide& guide, const GuidedMethod& method) {
+  return fmt::format("{}, {}, {}: {}", guide.scene, method.backend->name, method.integrator->name,
+                     method.status);
+}
+
 /// Scenes for which the time was too short, and what programs have failed with. `scenes`: how many share the
 /// time.
 std::vector<std::string> failures(const std::vector<SceneGuide>& guides, std::size_t scenes) {
@@ -164,10 +169,30 @@ std::vector<std::string> failures(const std::vector<SceneGuide>& guides, std::si
                       "more",
                       guide.scene, decimal(*needed_s * static_cast<double>(scenes))));
     for (const GuidedMethod& method : guide.methods)
-      if (method.status.starts_with("failed"))
-        sentences.push_back(fmt::format("{}, {}, {}: {}", guide.scene, method.backend->name,
-                                        method.integrator->name, method.status));
+      if (method.status.starts_with("failed")) sentences.push_back(sentence_of(guide, method));
   }
+  return sentences;
+}
+
+/// Methods whose backend or integrator was asked for by name, and could run on a scene with none.
+std::vector<std::string> missed(const std::vector<SceneGuide>& guides, const GuideOptions& options) {
+  const auto ran = [](const GuidedMethod& method) {
+    return !method.status.starts_with("unavailable") && !method.status.starts_with("unsupported");
+  };
+  const bool names_integrators =
+      !options.integrators.empty() && options.integrators != std::vector<std::string>{"all"};
+  std::vector<std::string> sentences;
+  for (const SceneGuide& guide : guides)
+    for (const GuidedMethod& method : guide.methods) {
+      const auto nothing_ran = [&](auto GuidedMethod::*member) {
+        return std::ranges::none_of(guide.methods, [&](const GuidedMethod& other) {
+          return other.*member == method.*member && ran(other);
+        });
+      };
+      if ((!options.backends.empty() && nothing_ran(&GuidedMethod::backend)) ||
+          (names_integrators && nothing_ran(&GuidedMethod::integrator)))
+        sentences.push_back(sentence_of(guide, method));
+    }
   return sentences;
 }
 
@@ -239,9 +264,13 @@ int run_guide(const GuideOptions& options) {
   if (folder && !written)
     std::cerr << "mssim: nothing was measured yet; " << escaped(options.folder) << " has no results\n";
   stop.throw_if_requested();
-  const std::vector<std::string> failed = failures(guides, plan.scenes.size());
-  tell_first(failed);
-  return failed.empty() ? exit_ok : exit_not_verified;
+  if (const std::vector<std::string> failed = failures(guides, plan.scenes.size()); !failed.empty()) {
+    tell_first(failed);
+    return exit_not_verified;
+  }
+  const std::vector<std::string> unavailable = missed(guides, options);
+  tell_first(unavailable);
+  return unavailable.empty() ? exit_ok : exit_unavailable;
 }
 
 }  // namespace mssim

@@ -14,6 +14,7 @@ struct SceneSize {
   std::uint64_t springs = 0;  ///< unique ones
   bool grid = false;          ///< a cloth; otherwise bodies or a garment
   bool garment = false;
+  int frame_steps = 0;  ///< of a frame, if single frames are timed
 };
 
 /// Largest number of references that bench_scene runs at the same time.

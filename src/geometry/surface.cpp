@@ -251,8 +251,14 @@ void measure(const Surface& surface, Opening& opening) {
   }
   // Two numbers for one location make edges of length zero.
   opening.centre = total > 0 ? 1 / total * sum : surface.points[opening.points.front()];
-  for (const std::uint32_t point : opening.points)
-    opening.size = std::max(opening.size, 2 * length(surface.points[point] - opening.centre));
+  const std::vector<std::uint32_t>& points = opening.points;
+  constexpr std::size_t most_pairwise = 3000;  // beyond: twice the distance from the centre, which is no less
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points.size() > most_pairwise)
+      opening.size = std::max(opening.size, 2 * length(surface.points[points[i]] - opening.centre));
+    else
+      for (std::size_t j = 0; j < i; ++j)
+        opening.size = std::max(opening.size, length(surface.points[points[i]] - surface.points[points[j]]));
 }
 
 void fill(Surface& surface, const Opening& opening) {
@@ -301,7 +307,10 @@ void span(Surface& surface, Opening opening, Edges& edges) {
 }
 
 [[noreturn]] void refuse(const Opening& opening, const std::string& problem) {
-  throw InputError("the opening of {} edges around {}{}", opening.edges(), place(opening.centre), problem);
+  const auto millimetres = [](double metres) { return std::round(metres * 1000) / 1000 + 0.0; };  // never -0
+  const Vec3d& centre = opening.centre;
+  throw InputError("the opening of {} edges around ({}, {}, {}){}", opening.edges(), millimetres(centre.x),
+                   millimetres(centre.y), millimetres(centre.z), problem);
 }
 
 }  // namespace
@@ -416,7 +425,7 @@ std::vector<Opening> close_openings(Surface& surface, double largest) {
   std::vector<Opening> openings = openings_of(surface);
   for (const Opening& opening : openings) {
     if (!(opening.size <= largest))
-      refuse(opening, " is " + shown(opening.size) + " m across, and at most " + shown(largest) +
+      refuse(opening, fmt::format(" is {:.3g} m across, and at most ", opening.size) + shown(largest) +
                           " m are closed; close it where the surface was made");
     if (!opening.is_ring)
       refuse(opening,

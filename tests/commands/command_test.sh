@@ -27,6 +27,12 @@ expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
 ends 0 bench --suite table1 --dry-run --out "$work/never"
 [ "$(grep -c '^cloth' "$work/out")" -eq 6 ] || fail "--dry-run does not name the six cloths"
 says '^about [0-9]* s in all$'
+# 300 frames of 333 steps take longer than the samples.
+one_row=(bench --scene cloth2500 --backend serial --integrator rk4 --rounds 1 --dry-run)
+ends 0 "${one_row[@]}"
+without=$(sed -n 's/^about \([0-9]*\) s in all$/\1/p' "$work/out")
+ends 0 "${one_row[@]}" --fps 60
+(($(sed -n 's/^about \([0-9]*\) s in all$/\1/p' "$work/out") > without + 10)) || fail "--dry-run with --fps: $(cat "$work/out")"
 ends 0 bench --suite table2 --dry-run
 [ ! -e "$work/never" ] || fail "--dry-run has made a folder"
 expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite table1 --time-budget 5

@@ -51,7 +51,9 @@ ends 1 guide --scene cloth40k --backend serial --integrator newton-euler --threa
 grep -q '^mssim: cloth40k: nothing is recommended.*--time-budget' "$work/err" || fail "stderr says: $(cat "$work/err")"
 grep -q '^Nothing is recommended: 1 s ' "$work/out" || fail "a guide without time recommends $(cat "$work/out")"
 
-ends 0 guide --scene "$work/tiny.json" --backend serial,threads-mutex --integrator newton-euler --threads 1 --horizon 0.01 --error 1e-2
+# As with bench, it is no success if nothing could run on a backend that was named.
+ends 3 guide --scene "$work/tiny.json" --backend serial,threads-mutex --integrator newton-euler --threads 1 --horizon 0.01 --error 1e-2
+grep -q '^mssim: tiny, threads-mutex, newton-euler: unsupported: ' "$work/err" || fail "stderr says: $(cat "$work/err")"
 says '^Not measured, because the backend cannot run them here: newton-euler on threads-mutex\.'
 
 # Stopped before there is a point it replaces nothing; what replaces it leaves none of its tables.

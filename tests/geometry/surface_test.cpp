@@ -280,6 +280,8 @@ TEST(Openings, TrianglesThatDisagreeMakeNoRing) {
 TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {
   Surface triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   EXPECT_EQ(close_openings(triangle, 2).size(), 1U);
+  const Surface three_four_five{{{0, 0, 0}, {3, 0, 0}, {0, 4, 0}}, {{0, 1, 2}}};
+  EXPECT_DOUBLE_EQ(openings_of(three_four_five).front().size, 5);
   EXPECT_THAT(input_error_of([&] { validate_surface(triangle, "it"); }), HasSubstr("volume"));
   Surface point{{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
   EXPECT_THAT(close_openings(point, 1), IsEmpty());

@@ -161,11 +161,11 @@ for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies
 without_gpu = [machine for machine in machines if machine != gpu]
 assert {cpus(f"results/table1/{machine}") for machine in without_gpu} == {2}
 readme.append(f"Of {len(claims)} claims in both papers, {len(testable)} can be decided by a ratio of times.")
-readme.append("Each machine's rows decide some of these. Held without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
+readme.append("Each machine's rows test some of these. Held, of those tested, without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
 readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
 slower = [machine for machine in machines if outcome(locks, machine)["outcome"] == "not held"]
-readme.append(f"made at least one cloth slower than one thread does, on {len(slower)} of {len(machines)} machines")
+readme.append(f"On {len(slower)} of {len(machines)} machines, threads that share a spring list and a lock took longer than one thread on at least one cloth")
 readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`, a plain spring list (Zen 4, as in the chart)")
 shares = [1 / float(row["speedup_vs_serial"]) for threads in ("1-thread", "2-threads")
           for row in rows(f"results/peers/zen4/{threads}/timings.csv") if row["backend"] == "cpp-list" and row["status"] == "ok"]
@@ -173,7 +173,7 @@ readme.append(f"The same list with `-O3 -march=native` takes {span(shares)} of t
 on_gpu = [row for folder in glob.glob(f"results/table1/{gpu}*") for row in rows(f"{folder}/timings.csv")]
 largest = next(row for row in on_gpu if row["scene"] == "cloth350k" and row["backend"] == "opencl" and row["integrator"] == "semi-euler")
 readme.append(f"On the H100 a step of {int(largest['nodes']):,} nodes takes {digits(float(largest['ms_per_step']))} ms, "
-              f"{digits(float(largest['speedup_vs_serial']))} times as fast as one core beside it.")
+              f"{digits(float(largest['speedup_vs_serial']))} times as fast as on one CPU core of that machine.")
 
 
 def gpu_wins(nodes):
@@ -204,7 +204,7 @@ def best(file, column, wanted):
 
 fastest = best("guide.csv", "ms_per_step", lambda row: row["status"] == "ok")
 cheapest = best("guide-errors.csv", "wall_s_per_s", lambda row: row["position_error"] == "0.001")
-readme.append("Of " + "`{}`, `{}` and `{}`".format(*named) + ", the one with the fastest step is the cheapest at equal error on "
+readme.append("Of " + "`{}`, `{}` and `{}`".format(*named) + ", the one with the fastest step costs least at equal error on "
               f"{sum(cheapest[scene] == fastest[scene] for scene in cheapest)} of {len(cheapest)} scenes (Zen 4).")
 readme.append(f"On Zen 4, {when('results/guide/zen4')}, it says:")
 with open("results/guide/zen4/guide.md") as file:

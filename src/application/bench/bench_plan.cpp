@@ -10,6 +10,7 @@
 #include "application/bench/bench_results.h"
 #include "application/bench/suites.h"
 #include "application/outputs.h"
+#include "bench/job/job.h"
 #include "bench/windows/windows.h"
 #include "integrators/stability.h"
 #include "output/tables/suite_tables.h"
@@ -46,7 +47,8 @@ std::uint64_t window_memory(const BenchSettings& settings, const GridWindow& win
 /// memory than there is: nobody should wait for a scene only to see the program killed.
 PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
   const SceneCounts counts = scene.parts.counts;
-  const SceneSize size = size_of(scene.spec, counts);
+  SceneSize size = size_of(scene.spec, counts);
+  if (settings.fps && scene.spec.dt_s) size.frame_steps = steps_of_frame(*settings.fps, *scene.spec.dt_s);
   std::uint64_t memory_bytes = bench_memory_needed(settings, size);
   const bool can = size.grid && std::ranges::all_of(settings.backends, [](const BackendInfo* backend) {
                      return has_windows(*backend);

@@ -234,7 +234,7 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"cycles_per_step", "", "processor cycles in user code of mssim's threads, in a sample that is not timed",
      &ResultRow::cycles_per_step},
     {"instructions_per_step", "", "instructions there", &ResultRow::instructions_per_step},
-    {"cache_misses_per_step", "", "misses there of the cache that the processor's maker chose",
+    {"cache_misses_per_step", "", "cache misses there; which cache it is depends on the processor",
      &ResultRow::cache_misses_per_step},
 });
 

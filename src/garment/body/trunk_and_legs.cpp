@@ -300,14 +300,17 @@ TrunkAndLegs trunk_and_legs(const Surface& surface) {
 
   keep_bulges(levels);
   TrunkAndLegs found;
-  for (std::size_t i = 0; i < levels.size(); ++i)
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    bool cut_from_kept = false;  // the part that others were cut off precedes them (parted)
     for (const Group& group : levels[i].groups) {
+      if (!group.by_neck) cut_from_kept = group.kept;
       if (group.kept) continue;
       include(found.left_out, levels[i].y);
-      if (group.by_neck) include(found.touched, levels[i].y);
+      if (group.by_neck && cut_from_kept) include(found.touched, levels[i].y);
       if (i > 0 && !any_overlaps(levels[i - 1], false, group) && any_overlaps(levels[i - 1], true, group))
         include(found.touched, levels[i - 1].y);
     }
+  }
   if (!found.left_out) {
     found.surface = surface;
     return found;

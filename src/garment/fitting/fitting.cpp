@@ -234,8 +234,11 @@ constexpr auto numbers = std::to_array<FitNumber>({
      millimetres,
      &FitBounds::upper_edge_shift,
      "the distance of the upper edge from its place in the pattern",
-     {"the garment was pushed up", "a higher waist (waist_height_m) or more waist_ease_m"},
-     {"the garment slid down", "a lower waist (waist_height_m), less waist_ease_m or more friction"}},
+     {"the garment was pushed up",
+      "a higher waist or more ease there (of jeans: waist_height_m, waist_ease_m)"},
+     {"the garment slid down",
+      "a lower waist or less ease there (of jeans: waist_height_m, waist_ease_m), more friction, or a longer "
+      "step"}},
     {"crotch_rise_mm",
      &Fit::meeting_rise,
      millimetres,

@@ -228,8 +228,10 @@ TEST(TrunkAndLegs, OfABodyWithoutOtherPartsAreTheBodyItself) {
 TEST(TrunkAndLegs, AreWithoutWhatStandsBesideTheBodyOrHangsFromIt) {
   const Surface person = without_arms();
   const BodyProfile expected(person);
-  // A post, a plait down the back, and fingers below a hand that hangs from the shoulder.
+  // A post, a board on the other side, a plait down the back, and fingers below a hand that hangs from the
+  // shoulder.
   Surface body = both(person, block({0.5, 0, -0.05}, {0.6, 1.5, 0.05}));
+  body = both(body, block({-0.7, 0.5, -0.2}, {-0.6, 0.9, 0.2}));
   body = both(body, block({-0.02, 0.8, -0.19}, {0.02, 1.55, -0.16}));
   body = both(body, block({-0.02, 1.5, -0.19}, {0.02, 1.55, -0.02}));
   body = both(body, block({-0.30, 0.74, -0.04}, {-0.25, 1.36, 0.04}));
