@@ -63,6 +63,16 @@ bool is_path(const std::string& name) { return name.find('/') != std::string::np
 
 std::string shown(const fs::path& path) { return escaped(path.string()); }
 
+/// Throws UsageError for a name that --backend could not tell from others, and what read_description throws.
+BackendProgram described_by(const fs::path& file) {
+  BackendProgram program = read_description(file);
+  if (program.name.find_first_of(":,") != std::string::npos)
+    throw UsageError(
+        "{}: in the name of a backend \":\" and \",\" have a meaning (--backend a:2,b): rename it",
+        shown(file));
+  return program;
+}
+
 /// The program at a path from the command line.
 BackendProgram program_at(const std::string& path) {
   if (!is_file(path))
@@ -251,7 +261,7 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   }
   if (row && row->role == BackendRole::baseline && how == double_word) return &add_variant(*row, how);
   if (row && row->has_vectors && set) return &add_variant(*row, instruction_set_name(*set));
-  BackendProgram program = file ? read_description(*file) : BackendProgram{};
+  BackendProgram program = file ? described_by(*file) : BackendProgram{};
   if (row ? !row->makes_threads && !row->uses_device : !program.in_ranks)
     throw UsageError("{} has a number of ranks or threads, which {} does not take: leave \":{}\" out",
                      printable(name), its_name, printable(how));
@@ -373,14 +383,7 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
-const BackendInfo& BackendChoice::add_file(const fs::path& file) {
-  BackendProgram program = read_description(file);
-  if (program.name.find_first_of(":,") != std::string::npos)
-    throw UsageError(
-        "{}: in the name of a backend \":\" and \",\" have a meaning (--backend a:2,b): rename it",
-        shown(file));
-  return add(std::move(program));
-}
+const BackendInfo& BackendChoice::add_file(const fs::path& file) { return add(described_by(file)); }
 
 const BackendInfo& BackendChoice::add(BackendProgram program) {
   if (escaped(program.name) != program.name)

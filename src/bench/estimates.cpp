@@ -135,7 +135,8 @@ ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size)
       time.preparation += verification * step + samples_to_calibrate * sample;
       if (size.garment && !settings.verified) time.preparation += dressing_steps(nodes) * step;
       time.round += sample;
-      if (size.frame_steps <= max_sample_steps) time.check += timed_frames * size.frame_steps * step;
+      if (size.frame_steps <= (size.garment ? max_sample_steps : checkable))
+        time.check += timed_frames * size.frame_steps * step;
       if (!size.garment && !settings.verified)
         checked = std::max(checked, std::min<double>(settings.sample_seconds / step, checkable));
     }

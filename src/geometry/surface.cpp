@@ -425,8 +425,8 @@ std::vector<Opening> close_openings(Surface& surface, double largest) {
   std::vector<Opening> openings = openings_of(surface);
   for (const Opening& opening : openings) {
     if (!(opening.size <= largest))
-      refuse(opening, fmt::format(" is {:.3g} m across, and at most ", opening.size) + shown(largest) +
-                          " m are closed; close it where the surface was made");
+      refuse(opening, " is " + shown(std::ceil(opening.size * 1000) / 1000) + " m across, and at most " +
+                          shown(largest) + " m are closed; close it where the surface was made");
     if (!opening.is_ring)
       refuse(opening,
              " does not enclose a hole, because adjacent triangles have different orientations; give them "

@@ -52,6 +52,7 @@ class CopiesPiece final : public Piece {
   }
   void step(int count) override { backend_->step(count); }
   int threads() const override { return backend_->threads(); }
+  int steps_per_pass() const override { return backend_->steps_per_pass(); }
   std::string device() const override { return backend_->device(); }
   std::string note() const override { return "a copy of the scene per rank"; }
 

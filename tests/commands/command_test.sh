@@ -33,6 +33,11 @@ ends 0 "${one_row[@]}"
 without=$(sed -n 's/^about \([0-9]*\) s in all$/\1/p' "$work/out")
 ends 0 "${one_row[@]}" --fps 60
 (($(sed -n 's/^about \([0-9]*\) s in all$/\1/p' "$work/out") > without + 10)) || fail "--dry-run with --fps: $(cat "$work/out")"
+# Frames of more steps than samples may have are not timed.
+ends 0 bench --scene cloth350k --backend serial --integrator rk4 --rounds 1 --dry-run
+cp "$work/out" "$work/without"
+ends 0 bench --scene cloth350k --backend serial --integrator rk4 --rounds 1 --dry-run --fps 60
+diff "$work/without" "$work/out" || fail "--dry-run forecasts frames that are not timed"
 ends 0 bench --suite table2 --dry-run
 [ ! -e "$work/never" ] || fail "--dry-run has made a folder"
 expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite table1 --time-budget 5

@@ -284,8 +284,8 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
       const std::optional<BlowUp> blow_up =
           combination.windows ? find_blow_up(*combination.windows, *job.windowed, combination.steps)
                               : find_blow_up(*combination.backend, *combination.start, combination.steps);
-      fail(combination,
-           "failed: " + (blow_up ? describe(*blow_up, job.dt_s) : std::string(finite_in_the_next)));
+      fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s) + std::string(unless_alone)
+                                              : std::string(finite_in_the_next)));
     } else {
       if (first && state) combination.checked = sample_end(*job.system, *state, combination.steps, *first);
       combination.backend->rest();

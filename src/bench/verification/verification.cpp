@@ -145,7 +145,7 @@ std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_befo
   const std::int64_t step = steps_before + blow_up.step;
   return fmt::format(
       "blew up at step {} (t = {:.6g} s): node {} is not finite in single precision; take a smaller dt_s or "
-      "\"auto\" if other backends blow up, too",
+      "\"auto\"",
       step, static_cast<double>(step) * dt_s, blow_up.node);
 }
 
@@ -207,9 +207,6 @@ double position_tolerance(const System& system, const Integrator& integrator, in
 }
 
 int comparable_steps(const System& system, const Integrator& integrator, double dt_s, int most) {
-  if (integrator.solver == Solver::constraints)
-    while (most > 1 && drift_of_substeps(system, dt_s, most) > position_tolerance(system, integrator, most))
-      most -= (most + 9) / 10;
   const auto factor = [&](double stiffness, double damping) {
     return largest_amplification(integrator, dt_s, {stiffness, damping, system.viscous_damping});
   };
@@ -219,6 +216,14 @@ int comparable_steps(const System& system, const Integrator& integrator, double 
   const Spectrum spectrum = spectrum_at(system, system.start);
   const double growth = std::log(factor(spectrum.stiffness, spectrum.damping));
   return growth > 0 ? static_cast<int>(std::clamp<double>(std::log(2) / growth, 1, most)) : most;
+}
+
+int steps_before_drift(const System& system, const Integrator& integrator, double dt_s, int most) {
+  if (integrator.solver == Solver::constraints)
+    while (most > verification_steps &&
+           drift_of_substeps(system, dt_s, most) > position_tolerance(system, integrator, most))
+      most = std::max(verification_steps, most - (most + 9) / 10);
+  return most;
 }
 
 std::string touches_at_once(int steps) {
@@ -300,7 +305,8 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   const State state = backend.state();
   if (first_bad_node(state)) {
     const auto blow_up = find_blow_up(backend, system.start, reference.steps);
-    result.failure = blow_up ? describe(*blow_up, dt_s) : std::string(finite_in_the_next);
+    result.failure =
+        blow_up ? describe(*blow_up, dt_s) + std::string(unless_alone) : std::string(finite_in_the_next);
     return result;
   }
   result.state_hash = state_hash(state);

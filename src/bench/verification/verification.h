@@ -45,6 +45,8 @@ std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t
 /// "blew up at step 12 (t = 0.0012 s): node 34 is not finite; ..." with the remedy. `steps_before` is added
 /// to the step number.
 std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before = 0);
+/// Follows the remedy of describe() for a backend, which may be the only one that blows up.
+inline constexpr std::string_view unless_alone = " if other backends blow up, too";
 
 /// Distance of a state from another state of the same system.
 struct Deviation {
@@ -91,9 +93,13 @@ int position_roundings(const Integrator& integrator);
 
 /// Steps from the start until a rounding error may have doubled, at least 1 and at most `most`; beyond them a
 /// tolerance for roundings is meaningless. Derived from the factors by which the integrator multiplies the
-/// system's modes (stability.h), which lie between those of its spectrum. `most` if it is stable. With xpbd
-/// fewer, if its roundings of velocities, which do not behave like a random walk, may exceed the tolerance.
+/// system's modes (stability.h), which lie between those of its spectrum. `most` if it is stable.
 int comparable_steps(const System& system, const Integrator& integrator, double dt_s, int most);
+
+/// Steps from the start, at least verification_steps and else at most `most`, until roundings of velocities
+/// may exceed position_tolerance: those of xpbd do not behave like a random walk. `most` for other
+/// integrators.
+int steps_before_drift(const System& system, const Integrator& integrator, double dt_s, int most);
 
 /// Largest position error, in mean rest lengths, that single precision may cause in `steps` steps.
 ///

@@ -189,10 +189,9 @@ std::vector<Cell> cells_of(const ClusterRows& rows, const ClusterRow& cluster_ro
   Cell interval, bytes, messages, model;
   if (ms) {
     interval = interval_text(*row.ms_per_step_low, *row.ms_per_step_high);
-    if (row.bytes_per_step && cluster_row.ranks > 1) {
+    if (row.bytes_per_step && cluster_row.ranks > 1)
       bytes = grouped(static_cast<std::uint64_t>(std::llround(*row.bytes_per_step)));
-      messages = three_digits(*row.messages_per_step);
-    }
+    if (row.messages_per_step && cluster_row.ranks > 1) messages = three_digits(*row.messages_per_step);
   }
   if (const auto modelled = rows.modelled_ms(cluster_row); modelled && ms) {
     model = *modelled;

@@ -10,14 +10,16 @@
 namespace mssim {
 namespace {
 
-/// Start of a row's device if its backend chose an instruction set, whose name follows.
+/// Start of a row's device if its backend chose an instruction set, whose name follows, one word; or if a
+/// program of the user's says more of the CPU.
 constexpr std::string_view host_with_vectors = "cpu ";
 
 /// Instruction set that the row's backend chose on the host ("AVX-512"); otherwise empty.
 std::string_view instruction_set(const ResultRow& row) {
   const std::string_view device = row.device;
-  return device.starts_with(host_with_vectors) ? instruction_set_name(device.substr(host_with_vectors.size()))
-                                               : std::string_view();
+  if (!device.starts_with(host_with_vectors)) return {};
+  const std::string_view rest = device.substr(host_with_vectors.size());
+  return rest.find(' ') == std::string_view::npos ? instruction_set_name(rest) : std::string_view();
 }
 
 constexpr std::string_view ratio_mark = "†";

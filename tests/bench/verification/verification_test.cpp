@@ -233,7 +233,7 @@ TEST(PositionTolerance, IsFourTimesTheRandomWalkOfRoundings) {
   EXPECT_DOUBLE_EQ(position_tolerance(system, *find_integrator("rk4"), 100), 120 * 0x1p-24);
 }
 
-TEST(ComparableSteps, EndWhereXpbdsRoundingsOfVelocitiesExceedTheTolerance) {
+TEST(StepsBeforeDrift, EndWhereXpbdsRoundingsOfVelocitiesExceedTheTolerance) {
   // Gravity and air damping change a velocity by a few units in the last place per substep.
   const Integrator& xpbd = *find_integrator("xpbd");
   constexpr int most = 1000;
@@ -247,12 +247,14 @@ TEST(ComparableSteps, EndWhereXpbdsRoundingsOfVelocitiesExceedTheTolerance) {
       in_single->step(steps);
       return position_deviation(system, in_double->state(), in_single->state());
     };
-    const int comparable = comparable_steps(system, xpbd, *spec.dt_s, most);
+    const int comparable = steps_before_drift(system, xpbd, *spec.dt_s, most);
     EXPECT_GT(comparable, verification_steps) << scene;
+    EXPECT_EQ(steps_before_drift(system, xpbd, 1e-2, most), verification_steps) << scene;
+    EXPECT_EQ(steps_before_drift(system, *find_integrator("rk4"), *spec.dt_s, most), most) << scene;
     EXPECT_LT(error_after(comparable), position_tolerance(system, xpbd, comparable)) << scene;
     EXPECT_GT(error_after(most), position_tolerance(system, xpbd, most)) << scene;
     system.gravity = system.viscous_damping = 0;
-    EXPECT_EQ(comparable_steps(system, xpbd, *spec.dt_s, most), most) << scene;
+    EXPECT_EQ(steps_before_drift(system, xpbd, *spec.dt_s, most), most) << scene;
     EXPECT_LT(error_after(most), position_tolerance(system, xpbd, most) / 50) << scene;
   }
 }

@@ -312,6 +312,15 @@ TEST(ClusterTable, HoldsEveryRowAgainstOneProcessAndAgainstCopies) {
   EXPECT_NEAR(std::stod(modelled[4]), 2 + 0.1 + 0.1, 1e-12);
 }
 
+TEST(ClusterTable, ShowsOnlyWhatAProgramTellsOfItsMessages) {
+  std::vector<ResultRow> rows = cluster_of_two();
+  rows[2].messages_per_step.reset();
+  rows[4].bytes_per_step.reset();
+  const std::string page = markdown(tables_of_two(rows).front().page);
+  EXPECT_THAT(page, HasSubstr(" | 4,800 | – | "));
+  EXPECT_THAT(page, HasSubstr(" | – | 1.00 | "));
+}
+
 TEST(ClusterTable, CountsColumnsThatTwoProcessesCompute) {
   // 100 x 400 nodes in four processes, two steps of two stages an exchange: eight columns of 100 nodes come
   // from each side, and the four stages compute 6, 4, 2 and 0 of them again.
