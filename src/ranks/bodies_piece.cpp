@@ -200,9 +200,7 @@ class BodiesPiece final : public Piece {
   void step(int count) override { whole_ ? whole_->step(count) : kernel_.step(*bodies_, count); }
   RankCosts costs() const override { return messages_ ? messages_->costs() : RankCosts{}; }
   int threads() const override { return whole_ ? whole_->threads() : static_cast<int>(bodies_->threads); }
-  std::string device() const override {
-    return whole_ ? whole_->device() : std::string("cpu ") + kernel_.instruction_set;
-  }
+  std::string device() const override { return whole_ ? whole_->device() : kernel_.device(); }
   std::string note() const override {
     const auto divided = static_cast<std::size_t>(
         std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));

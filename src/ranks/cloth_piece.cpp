@@ -68,7 +68,7 @@ class ClothPiece final : public Piece {
   RankCosts costs() const override { return messages_->costs(); }
   int threads() const override { return static_cast<int>(bands_->threads); }
   int steps_per_pass() const override { return static_cast<int>(bands_->steps_per_pass); }
-  std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
+  std::string device() const override { return kernel_.device(); }
   std::string note() const override { return pluralize(bands_->steps_per_pass, "step") + " an exchange"; }
 
  private:

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "output/folders/history_file.h"
 #include "output/folders/provenance_file.h"
@@ -106,15 +105,6 @@ Table points_of(const FoundGuide& guide) {
   return table;
 }
 
-/// The table's rows as JSON, one per line: with a line per value, data would be nine tenths of a page's
-/// lines.
-std::string rows_of(const Table& table) {
-  const auto lines = mapped<std::string>(table_json(table), [](const nlohmann::ordered_json& row) {
-    return row.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  });
-  return "[\n" + join(lines, ",\n") + "\n]";
-}
-
 std::string json_of(const ReportFolder& folder, const ReportInput& input) {
   Table claims{{{"name"}, {"outcome"}, {"published"}, {"measured"}}, {}};
   for (const JudgedClaim& judged : judge(folder, input))
@@ -124,9 +114,9 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
     rows.rows.push_back({finding.is_warning, finding.sentence});
   return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" +
          join(mapped<std::string>(folder.problems, json_string), ", ") +
-         "],\n\"claims\": " + rows_of(claims) + ", \"findings\": " + rows_of(rows) +
-         ", \"timings\": " + rows_of(timings_table(folder.rows)) +
-         (folder.guide ? ", \"guide\": " + rows_of(points_of(*folder.guide)) : "") +
+         "],\n\"claims\": " + json_rows(claims) + ", \"findings\": " + json_rows(rows) +
+         ", \"timings\": " + json_rows(timings_table(folder.rows)) +
+         (folder.guide ? ", \"guide\": " + json_rows(points_of(*folder.guide)) : "") +
          ", \"provenance\": " + (folder.provenance ? provenance_text(*folder.provenance) : "null") + "}";
 }
 

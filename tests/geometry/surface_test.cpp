@@ -277,6 +277,19 @@ TEST(Openings, TrianglesThatDisagreeMakeNoRing) {
   EXPECT_THAT(input_error_of([&] { close_openings(surface, 1); }), HasSubstr("does not enclose a hole"));
 }
 
+TEST(Openings, OfManyPointsAreMeasuredFromTheirCentre) {
+  constexpr std::uint32_t corners = 4000;
+  Surface disc{{{0, 0, 0}}, {}};
+  for (std::uint32_t i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners;
+    disc.points.push_back({std::cos(angle), std::sin(angle), 0});
+    disc.triangles.push_back({0, 1 + i, 1 + (i + 1) % corners});
+  }
+  const std::vector<Opening> openings = openings_of(disc);
+  ASSERT_EQ(openings.size(), 1U);
+  EXPECT_NEAR(openings[0].size, 2, 1e-9);
+}
+
 TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {
   Surface triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   EXPECT_EQ(close_openings(triangle, 2).size(), 1U);

@@ -29,9 +29,9 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
                                         const ExecutionOptions& options) {
   const char* inherited = std::getenv("PYTHONPATH");
   std::string path = inherited == nullptr ? "" : inherited;
-  constexpr std::string_view own_path = "PYTHONPATH=";
+  constexpr std::string_view python_path = "PYTHONPATH=";
   for (const std::string& given : program.environment)
-    if (given.starts_with(own_path)) path = given.substr(own_path.size());
+    if (given.starts_with(python_path)) path = given.substr(python_path.size());
   const std::string count = std::to_string(processors_of(program, options));
   std::vector<std::string> all{"MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count,
                                "OMP_NUM_THREADS=" + count};
@@ -47,7 +47,7 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
   }
   all.insert(all.end(), program.environment.begin(), program.environment.end());
   // After the description's: mssim's module comes before its folders.
-  all.push_back(std::string(own_path) + (data_folder() / "python").string() + (path.empty() ? "" : ":") +
+  all.push_back(std::string(python_path) + (data_folder() / "python").string() + (path.empty() ? "" : ":") +
                 path);
   return all;
 }

@@ -24,6 +24,9 @@ struct StepKernel {
   bool exact_roots;                     ///< see inverse_length (lanes-inl.h)
   bool fuses;                           ///< whether multiply-adds are rounded once
   void (*step)(Data& data, int count);  ///< takes `count` steps
+
+  /// As Backend::device.
+  std::string device() const { return std::string("cpu ") + instruction_set; }
 };
 
 /// The vector code that steps a `Data`, for the instruction sets of this CPU, at least one, the best first.
@@ -97,7 +100,7 @@ class VectorBackend final : public Backend {
   void set_state(const State& state) override { data_.set_state(state); }
   State state() const override { return data_.state(); }
   void step(int count) override { kernel_.step(data_, count); }
-  std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
+  std::string device() const override { return kernel_.device(); }
   int threads() const override { return static_cast<int>(data_.threads); }
   int steps_per_pass() const override {
     if constexpr (requires { data_.steps_per_pass; }) return static_cast<int>(data_.steps_per_pass);

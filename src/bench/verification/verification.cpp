@@ -18,6 +18,8 @@
 namespace mssim {
 namespace {
 
+constexpr double unit_roundoff = 0x1p-24;  // of float
+
 double largest_coordinate(const State& state) {
   double largest = 0;
   for (const Vec3d& x : state.position)
@@ -159,7 +161,7 @@ double position_deviation(const System& system, const State& reference, const St
 }
 
 double energy_in_motion(const System& system, const State& state, const Energy& energy) {
-  constexpr double share = 0.01, rounding = 8 * 0x1p-24;
+  constexpr double share = 0.01, rounding = 8 * unit_roundoff;
   double rounded = 0;
   for (const Spring& spring : system.springs) {
     const Vec3d& x = state.position[spring.first];
@@ -182,8 +184,6 @@ int position_roundings(const Integrator& integrator) {
 }
 
 namespace {
-
-constexpr double unit_roundoff = 0x1p-24;
 
 /// Largest position error, in mean rest lengths, that roundings of velocities may cause in `steps` steps of
 /// xpbd. Gravity and air damping change a velocity v by a few units in its last place per substep, and from

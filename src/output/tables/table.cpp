@@ -106,6 +106,10 @@ std::string terminal_text(const Table& table) {
   return text;
 }
 
+std::string json_line(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
 }  // namespace
 
 void Table::add(std::initializer_list<NamedCell> row) {
@@ -187,8 +191,10 @@ std::string json_text(const ordered_json& json) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-std::string json_string(const std::string& text) {
-  return ordered_json(text).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+std::string json_rows(const Table& table) {
+  return "[\n" + join(mapped<std::string>(table_json(table), json_line), ",\n") + "\n]";
 }
+
+std::string json_string(const std::string& text) { return json_line(text); }
 
 }  // namespace mssim

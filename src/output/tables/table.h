@@ -108,6 +108,9 @@ nlohmann::ordered_json table_json(const Table& table);
 /// file name may have any).
 std::string json_text(const nlohmann::ordered_json& json);
 
+/// table_json() with a line per row, for data that are read by programs.
+std::string json_rows(const Table& table);
+
 /// A text as a JSON string, in quotes. Bytes that are not UTF-8 are replaced.
 std::string json_string(const std::string& text);
 

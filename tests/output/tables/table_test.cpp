@@ -34,6 +34,11 @@ TEST(Table, AsJsonIsAnObjectARow) {
             R"([{"name":"a|b, \"c\"\nd","nodes":4188004,"speed":20.64,"ok":true},)"
             R"({"name":"`é`","nodes":null,"speed":2733.484,"ok":false}])");
   EXPECT_EQ(table_json({}).dump(), "[]");
+  EXPECT_EQ(json_rows(made_up_table()),
+            R"([
+{"name":"a|b, \"c\"\nd","nodes":4188004,"speed":20.64,"ok":true},
+{"name":"`é`","nodes":null,"speed":2733.484,"ok":false}
+])");
   EXPECT_EQ(json_text({{"name", "\xff"}}), "{\n  \"name\": \"\xef\xbf\xbd\"\n}\n");
 }
 
