@@ -8,11 +8,12 @@ info = f"mssim-{version}.dist-info"
 when = time.gmtime(int(os.environ["SOURCE_DATE_EPOCH"]))[:6]
 
 # The program finds its data beside itself, so the tree stays as it is. The module for own backends can also be imported.
-files = {"mssim/__init__.py": here / "wheel_package.py",
-         "mssim_backend.py": tree / "share/mssim/python/mssim_backend.py",
+files = {"mssim_backend.py": tree / "share/mssim/python/mssim_backend.py",
          f"{info}/licenses/LICENSE": tree / "share/doc/mssim/LICENSE"}
 files.update({f"mssim/{path.relative_to(tree)}": path for path in tree.rglob("*") if path.is_file()})
+# Written with one mode; those of a checkout differ.
 texts = {
+    "mssim/__init__.py": (here / "wheel_package.py").read_text(encoding="utf-8"),
     f"{info}/METADATA": f"""Metadata-Version: 2.1
 Name: mssim
 Version: {version}

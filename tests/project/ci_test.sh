@@ -16,7 +16,15 @@ tool() { # NAME: a stand-in, with the script on stdin
   { echo '#!/bin/bash' && cat; } >"$place/tools/$1"
   chmod +x "$place/tools/$1"
 }
-tool gh <<<'echo "$*" >>'"$place"'/gh && [[ " $* " != *" --edit-last "* ]]'
+# It keeps one comment, and its number is 5.
+tool gh <<'END'
+place=${0%/tools/gh} last=${!#}
+echo "$*" >>"$place/gh"
+case " $* " in
+  *' --paginate '*) ! head -qn 1 "$place/comment" 2>/dev/null | grep -qxF -- "$MARKER" || echo 5 ;;
+  *) cp "${last#body=@}" "$place/comment" ;;
+esac
+END
 tool apt-get <<<'echo "$*" >>'"$place"'/apt-get'
 # shellcheck disable=SC2016 # the stand-in expands it
 tool make <<<'cp mine.in "$1" && chmod +x "$1"'
@@ -61,10 +69,10 @@ action = yaml.safe_load(open(source + "/action.yml"))
 inputs = {name: given.get(name, field.get("default", "")) for name, field in action["inputs"].items()}
 assert set(given) <= set(inputs), given
 assert all(name in given for name, field in action["inputs"].items() if field.get("required")), given
-values = {"github.server_url": "https://localhost", "github.action_repository": "a/mssim", "github.action_ref": "v0",
-          "github.token": "secret", "github.event_name": "pull_request", "github.event.pull_request.number": "7"}
+values = {"github.server_url": "https://localhost", "github.action_repository": "a/mssim", "github.token": "secret",
+          "github.event_name": "pull_request", "github.event.pull_request.number": "7"}
 values |= {"inputs." + name: value for name, value in inputs.items()}
-name_of_value = r"(?:inputs|github)\.[a-z_.]+"
+name_of_value = r"(?:inputs|github|steps)\.[a-z_.]+"
 
 
 def text_of(text):
@@ -77,23 +85,31 @@ def holds(condition):
 
 
 environment = os.environ | {"GITHUB_ACTION_PATH": source, "GITHUB_BASE_REF": "main", "GITHUB_REPOSITORY": "a/mine",
-                            "GITHUB_STEP_SUMMARY": place + "/summary.md", "GITHUB_PATH": place + "/path", "RUNNER_TEMP": place + "/runner"}
+                            "GITHUB_STEP_SUMMARY": place + "/summary.md", "GITHUB_PATH": place + "/path", "RUNNER_TEMP": place + "/runner",
+                            "GITHUB_OUTPUT": place + "/output"}
 failed = False
-for step in action["runs"]["steps"]:
+steps = action["runs"]["steps"]
+# The comment once more, as a later run does.
+for step in steps + [step for step in steps if step["name"].startswith("Comment")]:
     if not holds(step["if"]) if "if" in step else failed:
         continue
     print("step:", step["name"], flush=True)
     if "uses" in step:
-        kept = {key: text_of(value) for key, value in step["with"].items()}
+        kept = {key: text_of(str(value)) for key, value in step["with"].items()}
         assert step["uses"].startswith("actions/upload-artifact@") and os.path.isdir(kept["path"]), (step, kept)
+        assert kept["name"] == kept["path"].replace("/", "-") and kept["overwrite"] == "True", kept
         continue
     assert step["shell"] == "bash" and "${{" not in step["run"], step
     open(place + "/step", "w").write(step["run"])
+    open(place + "/output", "w").close()
     own = {key: text_of(value) for key, value in step.get("env", {}).items()}
     code = subprocess.run(["bash", "--noprofile", "--norc", "-eo", "pipefail", place + "/step"], env=environment | own).returncode
     if code and not step.get("continue-on-error"):
         print("exit code", code)
         failed = True
+    for line in open(place + "/output"):
+        name, value = line.rstrip("\n").split("=", 1)
+        values[f"steps.{step['id']}.outputs.{name}"] = value
     if os.path.exists(place + "/path"):
         environment["PATH"] = open(place + "/path").read().strip() + ":" + os.environ["PATH"]
 sys.exit(failed)
@@ -104,17 +120,29 @@ acts() { # CODE JSON
   /usr/bin/python3 "$place/run_action.py" "$place/action" "$place" "$2" >"$place/log" 2>&1 || code=$?
   [[ $code == "$1" ]] || fail "the action ends with $code instead of $1"
 }
-acts 1 '{"archive": "'"$place"'/mssim.tar.gz", "build": "make mine", "options": "--backend ./mine '"$brief"'"}'
+acts 1 '{"archive": "'"$place"'/mssim.tar.gz", "build": "make mine", "folder": "kept/mssim-comparison",
+  "options": "--backend ./mine '"$brief"'"}'
 # shellcheck disable=SC2016 # the backquotes are Markdown's
 grep -q '`mine`.*\*\*slower\*\*' "$place/summary.md" || fail "the summary has no slower row: $(cat "$place/summary.md")"
-cmp mssim-comparison/comparison.md "$place/summary.md"
-grep -q '"base_samples_ms"' mssim-comparison/comparison.json || fail "the samples are not kept"
-[[ $(wc -l <"$place/gh") -eq 2 ]] || fail "not one comment, after none to edit: $(cat "$place/gh")"
-grep -q 'pr comment 7 --repo a/mine --body-file mssim-comparison/comparison.md$' "$place/gh" || fail "the comment: $(cat "$place/gh")"
+cmp kept/mssim-comparison/comparison.md "$place/summary.md"
+grep -q '"base_samples_ms"' kept/mssim-comparison/comparison.json || fail "the samples are not kept"
+issues=repos/a/mine/issues
+look="api $issues/7/comments --paginate --jq .[] | select(.body | startswith(env.MARKER)) | .id"
+body="--silent --field body=@$place/runner/comment.md"
+diff - "$place/gh" <<<"$look
+api $issues/7/comments --method POST $body
+$look
+api $issues/comments/5 --method PATCH $body" || fail "the comment is not made once and then replaced"
+diff <(echo '<!-- mssim: kept/mssim-comparison -->' && cat "$place/summary.md") "$place/comment" || fail "the comment is not the table"
 [[ -z $(git status --porcelain) ]] || fail "files are left in the repository: $(git status --porcelain)"
 # Nothing that failed before the comparison is hidden.
-rm -r mssim-comparison "$place/runner/mssim"
-acts 1 '{"archive": "'"$place"'/none.tar.gz", "comment": "false", "options": "--backend ./mine", "folder": "."}'
+rm -r kept "$place/runner/mssim"
+# shellcheck disable=SC2016
+tool curl <<<'echo "$*" >"${0%/tools/curl}/curl" && exit 22'
+acts 1 '{"comment": "false", "options": "--backend ./mine", "folder": "."}'
+rm "$place/tools/curl"
+grep -qE ' https://localhost/a/mssim/releases/download/v([0-9.]+)/mssim-\1-linux-[^ ]+\.tar\.gz$' "$place/curl" ||
+  fail "not the archive of its release: $(cat "$place/curl")"
 [[ ! -e $place/gh && ! -e $place/summary.md ]] || fail "a table is shown of nothing"
 
 # The example for GitLab, with fewer nodes and seconds; and that for GitHub names only inputs that there are.
@@ -143,6 +171,7 @@ assert long in text, text
 print("set -eo pipefail\n" + text.replace(long, brief))
 PYTHON
 /usr/bin/python3 "$place/gitlab.py" "$source" "$brief" >"$place/gitlab"
+mkdir -p ../mssim-{source,installed}/earlier
 code=0
 MSSIM_REPOSITORY=file://$place/action MSSIM_ARCHIVE=file://$place/mssim.tar.gz CI_MERGE_REQUEST_TARGET_BRANCH_NAME=main \
   bash "$place/gitlab" >"$place/log" 2>&1 || code=$?

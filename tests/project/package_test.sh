@@ -31,6 +31,9 @@ refuses 2 'wheel' archive wheel
 refuses 2 'with --check' archive 12
 refuses 2 '--arm64 goes with archive, wheel or --check' deb --arm64
 refuses 2 "$place.* has no bin/mssim" archive --build "$place"
+mkdir "$place/tree"
+cp -r "$2/scripts" "$place/tree"
+package=$place/tree/scripts/package refuses 3 'no commit; set SOURCE_DATE_EPOCH' archive --build "$build"
 
 for kind in archive wheel deb recipes; do
   for folder in first second; do make "$kind" "$folder"; done

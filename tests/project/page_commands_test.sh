@@ -29,3 +29,6 @@ refuses 'scripts/mssim list compilers' 'exit code 2'
 printf '# A page\n' >"$place/page.md"
 ! "$commands" --list "$place/page.md" 2>"$place/err" || { echo "--list of no command passes" && exit 1; }
 grep -q 'no command' "$place/err" || { echo "--list: $(cat "$place/err")" && exit 1; }
+# So is a page that does not exist, also beside one that does.
+! "$commands" --list README.md "$place/none.md" >/dev/null 2>"$place/err" || { echo "--list of no page passes" && exit 1; }
+grep -qF "no page $place/none.md" "$place/err" || { echo "--list: $(cat "$place/err")" && exit 1; }

@@ -42,6 +42,14 @@ differs results/README.md 'a new change of speed'
 "$place/scripts/tabulate-results"
 grep -q "^| .table3/.*before 1 change of .serial." "$place/results/README.md" || fail 'no folder is older'
 
-status=0
-"$place/scripts/tabulate-results" --all >"$place/out" 2>&1 || status=$?
-[[ $status == 2 ]] || fail "an unknown argument: exit code $status"
+# refuses WHAT ARGUMENT...: bad input gets one sentence.
+refuses() {
+  local status=0
+  "$place/scripts/tabulate-results" "${@:2}" >"$place/out" 2>&1 || status=$?
+  [[ $status == 2 && $(wc -l <"$place/out") == 1 ]] || fail "$1: exit code $status"
+}
+refuses 'an unknown argument' --all
+sed -i '/,before,/d' "$place/results/busy_machine/study.csv"
+"$place/scripts/tabulate-results" || fail 'a study without an earlier program'
+sed -i '$s/,[^,]*$//' "$place/results/busy_machine/study.csv"
+refuses 'a line without its last field'
