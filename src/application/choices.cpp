@@ -302,7 +302,7 @@ std::vector<const BackendInfo*> BackendChoice::with_lesser_sets(const std::vecto
   if (sets.size() > 1) refuse_list_with_ranks(rows, "--instruction-set");
   std::vector<const BackendInfo*> all;
   for (const BackendInfo* info : rows) {
-    for (std::size_t i = sets.size(); info->has_vectors && i-- > 1;)
+    for (std::size_t i = sets.size(); info->has_vectors && info->instruction_set.empty() && i-- > 1;)
       if (const BackendInfo* row = &add_variant(*info, instruction_set_name(sets[i]));
           std::ranges::find(rows, row) == rows.end())  // named by itself, too
         all.push_back(row);

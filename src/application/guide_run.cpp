@@ -233,6 +233,7 @@ int run_guide(const GuideOptions& options) {
   const bool uses_device = std::ranges::any_of(plan.backends, &BackendInfo::uses_device);
   Provenance provenance = run_provenance(plan.execution.threads, uses_device);
   add_programs(provenance, choice.own(), plan.execution);
+  provenance.device_memory = name_of(plan.execution.memory);
   for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
   const std::unique_ptr<ResultFolder> folder = result_folder(options, provenance);
   for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
@@ -249,7 +250,13 @@ int run_guide(const GuideOptions& options) {
       // What a scene leaves goes to those after it, and what it overruns they make good.
       const double share =
           (plan.seconds - watch.seconds()) / static_cast<double>(plan.scenes.size() - number);
-      guides.push_back(measured(plan, options, number, std::max(share, least_scene_s), progress, stop));
+      try {
+        guides.push_back(measured(plan, options, number, std::max(share, least_scene_s), progress, stop));
+      } catch (const Interrupted& interrupted) {
+        // A wait for a program; the guides of earlier scenes are kept.
+        note_ending_signal(interrupted.signal);
+        break;
+      }
       // A guide that was stopped before it had a point replaces nothing.
       if (!folder || (stop.requested() && guides.back().points.empty())) continue;
       folder->write(guide_tables(guides, provenance));

@@ -381,6 +381,7 @@ int run_scene(RunOptions options) {
   BackendChoice choice(with_garment_backends(table_backends()), options.own_backends, {options.scene});
   const BackendInfo& info = choice.require(options.backend);
   require_use_of_ranks(options.execution, {&info});
+  require_device(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);

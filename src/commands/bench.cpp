@@ -214,9 +214,9 @@ int run(const BenchRequest& options) {
   BenchResults results(plan);
   tell_before(plan);
   const SummaryFormat format = options.format;
+  std::vector<StructureRow> structure;
   if (!plan.described.empty()) {
-    const std::vector<StructureRow> structure = describe_scenes(plan.described);
-    results.keep(structure);
+    structure = describe_scenes(plan.described);
     std::cout << summary(structure, format);
   }
   int code = exit_ok;
@@ -231,6 +231,8 @@ int run(const BenchRequest& options) {
     tell_first(verdict.reasons);
     code = verdict.exit_code;
   }
+  // The first result that is kept replaces earlier ones, so nothing is before the first round.
+  if (!structure.empty() && (plan.timed.empty() || !results.rows().empty())) results.keep(structure);
   tell_where_results_are(plan, results, stop.requested());
   stop.throw_if_requested();
   return code;

@@ -101,6 +101,7 @@ int compare_runs(const CompareOptions& options) {
     throw UsageError(
         "there is nothing to compare: " + options.ab.base + " and " + options.ab.next +
         " have no measured combination in common; measure the same scenes, backends and integrators");
+  if (!options.out.empty()) make_folder(options.out);
   tell("only BASE has", comparison.only_base);
   tell("only NEW has", comparison.only_new);
   tell("without a verified time in BASE", comparison.untimed);
@@ -112,7 +113,7 @@ int run(CompareOptions options) {
   if (!options.out.empty()) {  // finds what cannot be written before it measures
     for (const auto& [name, format] : files)
       require_free(std::filesystem::path(options.out) / name, "--out", options.overwrite);
-    make_folder(options.out);
+    if (options.programs) make_folder(options.out);
   }
   if (!options.programs) return compare_runs(options);
   require_few_threads(options.ab.threads);

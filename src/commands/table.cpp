@@ -46,9 +46,11 @@ TableMaker tables_of_all_suites() {
 }
 
 void print(const ReportInput& input, bool as_latex) {
+  std::string text;  // all of it or, if a folder has no provenance, nothing
   for (const ReportFolder& folder : input.folders)
     for (const TablePage& page : table_pages(folder, input))
-      std::cout << (as_latex ? latex(page.page, page.name, page.remark) : markdown(page.page) + '\n');
+      text += as_latex ? latex(page.page, page.name, page.remark) : markdown(page.page) + '\n';
+  std::cout << text;
 }
 
 bool is_chart(const FolderFile& file) { return file.name.ends_with(".svg"); }

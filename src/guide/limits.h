@@ -47,11 +47,6 @@ struct WorkPoint {
   bool counts() const { return !diverged && within_limit && !beyond_trust && position_error.has_value(); }
 };
 
-/// Whether both points are of the same method.
-inline bool same_method(const WorkPoint& a, const WorkPoint& b) {
-  return a.integrator == b.integrator && a.backend == b.backend;
-}
-
 /// Growth of the total energy, as a fraction of the available energy at the start, below which a run is
 /// stable. The bound is small because an unstable run need not blow up: large motions are not linear, and may
 /// end at several times the energy. Near the limit of a symplectic method, the energy of a stable oscillation

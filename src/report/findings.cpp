@@ -72,7 +72,7 @@ Finding about_speedups(std::span<const ResultRow> rows) {
 /// The sign only repeats the word.
 std::string verified_mark(const ResultRow& row) {
   if (counts(row)) return "✓ yes";
-  return row.status == "ok" ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
+  return is_wrong(row) ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
 }
 
 }  // namespace
@@ -83,22 +83,22 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
   if (const std::string devices = devices_of(rows, provenance); !devices.empty())
     findings.push_back({false, fmt::format("The published GPU is that of a {}. Devices of these rows: {}.",
                                            paper_device, devices)});
-  std::vector<std::string> not_verified;
+  std::vector<std::string> wrong;
   std::size_t timed = 0, without_time = 0;
   for (const ResultRow& row : rows)
     if (counts(row))
       ++timed;
-    else if (row.status == "ok")
-      not_verified.push_back(row_name(row));
+    else if (is_wrong(row))
+      wrong.push_back(row_name(row));
     else
       ++without_time;
-  if (not_verified.empty())
+  if (timed > 0)
     findings.push_back({false, subject(timed, "row", " has a time, and is", " have a time, and all are") +
                                    " verified against the double-precision reference."});
-  else
-    findings.push_back(
-        {true, subject(not_verified.size(), "row", " is not verified and is", " are not verified and are") +
-                   " excluded from all statistics: " + join(not_verified, "; ") + "."});
+  if (!wrong.empty())
+    findings.push_back({true, subject(wrong.size(), "row", " failed or is not verified, and is",
+                                      " failed or are not verified, and are") +
+                                  " excluded from all statistics: " + join(wrong, "; ") + "."});
   if (without_time > 0)
     findings.push_back({false, subject(without_time, "row", " has", " have") +
                                    " no time; the list below the tables says why."});
@@ -158,10 +158,7 @@ Table times_of(RowPointers rows, const ReportFolder& folder) {
     published.exact = true;
     table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
                           look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
-                          row->threads > 0 ? Cell(row->threads) : Cell(),
-                          shown && row->ms_per_step_low && row->ms_per_step_high
-                              ? Cell(interval_text(*row->ms_per_step_low, *row->ms_per_step_high))
-                              : Cell(),
+                          row->threads > 0 ? Cell(row->threads) : Cell(), interval_cell(*row),
                           speedup ? Cell(speedup->ratio) : Cell(),
                           speedup ? Cell(interval_text(speedup->low, speedup->high)) : Cell(), published,
                           shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),

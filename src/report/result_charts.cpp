@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 #include <map>
 
@@ -120,23 +119,15 @@ std::optional<RoofDot> dot_of(const ResultRow& row) {
   return dot;
 }
 
-/// The roof for this number of threads: bandwidth times intensity, up to a ceiling if any dot shows one. All
-/// dots with the same number of threads have the same peaks.
-Series roof_line(int threads, const std::vector<RoofDot>& dots, double from, double to) {
-  double bandwidth = 0, ceiling = 0;
-  for (const RoofDot& dot : dots) {
-    bandwidth = std::max(bandwidth, *dot.roof / dot.intensity);
-    ceiling = std::max(ceiling, *dot.roof);
-  }
-  const bool has_ceiling = std::ranges::any_of(
-      dots, [&](const RoofDot& dot) { return *dot.roof < 0.999 * bandwidth * dot.intensity; });
-  Series line{.name = "roof of " + pluralize(threads, "thread"),
-              .origin = Origin::reference,
-              .x = {from},
-              .y = {from * bandwidth}};
-  if (const double ridge = ceiling / bandwidth; has_ceiling && ridge > from && ridge < to)
-    line.add(ridge, ceiling);
-  line.add(to, has_ceiling ? std::min(to * bandwidth, ceiling) : to * bandwidth);
+/// The roof for this number of threads at its dots. Elsewhere it is not known, because a row does not say
+/// whether bandwidth or arithmetic is its limit; the ends only make a single dot's roof visible.
+Series roof_line(int threads, std::vector<RoofDot> dots) {
+  constexpr double end = 1.1;
+  std::ranges::sort(dots, {}, &RoofDot::intensity);
+  Series line{.name = "roof of " + pluralize(threads, "thread"), .origin = Origin::reference};
+  line.add(dots.front().intensity / end, *dots.front().roof);
+  for (const RoofDot& dot : dots) line.add(dot.intensity, *dot.roof);
+  line.add(dots.back().intensity * end, *dots.back().roof);
   return line;
 }
 
@@ -353,7 +344,6 @@ std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Prove
                          where_measured(provenance), {"operations per byte", true},
                          {"operations per second (10⁹)", true}, ChartForm::points);
   std::map<int, std::vector<RoofDot>> under_roof;  // by threads
-  double least = INFINITY, most = 0;
   for (const ResultRow& row : rows) {
     if (row.scene != largest->scene || row.integrator != largest->integrator) continue;
     const auto dot = dot_of(row);
@@ -362,11 +352,8 @@ std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Prove
     chart.series.push_back(
         {.name = look.name, .family = look.family, .x = {dot->intensity}, .y = {dot->gigaflops}});
     if (dot->roof) under_roof[row.threads].push_back(*dot);
-    least = std::min(least, dot->intensity);
-    most = std::max(most, dot->intensity);
   }
-  for (const auto& [threads, dots] : under_roof)
-    chart.series.push_back(roof_line(threads, dots, least / 2, most * 2));
+  for (const auto& [threads, dots] : under_roof) chart.series.push_back(roof_line(threads, dots));
   return chart;
 }
 

@@ -81,13 +81,14 @@ std::string machine_section(const ReportInput& input) {
                {"system", machine.operating_system},
                {"compiler", provenance.build.compiler + ", " + provenance.build.build_type},
                {"mssim", made_by(provenance)},
-               {"rounds", range_of(folder, &ResultRow::rounds)}});
+               {"rounds", folder.rows.empty() ? Cell() : range_of(folder, &ResultRow::rounds)}});
   }
   for (Column& column : table.columns) column.align = Align::left;
   return table.rows.empty() ? paragraph("The machine of the folders is unknown.") : html_of(table);
 }
 
-std::string list_of(const Provenance& provenance) {
+std::string provenance_of(const ReportFolder& folder) {
+  const Provenance& provenance = *folder.provenance;
   const Machine& machine = provenance.machine;
   std::vector<std::string> environment, scenes, load;
   for (const auto& [name, value] : provenance.thread_environment) environment.push_back(name + "=" + value);
@@ -115,9 +116,10 @@ std::string list_of(const Provenance& provenance) {
   line("memory of devices", or_nothing(provenance.device_memory));
   line("TetGen", or_nothing(provenance.tetgen));
   line("hashes of scenes", or_nothing(join(scenes, ", ")));
-  Document page{Paragraph{"Sources of noise that mssim found when it started:"},
+  const std::string_view when = is_from_page(folder) ? "during the run" : "when it started";
+  Document page{Paragraph{fmt::format("Sources of noise that mssim found {}:", when)},
                 BulletList{provenance.noise}};
-  if (provenance.noise.empty()) page = {Paragraph{"mssim found no source of noise when it started."}};
+  if (provenance.noise.empty()) page = {Paragraph{fmt::format("mssim found no source of noise {}.", when)}};
   page.emplace_back(std::move(table));
   return html_of(page, 4);
 }
@@ -125,7 +127,7 @@ std::string list_of(const Provenance& provenance) {
 /// The data needed to judge the numbers and to repeat the measurement.
 std::string provenance_section(const ReportInput& input) {
   return of_each_folder(input, [](const ReportFolder& folder, const std::string&) {
-    return folder.provenance ? list_of(*folder.provenance)
+    return folder.provenance ? provenance_of(folder)
                              : paragraph(
                                    "provenance.json is missing or damaged: the origin of these numbers is "
                                    "unknown.");
@@ -358,8 +360,10 @@ std::string roofline_section(const ReportInput& input) {
     return chart ? figures_of(with_looks_of_backends({*chart}, input.legend)) : std::string();
   };
   return paragraph(
-             "Operations and bytes are the least that a step needs. Roofs are the machine's peaks, measured "
-             "in the same process; other programs that run at that time lower them.") +
+             "Operations and bytes are the least that a step needs. A roof is drawn at the dots of its "
+             "number "
+             "of threads: what the machine's peaks allow there, measured in the same process. Other programs "
+             "that run at that time lower them.") +
          of_each_folder(input, figure, "No folder has rows with a roofline; garments have none.");
 }
 

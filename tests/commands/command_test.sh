@@ -75,6 +75,7 @@ for command in 'bench --scene cloth2500' 'bench --scene cloth2500 --dry-run' 'be
 done
 # A list that would not use an option refuses it.
 expect 2 'list devices takes no --device' list devices --device 0
+expect 2 '--device is for backends that use OpenCL' run --scene cloth2500 --device 0
 expect 2 'list scenes takes no --backend-folder' list scenes --backend-folder "$work"
 expect 2 'list schema takes no --format' list schema --format csv
 

@@ -98,6 +98,8 @@ expect 2 'comparison.json already exists.*--overwrite' compare "$work/base" "$wo
 compare 1 "$work/base" "$work/slower" --format json --out "$work/kept/comparison" --overwrite
 cmp "$work/out" "$work/kept/comparison/comparison.json" || fail "the kept JSON is not the printed one"
 expect 4 'timings.csv' compare "$work/base" "$work/slower" --out "$work/base/timings.csv"
+expect 2 'not there' compare "$work/base" "$work/not there" --out "$work/unmade"
+[ ! -e "$work/unmade" ] || fail "a refused comparison leaves a folder"
 # A full disk leaves both files as they were.
 cp -r "$work/kept/comparison" "$work/before"
 on_full_disk 1 'comparison.json' compare "$work/base" "$work/base" --out "$work/kept/comparison" --overwrite

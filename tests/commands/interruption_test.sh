@@ -52,6 +52,10 @@ expect 2 'int already holds results: give another --out, --resume .*or --overwri
 cmp -s kept int/samples.csv || fail "a refused bench has changed the folder"
 ends 2 "${scenes[@]}" --backend serial --rounds 6 --out int --resume
 warns 'other backends or integrators of cloth2500'
+# Also before a scene that comes first is measured.
+ends 2 bench --scene cloth10k,cloth2500,cloth4900 --integrator semi-euler --threads 1 --backend serial --rounds 1 --out int --resume
+warns 'other backends or integrators of cloth2500'
+! grep -q cloth10k int/timings.csv || fail "a refused --resume has measured cloth10k"
 cp -r int moved
 sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8/' moved/provenance.json
 expect 2 'cannot continue in moved: the CPU was Another CPU[ ,].*; the number of threads was 8 and is 1; choose another' \
@@ -81,6 +85,11 @@ ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds
 ends 0 bench --suite table2 --out tables
 expect 2 'tables already holds results' bench --scene cloth2500 --out tables
 expect 2 'cannot continue in tables: it has results of box-large, box-medium, .*, torus-small, which this command leaves out' bench --scene cloth2500 --out tables --resume
+cp -r tables before-tables
+begins bench --suite tables --scene cloth350k --backend serial --out tables --overwrite
+soon 60 grep -q '(1 of ' err || fail "no scene is begun"
+is_ended 130 INT
+diff -r before-tables tables || fail "--overwrite of a table that is ended before it has a row changes what is there"
 ends 0 bench --scene jeans1k --backend openmp --rounds 1 --out tables --overwrite
 [ ! -e tables/table2.md ] && [ -s tables/figure6.md ] || fail "--overwrite leaves $(ls tables)"
 

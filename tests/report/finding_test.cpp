@@ -257,6 +257,9 @@ TEST(RowFindings, NameRowsThatAreNotVerified) {
   EXPECT_FALSE(warns(row_findings(rows, provenance), "2 rows have a time, and all are verified"));
   rows[1].verified = false;
   EXPECT_TRUE(warns(row_findings(rows, provenance), ": `openmp` on `cloth2500`, semi-euler."));
+  rows[1] = failed_row("openmp", "failed: it deviates");
+  EXPECT_TRUE(warns(row_findings(rows, provenance), ": `openmp` on `cloth2500`, semi-euler."));
+  EXPECT_FALSE(warns(row_findings(rows, provenance), "1 row has a time, and is verified"));
   rows[1] = failed_row("openmp", "unavailable: no device");
   EXPECT_FALSE(warns(row_findings(rows, provenance), "1 row has no time"));
   EXPECT_TRUE(row_findings({}, provenance).empty());

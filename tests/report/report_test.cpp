@@ -360,7 +360,7 @@ TEST(ReportPage, MarksRowsThatAreNotVerifiedInWords) {
   const std::string page = report_page(input_of(folder));
   EXPECT_TRUE(has(page, "✓ yes"));
   EXPECT_TRUE(has(page, "✗ <strong>no</strong>"));
-  EXPECT_TRUE(has(page, "! not verified</strong> 1 row is not verified"));
+  EXPECT_TRUE(has(page, "! not verified</strong> 1 row failed or is not verified"));
 }
 
 /// Where texts begin in a page, one after the other; a failure where one is missing or out of turn.

@@ -47,10 +47,7 @@ class AbProgram {
       throw MissingProgram("cannot run {}: give the path of an mssim program", file);
     child_.program = fs::absolute(file);
     child_.folder = fs::current_path();  // scenes may be files named from here
-    // Bounds a program that would never end.
-    child_.cpu_seconds =
-        static_cast<unsigned>(options.time_budget_s + 60) * std::max(1U, std::thread::hardware_concurrency());
-    child_.elapsed_seconds = whole_seconds(verification_limit * (options.time_budget_s + 60));
+    limit(verification_limit * (options.time_budget_s + 60));
   }
 
   /// Whether its bench has the option --verified, according to its help. Throws UsageError if the help does
@@ -80,8 +77,7 @@ class AbProgram {
   }
   /// Extends the limit of samples to ten times that of the verification, if that is more.
   void allow(double verification_s) {
-    child_.elapsed_seconds =
-        std::max(child_.elapsed_seconds, whole_seconds(verifications_a_sample * verification_s));
+    limit(std::max<double>(child_.elapsed_seconds, verifications_a_sample * verification_s));
   }
 
   /// Samples these backends and integrators; verifies them again if no verification was taken. `first`:
@@ -99,6 +95,12 @@ class AbProgram {
   }
 
  private:
+  /// Bounds a program that would never end, also one that leaves its process group.
+  void limit(double seconds) {
+    child_.elapsed_seconds = whole_seconds(seconds);
+    child_.cpu_seconds = child_.elapsed_seconds * std::max(1U, std::thread::hardware_concurrency());
+  }
+
   static void add(ChildProcess& child, const char* option, const std::string& value) {
     child.arguments.insert(child.arguments.end(), {option, value});
   }

@@ -143,12 +143,6 @@ void require_folder_where_needed(const BenchOutput& output) {
                      " needs the folder of an earlier run: give --out too");
 }
 
-std::vector<SceneSpec> find_scenes(const std::vector<std::string>& names) {
-  std::vector<SceneSpec> specs;
-  for (const std::string& name : names) specs.push_back(find_scene(name));
-  return specs;
-}
-
 /// The settings with the backends that the suite has for this scene.
 BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
                                 const BenchOptions& options, const std::string& scene) {
@@ -215,9 +209,7 @@ System build_window(const SceneSpec& spec, const GridWindow& window) {
 }
 
 std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes) {
-  std::vector<ExpectedTime> times;
-  for (const PlannedScene& scene : scenes) times.push_back(scene.time);
-  return times;
+  return mapped<ExpectedTime>(scenes, &PlannedScene::time);
 }
 
 double expected_rounds(const BenchPlan& plan) {
@@ -248,12 +240,12 @@ BenchPlan plan_of(const BenchOptions& options) {
     if (found == known_parts.end()) found = known_parts.emplace(spec.file, read_parts(spec)).first;
     return found->second;
   };
-  for (SceneSpec& spec : find_scenes(described_ones)) {
+  for (SceneSpec& spec : mapped<SceneSpec>(described_ones, find_scene)) {
     SceneParts parts = parts_of(spec);
     require_memory(spec, parts.counts);
     plan.described.push_back({std::move(spec), std::move(parts)});
   }
-  std::vector<SceneSpec> timed = find_scenes(timed_ones);
+  std::vector<SceneSpec> timed = mapped<SceneSpec>(timed_ones, find_scene);
   std::erase_if(timed, [&](const SceneSpec& spec) {
     return settings_of_scene(plan.settings, comparison, options, spec.name).backends.empty();
   });

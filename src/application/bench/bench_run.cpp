@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "application/outputs.h"
@@ -14,10 +15,6 @@
 
 namespace mssim {
 namespace {
-
-bool is_wrong(const ResultRow& row) {
-  return row.status.starts_with("failed") || (row.status == "ok" && !row.verified);
-}
 
 /// Whether `member` of the row is one of `names`, and no row of the scene with the same value could run. A
 /// backend that supports a garment with one of the integrators is not missed.
@@ -98,6 +95,7 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
     const auto fail = [&](const char* reason) {
       row.status = std::string("failed: ") + reason;
       row.verified = false;
+      row.ms_per_step = row.ms_per_step_low = row.ms_per_step_high = row.speedup_vs_serial = std::nullopt;
       failed = true;
     };
     watch.progress(fmt::format("trace {} {}", row.backend, row.integrator), 1);
@@ -108,6 +106,8 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
       row.program_output = failure.output;
     } catch (const NotVerified& blow_up) {
       fail(blow_up.what());
+    } catch (const Unavailable& unavailable) {  // it ran a moment ago
+      fail(unavailable.what());
     }
   }
   return failed;
@@ -145,6 +145,13 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   const double rounds = expected_rounds(plan);
   std::vector<double> seconds;
   for (const ExpectedTime& time : times_of(plan.timed)) seconds.push_back(time.with(rounds));
+  std::set<std::string> finished_ones;  // of all, before one is measured: a later one may not fit its command
+  for (const PlannedScene& planned : plan.timed) {
+    BenchSettings settings = plan.settings;
+    settings.backends = planned.backends;
+    if (is_finished(settings, planned.spec.name, results.of_scene(planned.spec.name)))
+      finished_ones.insert(planned.spec.name);
+  }
   ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
   for (PlannedScene& planned : plan.timed) {
     SceneJob job{plan.settings};
@@ -155,7 +162,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
     job.deadline = budget.begin_scene();
     job.earlier = results.of_scene(job.name);
     progress.begin_scene(job.name);
-    const bool finished = is_finished(job, job.name, job.earlier);
+    const bool finished = finished_ones.contains(job.name);
     if (finished && !plan.output.trace) {
       progress.skip_scene();
       planned.parts = {};

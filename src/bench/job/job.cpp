@@ -244,7 +244,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   const auto found =
       std::ranges::find_if(verified, [&](const ResultRow& other) { return same_combination(other, row); });
   if (found == verified.end()) return fail(combination, "failed: no earlier process has verified it");
-  if (!counts(*found)) return fail(combination, status_of(*found));
+  if (!found->verified) return fail(combination, status_of(*found));
   if (found->device != row.device || found->threads != row.threads || found->nodes != row.nodes ||
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
     return fail(combination,
@@ -253,6 +253,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   row.dressing = found->dressing;
   row.verified = true;
   append_sentence(row.note, "verified by an earlier process");
+  if (found->status != "ok") drop(combination, found->status);
 }
 
 void calibrate(Combination& combination, const SceneJob& job) {

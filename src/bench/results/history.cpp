@@ -109,7 +109,7 @@ std::vector<MachineHistory> machines_of(std::span<const HistoryEntry> history) {
 std::string judged(const ChangePoint& change, double threshold) {
   if (change.ratio.ratio > 1 + threshold) return "slower";
   if (change.ratio.ratio < 1 / (1 + threshold)) return "faster";
-  return fmt::format("within {} %", decimal(100 * threshold));
+  return fmt::format("within {:.6g} %", 100 * threshold);
 }
 
 std::vector<std::string> regressions(const MachineHistory& machine, double threshold, std::size_t count) {
@@ -119,10 +119,19 @@ std::vector<std::string> regressions(const MachineHistory& machine, double thres
       if (machine.is_recent(entry, count))
         sentences.push_back(fmt::format("{}: {} (on {})", combination_name(series), what, machine.name));
     };
-    if (series.vanished)
+    if (series.vanished) {
+      const HistoryEntry& entry = *machine.entries[*series.vanished];
+      const bool moved = std::ranges::any_of(entry.rows, [&](const HistoryRow& row) {
+        return same_combination(series, row) && row.verified && row.ms_per_step;
+      });
       tell(*series.vanished,
-           fmt::format("without a verified time since commit {}; measure it again, or see why it failed",
-                       machine.entries[*series.vanished]->commit));
+           moved ? fmt::format("on another device, or with other nodes, since commit {}; its times are not "
+                               "compared with those before",
+                               entry.commit)
+                 : fmt::format(
+                       "without a verified time since commit {}; measure it again, or see why it failed",
+                       entry.commit));
+    }
     if (series.changes.empty()) continue;
     const ChangePoint& last = series.changes.back();
     if (judged(last, threshold) == "slower")

@@ -253,6 +253,11 @@ std::string combination_name(const A& a) {
 /// Whether the row is ok and verified, so that its time counts.
 inline bool counts(const ResultRow& row) { return row.status == "ok" && row.verified; }
 
+/// Whether the row failed, or has a time that was not verified.
+inline bool is_wrong(const ResultRow& row) {
+  return row.status.starts_with("failed") || (row.status == "ok" && !row.verified);
+}
+
 /// Computes all values that follow from the row's samples. `serial`: the baseline's row of the same
 /// integrator, or null.
 void summarise(ResultRow& row, const ResultRow* serial);

@@ -186,9 +186,8 @@ std::vector<Cell> cells_of(const ClusterRows& rows, const ClusterRow& cluster_ro
   };
   std::string label = "`" + row.backend + "`";
   if (cluster_row.scene.times > 1) label += fmt::format(" on `{}`", row.scene);
-  Cell interval, bytes, messages, model;
+  Cell bytes, messages, model;
   if (ms) {
-    interval = interval_text(*row.ms_per_step_low, *row.ms_per_step_high);
     if (row.bytes_per_step && cluster_row.ranks > 1)
       bytes = grouped(static_cast<std::uint64_t>(std::llround(*row.bytes_per_step)));
     if (row.messages_per_step && cluster_row.ranks > 1) messages = three_digits(*row.messages_per_step);
@@ -199,7 +198,7 @@ std::vector<Cell> cells_of(const ClusterRows& rows, const ClusterRow& cluster_ro
   }
   return {label,
           measured_cell(&row, ms),
-          interval,
+          interval_cell(row),
           percent(computing_share(row)),
           percent(row.packing_share),
           percent(row.waiting_share),

@@ -136,6 +136,11 @@ Cell measured_cell(const ResultRow* row, const std::optional<double>& value) {
 
 std::string interval_text(double low, double high) { return three_digits(low) + " to " + three_digits(high); }
 
+Cell interval_cell(const ResultRow& row) {
+  if (!counted_ms(row) || !row.ms_per_step_low || !row.ms_per_step_high) return {};
+  return interval_text(*row.ms_per_step_low, *row.ms_per_step_high);
+}
+
 std::optional<double> ns_per_node(const ResultRow& row, const std::optional<double>& ms) {
   if (!counts(row) || !ms) return std::nullopt;
   return *ms * 1e6 / static_cast<double>(row.nodes);

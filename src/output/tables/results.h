@@ -194,6 +194,8 @@ Cell measured_cell(const ResultRow* row, const std::optional<double>& value);
 
 /// "0.115 to 0.121"
 std::string interval_text(double low, double high);
+/// The interval of the row's time; empty if the row does not count, or has none.
+Cell interval_cell(const ResultRow& row);
 
 /// ns per node and step for `ms`, a time of the row; none if the row does not count.
 std::optional<double> ns_per_node(const ResultRow& row, const std::optional<double>& ms);

@@ -57,11 +57,7 @@ Document page_of(RowPointers rows, const std::vector<RaceLegend>& legend, const 
       {{"method"}, [&](const ResultRow& row) { return backend_label(rows, row.backend, provenance); }},
       {{"ms per step", Align::right},
        [](const ResultRow& row) { return measured_cell(&row, counted_ms(row)); }},
-      {{"interval", Align::right},
-       [](const ResultRow& row) -> Cell {
-         if (!counted_ms(row) || !row.ms_per_step_low || !row.ms_per_step_high) return {};
-         return interval_text(*row.ms_per_step_low, *row.ms_per_step_high);
-       }},
+      {{"interval", Align::right}, interval_cell},
       {{"ratio", Align::right, "×"},
        [&](const ResultRow& row) {
          if (!counted_ms(row) || !row.speedup_vs_serial) return Cell();

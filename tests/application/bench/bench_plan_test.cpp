@@ -132,6 +132,10 @@ TEST_F(BenchPlanTest, HasARowForEachInstructionSetThatIsAskedFor) {
   }
 
   options_.threads = {};
+  options_.backends = {"openmp", "openmp:" + other};
+  EXPECT_THAT(names_in(plan_of(options_).settings.backends),
+              testing::UnorderedElementsAre("openmp", "openmp:" + other));
+
   options_.instruction_sets = {other};
   options_.backends = {"openmp", "openmp:" + best};
   plan = plan_of(options_);
