@@ -11,8 +11,6 @@ say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
 bad_usage() { say "$*; see --help" && exit 2; }
 
-bad_usage() { say "$*; see --help" && exit 2; }
-
 # timed PROGRAM ARGUMENT...: runs it, prints its time, and returns its exit code.
 timed() {
   local start=$SECONDS code=0
@@ -31,13 +29,6 @@ measured_on() {
           printf "(%d logical CPUs), ", processors }' /proc/cpuinfo
   printf 'commit %s%s, %s' "$(git -C "$1" rev-parse --short=12 HEAD)" \
     "$([[ -z $(git -C "$1" status --porcelain -uno -- . ':!results') ]] || echo ', changed')" "$(date -u +%Y-%m-%dT%H:%M:%SZ)"
-}
-
-# commit_of REVISION: its commit, or says that there is none here, and exits.
-commit_of() {
-  git -C "$root" rev-parse --verify --quiet "$1^{commit}" && return
-  say "there is no revision $1 here; fetch it first (a shallow clone has few), or name another"
-  exit 2
 }
 
 # commit_of REVISION: its commit, or says that there is none here, and exits.

@@ -207,8 +207,10 @@ ReportFolder read_report_folder(const fs::path& path) {
         records_of(path / timings_name, "without it there is nothing to show", read_timings, folder.problems);
   if (!folder.rows.empty()) {
     if (read_beside(path / samples_name, folder, "intervals of ratios follow from those of the times",
-                    read_samples))
+                    read_samples)) {
+      keep_rounds_of_timings(folder.rows);
       drop_incomplete_samples(path / samples_name, folder);
+    }
     if (is_there(path / garment_name))
       read_beside(path / garment_name, folder, "the draping of garments is not shown", read_dressings);
   }

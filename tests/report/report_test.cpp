@@ -80,6 +80,18 @@ TEST_F(ReportFolderTest, GoesWithoutDamagedSamples) {
   EXPECT_THAT(found.problems[0], HasSubstr("has no samples of 2 rows"));
 }
 
+TEST_F(ReportFolderTest, LeavesOutARoundThatTimingsDoNotHave) {
+  std::vector<ResultRow> behind = rows;
+  for (ResultRow& row : behind) --row.rounds;
+  put_run(timings_csv(behind), samples);
+  const ReportFolder found = read();
+  EXPECT_THAT(found.problems, IsEmpty());
+  for (std::size_t i = 0; i < found.rows.size(); ++i) {
+    ASSERT_EQ(found.rows[i].samples_ms.size() + 1, rows[i].samples_ms.size());
+    EXPECT_EQ(found.rows[i].samples_ms[0], rows[i].samples_ms[0]);
+  }
+}
+
 TEST_F(ReportFolderTest, TrustsNoTimeThatIsNotAboveZero) {
   std::vector<ResultRow> bad = rows;
   bad[0].ms_per_step = 0;

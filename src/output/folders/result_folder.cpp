@@ -170,17 +170,20 @@ void ResultFolder::write_files(std::vector<FolderFile> files, const std::vector<
   for (AtomicFile& file : written) file.move_into_place();
 }
 
-std::vector<ResultRow> read_results(const fs::path& folder) {
-  if (!fs::exists(folder / timings_name)) return {};
-  std::vector<ResultRow> rows = read_timings(CsvTable(folder / timings_name));
-  read_samples(CsvTable(folder / samples_name), rows);
-  if (fs::exists(folder / garment_name)) read_dressings(CsvTable(folder / garment_name), rows);
-  // A run that was ended between two files leaves a round that timings.csv, the last one, does not have.
+void keep_rounds_of_timings(std::span<ResultRow> rows) {
   for (ResultRow& row : rows) {
     const auto rounds = static_cast<std::size_t>(std::max(0, row.rounds));
     row.samples_ms.resize(std::min(row.samples_ms.size(), rounds));
     row.sample_steps.resize(row.samples_ms.size());
   }
+}
+
+std::vector<ResultRow> read_results(const fs::path& folder) {
+  if (!fs::exists(folder / timings_name)) return {};
+  std::vector<ResultRow> rows = read_timings(CsvTable(folder / timings_name));
+  read_samples(CsvTable(folder / samples_name), rows);
+  if (fs::exists(folder / garment_name)) read_dressings(CsvTable(folder / garment_name), rows);
+  keep_rounds_of_timings(rows);
   return rows;
 }
 

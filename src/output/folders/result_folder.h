@@ -74,6 +74,10 @@ class ResultFolder {
   bool replaces_ = false, goes_on_ = false;  ///< until the first write
 };
 
+/// Removes samples of rounds that a row does not have: a run that was ended between two files leaves a round
+/// that timings.csv, the last one, lacks.
+void keep_rounds_of_timings(std::span<ResultRow> rows);
+
 /// The rows that an earlier run left in a folder, with their samples and dressings; none without timings.csv.
 /// Throws CsvError.
 std::vector<ResultRow> read_results(const std::filesystem::path& folder);
