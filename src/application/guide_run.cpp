@@ -269,7 +269,9 @@ int run_guide(const GuideOptions& options) {
   }
   if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
   if (folder && !written)
-    std::cerr << "mssim: nothing was measured yet; " << escaped(options.folder) << " has no results\n";
+    std::cerr << "mssim: nothing was measured yet; "
+              << (folder->has_results() ? "earlier results are still in " : "there are no results in ")
+              << escaped(options.folder) << '\n';
   stop.throw_if_requested();
   if (const std::vector<std::string> failed = failures(guides, plan.scenes.size()); !failed.empty()) {
     tell_first(failed);

@@ -225,13 +225,13 @@ int run(const BenchRequest& options) {
     measure_scenes(plan, budget, stop, results);
     if (!plan.described.empty() && format == SummaryFormat::table) std::cout << '\n';
     std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
-    if (format == SummaryFormat::github) results.keep_for_github();
+    if (format == SummaryFormat::github && !results.rows().empty()) results.keep_for_github();
     const BenchVerdict verdict =
         verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
     tell_first(verdict.reasons);
     code = verdict.exit_code;
   }
-  // The first result that is kept replaces earlier ones, so nothing is before the first round.
+  // The first write replaces earlier results, so nothing is written before there is a row.
   if (!structure.empty() && (plan.timed.empty() || !results.rows().empty())) results.keep(structure);
   tell_where_results_are(plan, results, stop.requested());
   stop.throw_if_requested();

@@ -93,8 +93,10 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
     else
       ++without_time;
   if (timed > 0)
-    findings.push_back({false, subject(timed, "row", " has a time, and is", " have a time, and all are") +
-                                   " verified against the double-precision reference."});
+    findings.push_back(
+        {false, subject(timed, "row", " has a time, and is",
+                        wrong.empty() ? " have a time, and all are" : " have a time, and are") +
+                    " verified against the double-precision reference."});
   if (!wrong.empty())
     findings.push_back({true, subject(wrong.size(), "row", " failed or is not verified, and is",
                                       " failed or are not verified, and are") +
