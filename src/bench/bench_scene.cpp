@@ -277,14 +277,21 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
   return rows;
 }
 
-/// Gives the combinations their earlier samples, as many as all of them have, and returns how many.
+/// Gives the combinations their earlier samples, as many as all of them have, and returns how many. A row
+/// that failed although it has all samples was found out after them, and fails again.
 int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>& earlier) {
-  std::size_t complete = SIZE_MAX;
+  std::size_t complete = SIZE_MAX, most = 0;
+  for (const ResultRow& row : earlier)
+    if (counts(row)) most = std::max(most, row.samples_ms.size());
   for (Combination& combination : combinations) {
     if (!combination.backend) continue;
     const auto row = std::ranges::find_if(
         earlier, [&](const ResultRow& other) { return same_combination(other, combination.row); });
     if (row != earlier.end()) {
+      if (is_wrong(*row) && row->samples_ms.size() >= most) {
+        if (most > 0) fail(combination, row->status);
+        continue;
+      }
       static_cast<Samples&>(combination.row) = static_cast<const Samples&>(*row);
       static_cast<MeasuredCosts&>(combination.row) = static_cast<const MeasuredCosts&>(*row);
     }

@@ -198,6 +198,33 @@ TEST_F(BenchScene, GoesOnWithTheRoundsThatAllCombinationsHave) {
   }
 }
 
+TEST_F(BenchScene, NeverTakesSamplesBackThatWereRejected) {
+  const std::vector<ResultRow> first = run();
+  job_.earlier = first;
+  ResultRow& rejected = job_.earlier[1];
+  rejected.verified = false;
+  rejected.status = "failed: its samples are wrong";
+  job_.rounds = static_cast<int>(first[0].samples_ms.size()) + 1;
+  std::vector<ResultRow> rows = run();
+  EXPECT_EQ(rows[1].status, rejected.status);
+  EXPECT_FALSE(rows[1].verified);
+  EXPECT_THAT(rows[1].samples_ms, IsEmpty());
+  EXPECT_EQ(rows[0].samples_ms[0], first[0].samples_ms[0]);
+  EXPECT_EQ(rows[0].rounds, job_.rounds);
+
+  rejected.samples_ms.pop_back();  // it ended while it was measured
+  rejected.sample_steps.pop_back();
+  rows = run();
+  EXPECT_EQ(rows[1].status, "ok");
+  EXPECT_EQ(rows[1].rounds, job_.rounds);
+
+  for (ResultRow& row : job_.earlier) {
+    row.verified = false;
+    row.status = "failed: its samples are wrong";
+  }
+  EXPECT_TRUE(counts(run()[0])) << "without a row to go on with, all is measured again";
+}
+
 TEST_F(BenchScene, StopsWithTheRoundsThatAreComplete) {
   run();
   const int asked_in_all = std::exchange(asked_, 0);
