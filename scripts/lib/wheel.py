@@ -11,6 +11,9 @@ when = time.gmtime(int(os.environ["SOURCE_DATE_EPOCH"]))[:6]
 files = {"mssim_backend.py": tree / "share/mssim/python/mssim_backend.py",
          f"{info}/licenses/LICENSE": tree / "share/doc/mssim/LICENSE"}
 files.update({f"mssim/{path.relative_to(tree)}": path for path in tree.rglob("*") if path.is_file()})
+# The manual page and completions once more, where man and shells look beside an environment's programs.
+files.update({f"mssim-{version}.data/data/{path.relative_to(tree)}": path for folder in ("man", "bash-completion", "fish", "zsh")
+              for path in (tree / "share" / folder).rglob("*") if path.is_file()})
 # Written with one mode; those of a checkout differ.
 texts = {
     "mssim/__init__.py": (here / "wheel_package.py").read_text(encoding="utf-8"),

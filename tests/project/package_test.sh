@@ -85,6 +85,9 @@ if /usr/bin/python3 -m venv "$place/venv" >/dev/null 2>&1; then
   runs "$place/venv/bin/mssim"
   "$place/venv/bin/python" -c 'import importlib.util as u, mssim; assert u.find_spec("mssim_backend") and mssim.program.exists()' ||
     fail 'the modules of the wheel'
+  for page in man/man1/mssim.1 bash-completion/completions/mssim fish/vendor_completions.d/mssim.fish zsh/site-functions/_mssim; do
+    [[ -s $place/venv/share/$page ]] || fail "the wheel has no share/$page where it is looked for"
+  done
   "$place/venv/bin/pip" uninstall --yes --quiet mssim
   [[ -z $(find "$place/venv" -name '*mssim*') ]] || fail "left behind: $(find "$place/venv" -name '*mssim*')"
 fi
@@ -111,3 +114,4 @@ if command -v lintian >/dev/null; then
   lintian --fail-on error ./*.deb >"$place/err" 2>&1 || fail 'lintian finds errors'
 fi
 for recipe in Dockerfile mssim.def; do grep -qF "/tmp/$deb" "$recipe" || fail "$recipe does not install the package"; done
+diff <(sed -n 's/^RUN //p' Dockerfile) <(sed -n '/^%post$/,/^%/s/^ *apt/apt/p' mssim.def) || fail "the recipes differ"
