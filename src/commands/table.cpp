@@ -95,7 +95,7 @@ int table(const TableOptions& options) {
   input.tables = tables_of_all_suites();
   tell_of_problems(input);
   for (const ReportFolder& folder : input.folders)
-    if (folder.rows.empty() && !folder.guide)
+    if (folder.rows.empty() && folder.bodies.empty() && !folder.guide)
       throw UsageError("{} has no row that can be shown: give folders that mssim bench --out wrote",
                        printable(folder.name, 1000));
   if (options.out.empty()) {

@@ -329,6 +329,8 @@ std::vector<TablePage> table_pages(const ReportFolder& folder, const ReportInput
       if (const std::string name(std::string_view(table.name));
           std::ranges::find(folder.tables, name) != folder.tables.end())
         pages.push_back({name, std::move(table.page), rounds_in(folder)});
+  if (!folder.bodies.empty())
+    pages.push_back({"table2", structure_table(folder.bodies, *folder.provenance).page, {}});
   if (folder.guide) pages.push_back({"guide", folder.guide->page, {}});
   if (!folder.rows.empty()) pages.push_back({"times", times_page(folder), rounds_in(folder)});
   return pages;

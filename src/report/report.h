@@ -64,9 +64,10 @@ struct FoundPicture {
 /// Everything that a report shows of a result folder. Missing or damaged parts become sentences, never
 /// errors.
 struct ReportFolder {
-  std::string name;                 ///< as given
-  std::vector<ResultRow> rows;      ///< the readable ones; without any samples if those are damaged
-  std::optional<FoundGuide> guide;  ///< of a folder that mssim guide wrote
+  std::string name;                  ///< as given
+  std::vector<ResultRow> rows;       ///< the readable ones; without any samples if those are damaged
+  std::optional<FoundGuide> guide;   ///< of a folder that mssim guide wrote
+  std::vector<StructureRow> bodies;  ///< of table2.csv
   std::optional<Provenance> provenance;
   std::vector<FoundCurve> curves;
   std::vector<FoundPicture> pictures;
@@ -77,7 +78,8 @@ struct ReportFolder {
   Provenance where_from() const { return provenance.value_or(Provenance()); }
 };
 
-/// The folder itself if it has a timings.csv or a guide.csv; otherwise its subfolders that have one, by name.
+/// The folder itself if it has a timings.csv, a guide.csv or a table2.csv; otherwise its subfolders that have
+/// one, by name.
 std::vector<std::filesystem::path> result_folders(const std::filesystem::path& folder);
 
 /// Reads what a folder has. Throws LaterFormatError for a folder that a later mssim wrote.

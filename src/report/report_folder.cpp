@@ -18,6 +18,8 @@ constexpr std::size_t largest_picture_bytes = std::size_t{8} << 20, largest_page
 
 /// The points of a guide; a folder that has this file is a guide's.
 constexpr const char* guide_name = "guide.csv";
+/// The meshes of bodies.
+constexpr const char* structure_name = "table2.csv";
 
 bool is_there(const fs::path& path) {
   std::error_code error;
@@ -25,7 +27,8 @@ bool is_there(const fs::path& path) {
 }
 
 bool has_results(const fs::path& folder) {
-  return is_there(folder / timings_name) || is_there(folder / guide_name);
+  return is_there(folder / timings_name) || is_there(folder / guide_name) ||
+         is_there(folder / structure_name);
 }
 
 /// The entries of a folder, by name; empty if it cannot be listed.
@@ -202,7 +205,10 @@ ReportFolder read_report_folder(const fs::path& path) {
   ReportFolder folder;
   folder.name = path.string();
   folder.guide = read_guide(path, folder.problems);
-  if (!folder.guide || is_there(path / timings_name))
+  if (is_there(path / structure_name))
+    folder.bodies =
+        records_of(path / structure_name, "its bodies are not shown", read_structure, folder.problems);
+  if ((!folder.guide && folder.bodies.empty()) || is_there(path / timings_name))
     folder.rows =
         records_of(path / timings_name, "without it there is nothing to show", read_timings, folder.problems);
   if (!folder.rows.empty()) {

@@ -283,6 +283,7 @@ std::string published_section(const ReportInput& input) {
     if (input.tables)
       for (const ResultTable& table : input.tables(folder.rows, folder.where_from()))
         text += html_of(table.page, 4);
+    if (!folder.bodies.empty()) text += html_of(structure_table(folder.bodies, folder.where_from()).page, 4);
     return text.empty() ? paragraph("No row of this folder belongs in a published table.") : text;
   });
 }

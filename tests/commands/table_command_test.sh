@@ -150,6 +150,10 @@ sed -i 's/"commit": "[^"]*"/"commit": "unknown"/' "$work/no-commit/provenance.js
 ends 0 table "$work/no-commit" --format latex --out "$work/no-commit-paper"
 ! grep -q 'git checkout' "$work/no-commit-paper/artifact.tex" || fail "an unknown commit is checked out"
 
+# Bodies of Table 2 have no times.
+ends 0 table "$results/table2" --format latex --out "$work/bodies"
+grep -q '12921' "$work/bodies/table2.tex" || fail "Table 2: $(cat "$work/bodies/table2.tex")"
+typeset "$work/bodies"
 # Several folders, one of them of a guide.
 ends 0 table "$results/table1/zen4" "$results/guide/zen4" --format latex --out "$work/both"
 [ -s "$work/both/1-table1-zen4-table1.tex" ] && [ -s "$work/both/2-guide-zen4-guide.tex" ] || fail "two folders: $(ls "$work/both")"

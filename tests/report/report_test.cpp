@@ -92,6 +92,21 @@ TEST_F(ReportFolderTest, LeavesOutARoundThatTimingsDoNotHave) {
   }
 }
 
+TEST_F(ReportFolderTest, ReadsTheMeshesOfBodiesWithoutTimes) {
+  put("table2.csv",
+      "scene,nodes,springs_unique,springs_published,tetrahedra,smallest_dihedral_angle_deg\n"
+      "box-small,700,4307,12921,3314,4.5\n");
+  const ReportFolder found = read();
+  EXPECT_THAT(found.problems, Not(Contains(HasSubstr("timings.csv"))));
+  ASSERT_EQ(found.bodies.size(), 1U);
+  EXPECT_EQ(found.bodies[0].scene, "box-small");
+  EXPECT_EQ(found.bodies[0].springs_published, 12921U);
+  EXPECT_EQ(found.bodies[0].tetrahedra, 3314U);
+  EXPECT_EQ(found.bodies[0].smallest_dihedral_angle_deg, 4.5);
+  put("table2.csv", "scene,nodes\nbox-small,-1\n");
+  EXPECT_THAT(read().problems, Contains(HasSubstr("table2.csv")));
+}
+
 TEST_F(ReportFolderTest, TrustsNoTimeThatIsNotAboveZero) {
   std::vector<ResultRow> bad = rows;
   bad[0].ms_per_step = 0;

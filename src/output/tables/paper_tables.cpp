@@ -360,6 +360,17 @@ Table structure_rows(std::span<const StructureRow> rows) {
   return table;
 }
 
+std::vector<StructureRow> read_structure(const CsvTable& table) {
+  std::vector<StructureRow> rows;
+  const auto at = [&](std::string_view name) { return table.column(name); };
+  for (std::size_t record = 0; record < table.size(); ++record)
+    rows.push_back({table.text(record, at("scene")), table.count(record, at("nodes")),
+                    table.count(record, at("springs_unique")), table.count(record, at("springs_published")),
+                    table.count(record, at("tetrahedra")),
+                    table.number(record, at("smallest_dihedral_angle_deg"))});
+  return rows;
+}
+
 ResultTable structure_table(std::span<const StructureRow> rows, const Provenance& provenance) {
   const std::vector<PublishedBody> bodies = published_bodies();
   const std::vector<Match> matches = paired(rows, bodies);

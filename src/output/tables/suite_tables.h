@@ -146,6 +146,8 @@ struct StructureRow {
 
 /// A line for each row, with its members as columns.
 Table structure_rows(std::span<const StructureRow> rows);
+/// The rows of a table2.csv. Throws CsvError.
+std::vector<StructureRow> read_structure(const CsvTable& table);
 
 /// Table 2 of Hong et al. with our meshes. The data has the columns of StructureRow, then paper_nodes,
 /// paper_springs, same_as_paper. The page leaves out scenes that are not the paper's, which are named
