@@ -362,9 +362,8 @@ std::string roofline_section(const ReportInput& input) {
   };
   return paragraph(
              "Operations and bytes are the least that a step needs. A roof is drawn at the dots of its "
-             "number "
-             "of threads: what the machine's peaks allow there, measured in the same process. Other programs "
-             "that run at that time lower them.") +
+             "number of threads: what the machine's peaks allow there, measured in the same process. Other "
+             "programs that run at that time lower them.") +
          of_each_folder(input, figure, "No folder has rows with a roofline; garments have none.");
 }
 

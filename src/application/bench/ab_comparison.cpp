@@ -95,7 +95,7 @@ class AbProgram {
   }
 
  private:
-  /// Bounds a program that would never end, also one that leaves its process group.
+  /// Bounds a program that would never end. Its processor time ends it if this process cannot any more.
   void limit(double seconds) {
     child_.elapsed_seconds = whole_seconds(seconds);
     child_.cpu_seconds = child_.elapsed_seconds * std::max(1U, std::thread::hardware_concurrency());

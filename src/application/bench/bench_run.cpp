@@ -145,7 +145,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   const double rounds = expected_rounds(plan);
   std::vector<double> seconds;
   for (const ExpectedTime& time : times_of(plan.timed)) seconds.push_back(time.with(rounds));
-  std::set<std::string> finished_ones;  // of all, before one is measured: a later one may not fit its command
+  std::set<std::string> finished_ones;  // known before a scene is measured: --resume may refuse a later one
   for (const PlannedScene& planned : plan.timed) {
     BenchSettings settings = plan.settings;
     settings.backends = planned.backends;
