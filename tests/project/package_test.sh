@@ -35,6 +35,24 @@ mkdir "$place/tree"
 cp -r "$2/scripts" "$place/tree"
 package=$place/tree/scripts/package refuses 3 'no commit; set SOURCE_DATE_EPOCH' archive --build "$build"
 
+# A release is of a commit, of its own build, with its version in CITATION.cff and CHANGELOG.md. Another program says such a version here.
+tree=$place/tree
+cp "$2/CITATION.cff" "$2/CHANGELOG.md" "$2/.gitignore" "$tree"
+git_there() { git -C "$tree" -c user.name=test -c user.email=test@example.org "$@" >/dev/null; }
+releases() { package=$tree/scripts/package DEBEMAIL=test@example.org refuses 3 "$1" release --build "${2-$place/other}"; }
+mkdir -p "$place/other/bin"
+# shellcheck disable=SC2016 # that shell expands it
+printf '#!/bin/sh\necho "mssim 9.8.7 ($(git -C %q rev-parse HEAD))"\n' "$tree" >"$place/other/bin/mssim"
+chmod +x "$place/other/bin/mssim"
+releases 'this tree has no commit' "$build"
+git_there init --quiet && git_there add . && git_there commit --quiet -m test
+releases "$build was built from .*, not from this commit" "$build"
+releases 'CITATION.cff does not have version 9.8.7'
+echo 'version: 9.8.7' >>"$tree/CITATION.cff"
+releases 'not committed'
+git_there commit --quiet -a -m version
+releases 'CHANGELOG.md has no section \[9.8.7\]'
+
 for kind in archive wheel deb recipes; do
   for folder in first second; do make "$kind" "$folder"; done
 done
