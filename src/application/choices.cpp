@@ -39,7 +39,7 @@ constexpr std::string_view description_extension = ".json";
 /// What follows the colon in hybrid:each.
 constexpr std::string_view each_word = each_suffix.substr(1);
 
-/// What follows the colon in serial:double.
+/// What follows the colon in serial:double and openmp:double.
 constexpr std::string_view double_word = "double";
 
 /// The folder of the user's own descriptions; none if the user has no home folder.
@@ -192,6 +192,7 @@ BackendChoice::Row::Row(const BackendInfo& of, std::string_view how)
   info.name = name;
   if (how == each_word || how == double_word) {
     (how == each_word ? info.each_body : info.in_double) = true;
+    if (info.in_double && info.has_vectors) info.step_share *= 2;  // half as many lanes
     info.role = BackendRole::as_published;
     info.make_dressing = nullptr;
   } else if (const auto threads = number_in<int>(how)) {
@@ -246,8 +247,10 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   const auto in_table = std::ranges::find(known_, its_name, &BackendInfo::name);
   const std::string its_last = its_name.substr(its_name.rfind(':') + 1);
   const std::optional<std::string_view> set = instruction_set_named(how);
-  const bool is_of_variant =
-      its_last == each_word ? how != each_word : number_in<int>(how) && instruction_set_named(its_last);
+  const bool is_of_variant = its_last == each_word ? how != each_word
+                             : its_last == double_word
+                                 ? number_in<int>(how) || set
+                                 : number_in<int>(how) && instruction_set_named(its_last);
   const BackendInfo* row = in_table != known_.end() ? *in_table : is_of_variant ? variant(its_name) : nullptr;
   const std::optional<fs::path> file = row ? std::nullopt : description_of(its_name);
   if (!row && !file) return nullptr;
@@ -259,7 +262,7 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
           printable(name), each_word);
     return &add_variant(*row, how);
   }
-  if (row && row->role == BackendRole::baseline && how == double_word) return &add_variant(*row, how);
+  if (row && row->make_in_double != nullptr && how == double_word) return &add_variant(*row, how);
   if (row && row->has_vectors && set) return &add_variant(*row, instruction_set_name(*set));
   BackendProgram program = file ? described_by(*file) : BackendProgram{};
   if (row ? !row->makes_threads && !row->uses_device : !program.in_ranks)

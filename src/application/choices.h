@@ -79,10 +79,10 @@ class BackendChoice {
   /// The row for a name: a row of the table, the file at a path (with a slash), or the program described in
   /// NAME.json. NAME:COUNT is a program in that many ranks, or a row of the table with that many threads.
   /// NAME:each is a row of the table that steps one body after the other, and NAME:SET one whose vector code
-  /// is for that instruction set; NAME:each:COUNT and NAME:SET:COUNT are both. serial:double steps in double
-  /// precision. Throws UsageError with the nearest name or a list, for an ambiguous name, and like
-  /// require_few_threads; MissingProgram for a path without an executable program; SceneError for a wrong
-  /// description.
+  /// is for that instruction set; NAME:each:COUNT and NAME:SET:COUNT are both. NAME:double steps in double
+  /// precision, if the row has make_in_double, also as NAME:double:COUNT and NAME:double:SET. Throws
+  /// UsageError with the nearest name or a list, for an ambiguous name, and like require_few_threads;
+  /// MissingProgram for a path without an executable program; SceneError for a wrong description.
   const BackendInfo& require(const std::string& name);
 
   /// The rows of these names: first those of the table, in its order, then the others. Throws like require().

@@ -169,26 +169,35 @@ std::string RunRecorder::kept() {
 
 namespace {
 
-/// Makes the chosen backend: with `in_single` (make_backend or make_dressing_backend) or with `in_double`.
-template <class InSingle, class InDouble>
-auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
-                    const Integrator& integrator, const InSingle& in_single, const InDouble& in_double) {
-  if (options.precision == "single") {
-    ExecutionOptions execution = complete(options.execution);
-    execution.scene = scene.spec.name;
-    execution.scene_file = scene.spec.file;
-    auto backend = in_single(info, scene.system, integrator, scene.dt_s, execution);
-    if (info.uses_device) tell_of_opencl();
-    if (const std::string excess = excess_of(info, *backend, execution); !excess.empty())
-      std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
-    return backend;
-  }
-  if (info.role != BackendRole::baseline)
+/// Throws UsageError if the backend is to step in double precision and does not do so here.
+void require_precision(const RunOptions& options, const BackendInfo& info, const System& system,
+                       const Integrator& integrator) {
+  const std::string_view what = is_garment(system)        ? "a garment"
+                                : is_implicit(integrator) ? "an implicit integrator"
+                                                          : "a run";
+  const auto steps = what == "a run"
+                         ? +[](const BackendInfo& row) { return row.make_in_double != nullptr; }
+                         : [](const BackendInfo& row) { return row.role == BackendRole::baseline; };
+  if (info.in_double && !steps(info))
     throw UsageError(
-        "--precision double needs --backend {}, not \"{}\": the other backends of mssim compute in single "
-        "precision only, and programs choose their own",
-        baseline_backend().name, options.backend);
-  return in_double(scene.system, integrator, scene.dt_s);
+        "{} in double precision needs --precision double with --backend {}, not \"{}\"; a program chooses "
+        "its precision itself",
+        what, names_of(steps, "or"), options.backend);
+}
+
+/// Makes the chosen backend with make(row, system, integrator, dt_s, execution).
+template <class Make>
+auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                    const Integrator& integrator, const Make& make) {
+  require_precision(options, info, scene.system, integrator);
+  ExecutionOptions execution = complete(options.execution);
+  execution.scene = scene.spec.name;
+  execution.scene_file = scene.spec.file;
+  auto backend = make(info, scene.system, integrator, scene.dt_s, execution);
+  if (info.uses_device) tell_of_opencl();
+  if (const std::string excess = excess_of(info, *backend, execution); !excess.empty())
+    std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
+  return backend;
 }
 
 /// Warns if accounting takes long.
@@ -226,7 +235,7 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
                       command_line(provenance), options.pictures};
   headers.pictures.threads = complete(options.execution).threads;
   headers.trace.with_losses = options.losses;
-  headers.trace.in_double = options.precision == "double";
+  headers.trace.in_double = info.in_double;
   return headers;
 }
 
@@ -237,7 +246,12 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
 int run_garment(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                 const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
-      chosen_backend(options, info, scene, integrator, make_dressing_backend, make_reference_dressing);
+      chosen_backend(options, info, scene, integrator,
+                     [](const BackendInfo& row, const System& system, const Integrator& method, double dt_s,
+                        const ExecutionOptions& execution) {
+                       if (row.in_double) return make_reference_dressing(system, method, dt_s);
+                       return make_dressing_backend(row, system, method, dt_s, execution);
+                     });
   if (options.losses)
     throw UsageError(
         "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
@@ -309,10 +323,13 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
 
 int run_simulation(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                    const Integrator& integrator, const SimulationPlan& plan) {
-  const auto in_double = [](const System& system, const Integrator& method, double dt_s) {
-    return make_reference(system, method, dt_s);
-  };
-  const auto backend = chosen_backend(options, info, scene, integrator, make_backend, in_double);
+  const auto backend =
+      chosen_backend(options, info, scene, integrator,
+                     [](const BackendInfo& row, const System& system, const Integrator& method, double dt_s,
+                        const ExecutionOptions& execution) {
+                       if (row.in_double && is_implicit(method)) return make_reference(system, method, dt_s);
+                       return make_backend(row, system, method, dt_s, execution);
+                     });
   const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
   StopRequest stop;  // as in run_garment
   RunRecorder recorder(options.files, scene, headers);
@@ -379,7 +396,8 @@ int run_scene(RunOptions options) {
   require_trace_name();
   const Integrator& integrator = require_integrator(options.integrator);
   BackendChoice choice(with_garment_backends(table_backends()), options.own_backends, {options.scene});
-  const BackendInfo& info = choice.require(options.backend);
+  BackendInfo info = choice.require(options.backend);
+  info.in_double |= options.precision == "double";
   require_use_of_ranks(options.execution, {&info});
   require_device(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));

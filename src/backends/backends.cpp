@@ -47,31 +47,30 @@ std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Int
                               DressingShape::of(device, lanes_for(device)));
 }
 
+/// Of the same layout in double precision: twice as much, or a little less where there are indices.
+constexpr MemoryUse doubled(MemoryUse single) {
+  single.node *= 2;
+  single.pair_node *= 2;
+  single.spring *= 2;
+  return single;
+}
+
 constexpr auto table = std::to_array<BackendInfo>({
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
      false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, BackendRole::baseline,
-     dress_serially, make_serial_implicit, serial_implicit_memory},
+     dress_serially, make_serial_implicit, serial_implicit_memory, false, make_serial_in_double},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, ThreadStack::usual,
      make_threads_mutex, spring_list_memory, spring_list_memory, 1.2},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
      ThreadStack::openmp, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, dress_by_openmp,
-     make_openmp_implicit, openmp_implicit_memory, true},
+     make_openmp_implicit, openmp_implicit_memory, true, make_openmp_in_double},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
      device_slices, 0.12, BackendRole::contender, dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
      "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true,
      ThreadStack::openmp, make_hybrid, packed, packed, 0.35},
 });
-
-/// The names of the backends that have a feature, in words.
-std::string names_of(bool (*has)(const BackendInfo& row)) {
-  std::vector<std::string_view> names;
-  for (const std::span<const BackendInfo> rows : {backends(), garment_backends()})
-    for (const BackendInfo& row : rows)
-      if (has(row)) names.push_back(row.name);
-  return listed(names);
-}
 
 constexpr const BackendInfo& only_row(BackendRole role) {
   return *std::ranges::find(table, role, &BackendInfo::role);
@@ -93,6 +92,14 @@ void require_threads(const BackendInfo& backend, const ExecutionOptions& options
 }  // namespace
 
 std::span<const BackendInfo> backends() { return table; }
+
+std::string names_of(bool (*has)(const BackendInfo& row), std::string_view last) {
+  std::vector<std::string_view> names;
+  for (const std::span<const BackendInfo> rows : {backends(), garment_backends()})
+    for (const BackendInfo& row : rows)
+      if (has(row)) names.push_back(row.name);
+  return listed(names, last);
+}
 
 std::vector<std::string_view> instruction_sets() { return openmp_instruction_sets(); }
 
@@ -141,15 +148,17 @@ BackendInfo own_backend(const BackendProgram& program) {
 }
 
 MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bool grid) {
-  if (backend.in_double) return reference_memory(integrator, grid);
   if (is_implicit(integrator))
     return backend.implicit_memory == nullptr ? MemoryUse{} : backend.implicit_memory(integrator, grid);
-  return grid ? backend.grid_memory : backend.mesh_memory;
+  const MemoryUse& single = grid ? backend.grid_memory : backend.mesh_memory;
+  return backend.in_double ? doubled(single) : single;
 }
 
 std::string unsupported_reason(const BackendInfo& backend, const Integrator& integrator) {
   if (backend.program != nullptr) return unsupported_reason(*backend.program, integrator);
   if (backend.make == nullptr) return "it steps garments only";
+  if (backend.in_double && is_implicit(integrator))
+    return "in double precision it steps explicit integrators only";
   if (!is_implicit(integrator) || backend.make_implicit != nullptr) return {};
   return "implicit integrators are stepped by " +
          names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; });
@@ -173,9 +182,6 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
         throw Unavailable(*shortage);
     return each;
   }
-  if (backend.in_double && is_implicit(integrator))
-    throw Unsupported("in double precision it steps explicit integrators only");
-  if (backend.in_double) return make_reference(system, integrator, dt_s);
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);
   if (backend.program != nullptr)
@@ -185,7 +191,8 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
     throw Unsupported(reason);
   require_threads(backend, options);
   if (is_implicit(integrator)) return backend.make_implicit(system, integrator, dt_s, options);
-  return step_ahead(backend.make(system, integrator, dt_s, options), system, integrator, dt_s);
+  const auto make = backend.in_double ? backend.make_in_double : backend.make;
+  return step_ahead(make(system, integrator, dt_s, options), system, integrator, dt_s);
 }
 
 std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, const System& outline,
@@ -227,13 +234,12 @@ std::string excess_of(const BackendInfo& info, const Backend& backend, const Exe
 std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s,
                                         const std::function<bool()>& stop) {
   if (is_implicit(integrator)) return make_implicit_reference(system, integrator, dt_s, stop);
-  return step_ahead(make_serial_in_double(system, integrator, dt_s), system, integrator, dt_s);
+  return step_ahead(make_serial_in_double(system, integrator, dt_s, {}), system, integrator, dt_s);
 }
 
 MemoryUse reference_memory(const Integrator& integrator, bool grid) {
   if (is_implicit(integrator)) return implicit_reference_memory(integrator, grid);
-  // A spring list of twice the bytes, except for the byte per node that marks pins.
-  return {.node = 2 * spring_list_memory.node - 1, .pair_node = 2 * spring_list_memory.pair_node};
+  return doubled(spring_list_memory);
 }
 
 }  // namespace mssim

@@ -54,12 +54,15 @@ struct BackendInfo {
   MemoryUse (*implicit_memory)(const Integrator& integrator, bool grid) = nullptr;
   /// Whether its steps are vector code, for which ExecutionOptions::instruction_set can be chosen.
   bool has_vectors = false;
+  /// Makes `make`'s counterpart that steps in double precision; null if it has none.
+  std::unique_ptr<Backend> (*make_in_double)(const System& system, const Integrator& integrator, double dt_s,
+                                             const ExecutionOptions& options) = nullptr;
   /// The program that takes its steps. It must outlive the row.
   const BackendProgram* program = nullptr;
   int threads = 0;  ///< fixed by the row; 0: the number requested
   /// Instruction set that the row fixes, by Highway's name; empty: the requested one.
   std::string_view instruction_set = {};
-  bool in_double = false;  ///< steps as make_reference() does, with explicit integrators only
+  bool in_double = false;  ///< steps in double precision (make_in_double), with explicit integrators only
   bool each_body = false;  ///< one backend per body of the scene; the bodies take a step in turn
   /// The double-precision counterpart of `make_dressing`, against which its garments are verified.
   std::unique_ptr<DressingBackend> (*make_dressing_reference)(const System& system,
@@ -83,6 +86,9 @@ std::span<const BackendInfo> backends();
 /// The rows of the TABLE of published dressings (garment/stepping/published_dressing.h), in its order. They
 /// step only garments, and have the role `as_published`.
 std::span<const BackendInfo> garment_backends();
+
+/// The names of the backends that have a feature, in words, as listed() joins them.
+std::string names_of(bool (*has)(const BackendInfo& row), std::string_view last = "and");
 
 /// The instruction sets of vector code (has_vectors) that this CPU supports, by Highway's names, the best
 /// first.

@@ -46,7 +46,9 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
   Peaks peaks;
   if (job.garment || job.verified || job.windowed) return peaks;
   for (const Combination& combination : combinations) {
-    if (is_implicit(*combination.integrator) || !combination.backend || !combination.on_host) continue;
+    if (is_implicit(*combination.integrator) || combination.in_double || !combination.backend ||
+        !combination.on_host)
+      continue;
     const auto [threads, bytes] = peak_key(combination, size);
     if (peaks.contains({threads, bytes})) continue;
     watch.progress("machine peak with " + pluralize(threads, "thread"), job.preparation);

@@ -270,8 +270,8 @@ std::function<int()> declare_bench(Arguments& arguments) {
   add_backends(
       arguments, options->backends,
       "Backends, or methods with --suite races (default: all of mssim's); NAME:each steps each body for "
-      "itself, NAME:4 takes four threads, NAME:AVX2 that instruction set, serial:double that precision; a "
-      "path with a slash, or a described name, is a program of your own");
+      "itself, NAME:4 takes four threads, NAME:AVX2 that instruction set, serial:double and openmp:double "
+      "that precision; a path with a slash, or a described name, is a program of your own");
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);
   add_integrators(arguments, options->integrators,

@@ -17,9 +17,10 @@ std::function<int()> declare_run(Arguments& arguments) {
   declare_stepping(
       arguments, *options,
       "Frames per simulated second of the trace, the energy curve and the pictures (default: 60)");
-  arguments.add("--precision WORD", options->precision,
-                "single, or double with --backend serial (default: single)",
-                one_of("precision", {"single", "double"}));
+  arguments.add(
+      "--precision WORD", options->precision,
+      "single, or double with --backend serial, or openmp and an explicit integrator (default: single)",
+      one_of("precision", {"single", "double"}));
   arguments.add("--trace FILE", options->files.trace,
                 "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView next to it");
   arguments.add("--energy-curve FILE", options->files.energy_curve,

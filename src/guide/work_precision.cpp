@@ -402,7 +402,7 @@ bool WorkCurve::goes_on_after(const WorkPoint& point) {
   if (*point.position_error <= wanted_error_ / 4) return false;
   if (last_error_ && *point.position_error >= 0.9 * *last_error_ &&
       *point.position_error < largest_rounding) {
-    end(Lack::nothing, "smaller steps are no more accurate: rounding of single precision");
+    end(Lack::nothing, "smaller steps are no more accurate: roundings");
     return false;
   }
   return true;

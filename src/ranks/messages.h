@@ -135,7 +135,7 @@ class NeighbourMessages final : public StandingMessages {
 
 /// The edge nodes of a rank's part of bodies as messages to the ranks that have them as ghosts: positions and
 /// velocities, packed, because edge nodes are not contiguous.
-class GhostMessages final : public NodeMessages {
+class GhostMessages final : public NodeMessages<float> {
  public:
   /// `session` must outlive this object. `bodies` are those of the part.
   GhostMessages(const Session& session, const BodiesPart& part, const SlicedBodies& bodies);

@@ -21,7 +21,18 @@ expect 2 'fps' run --scene cloth2500 --fps 1e9
 ends 0 run --scene cloth2500 --duration 0.0002 --backend serial --fps 1e-16 --energy-curve few.csv
 [ "$(grep -c '^[0-9]' few.csv)" -eq 2 ] || fail "frames: $(cat few.csv)"
 expect 2 'dt' run --scene cloth2500 --dt -1
-expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
+expect 2 'serial or openmp, not "hybrid"' run --scene cloth2500 --backend hybrid --precision double
+expect 2 'garment .* --backend serial, not "openmp"' run --scene jeans1k --backend openmp --precision double
+expect 2 'implicit .* --backend serial, not "openmp:double"' run --scene cloth2500 --backend openmp:double --integrator newton-euler
+ends 0 run --scene cloth2500 --backend openmp --precision double --duration 0.01
+
+# Rows in double precision differ from the reference by their roundings only.
+ends 0 bench --scene cloth2500,torus-small --backend serial:double,openmp:double --integrator rk4 --threads 1,2 \
+  --rounds 1 --out "$work/double"
+rows='serial:double openmp:double:1 openmp:double'
+[ "$(column_of "$work/double/timings.csv" backend | paste -sd ' ')" == "$rows $rows" ] || fail "rows: $(cat "$work/double/timings.csv")"
+awk '!($1 < 1e-9) { exit 1 }' <(column_of "$work/double/timings.csv" position_error) ||
+  fail "in double precision: $(column_of "$work/double/timings.csv" position_error)"
 
 # Plans.
 ends 0 bench --suite table1 --dry-run --out "$work/never"

@@ -61,6 +61,8 @@ kept=$(frames full.h5.part)
 # Double precision is stored as such; springs stand with what a strain is computed from.
 "$mssim" "${fall[@]}" --backend serial --precision double --duration 0.01 --fps 200 --trace double.h5 >out
 h5dump -H -d /particles/cloth/position/value double.h5 | grep H5T_IEEE_F64LE >/dev/null || fail "double is stored as single"
+"$mssim" "${fall[@]}" --backend openmp:double --duration 0.01 --fps 200 --trace vectors.h5 >out
+h5dump -H -d /particles/cloth/position/value vectors.h5 | grep H5T_IEEE_F64LE >/dev/null || fail "openmp:double is stored as single"
 grep -q 'NumberType="Float" Precision="8".*/xdmf/position/' double.xdmf || fail "the XDMF of double precision: $(head -n 9 double.xdmf)"
 "$mssim" "${fall[@]}" --duration 0.01 --fps 200 --trace single.h5 >out
 h5dump -H -d /particles/cloth/position/value single.h5 | grep H5T_IEEE_F32LE >/dev/null || fail "single is stored as double"

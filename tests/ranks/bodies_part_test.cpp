@@ -15,7 +15,7 @@ namespace mssim {
 namespace {
 
 /// What MPI is between processes, between threads: whole records.
-class MailOfNodes final : public NodeMessages {
+class MailOfNodes final : public NodeMessages<float> {
  public:
   /// `mail`: [ranks][ranks] from the one to the other.
   MailOfNodes(int rank, std::vector<std::vector<Mail>>& mail, const BodiesPart& part,

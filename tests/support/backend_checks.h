@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "backends/backends.h"
 #include "backends/interface/backend.h"
 #include "bench/verification/verification.h"
 #include "tests/support/systems.h"
@@ -14,7 +15,8 @@ struct ByName {
   static std::string of(std::string_view first, std::string_view second = "") {
     std::string name(first);
     if (!second.empty()) name.append("__").append(second);
-    std::ranges::replace(name, '-', '_');
+    std::ranges::replace_if(
+        name, [](char c) { return c == '-' || c == ':'; }, '_');
     return name;
   }
   template <class Parameter>
@@ -32,6 +34,17 @@ std::vector<std::string_view> names_of(const auto& table) {
   for (const auto& row : table) names.push_back(row.name);
   return names;
 }
+
+/// A backend of the table, also as NAME:double.
+inline BackendInfo row_named(std::string_view name) {
+  const std::string_view suffix = ":double";
+  BackendInfo row = *find_backend(name.substr(0, name.find(':')));
+  row.name = name;
+  row.in_double = name.ends_with(suffix);
+  return row;
+}
+/// What makes its backends for explicit integrators.
+inline auto maker_of(const BackendInfo& row) { return row.in_double ? row.make_in_double : row.make; }
 
 /// Whether positions and velocities are the same to the last bit; else says where they are not.
 inline testing::AssertionResult same_state(const State& found, const State& expected) {

@@ -4,7 +4,7 @@ namespace mssim {
 
 PaddedRows::PaddedRows(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
                        std::size_t lanes, std::size_t thread_count)
-    : SeparateSteps(system, method, dt_s),
+    : SeparateSteps<float>(system, method, dt_s),
       layout(grid, lanes),
       springs(springs_per_mass(system, grid)),
       threads(thread_count) {

@@ -21,11 +21,11 @@ std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integra
 using PairRows = RowLayout<6>;
 
 /// Data of a cloth that the vector code needs to take steps. Pairs have PairRows::floats floats.
-struct PaddedRows : SeparateSteps {
+struct PaddedRows : SeparateSteps<float> {
   PairRows layout;
   std::vector<SpringPerMass> springs;  ///< [kinds]
   std::size_t threads = 1;
-  std::vector<PlacedPin> pins;         ///< by row, at PairRows::offset
+  std::vector<PlacedPin<float>> pins;  ///< by row, at PairRows::offset
   std::vector<std::size_t> first_pin;  ///< [rows + 1] begin of a row's pins
 
   /// Throws Unsupported if the nodes differ in mass. Set a state before the first step.

@@ -123,7 +123,7 @@ HWY_NOINLINE void step_inside(const ClothConstants& all, const Arrays& starts, s
 HWY_INLINE void put_back_pins(const PaddedRows& cloth, std::size_t row, float* array) {
   const std::size_t pitch = cloth.layout.pitch;
   for (std::size_t i = cloth.first_pin[row]; i < cloth.first_pin[row + 1]; ++i) {
-    const PlacedPin& pin = cloth.pins[i];
+    const PlacedPin<float>& pin = cloth.pins[i];
     for (std::size_t k = 0; k < 3; ++k) {
       array[pin.offset + k * pitch] = pin.position[k];
       array[pin.offset + (3 + k) * pitch] = 0;

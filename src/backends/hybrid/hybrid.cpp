@@ -21,7 +21,7 @@
 namespace mssim {
 
 HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s)
-    : ExplicitSteps(system, method, dt_s),
+    : ExplicitSteps<float>(system, method, dt_s),
       packed(system),
       constants(packed.slots() * 2),
       materials(materials_of<float>(system)) {
@@ -56,7 +56,7 @@ void HostNodes::forget_units() {
 
 AlikeNodes::AlikeNodes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
                        double dt_s)
-    : ExplicitSteps(system, method, dt_s), springs(bodies) {}
+    : ExplicitSteps<float>(system, method, dt_s), springs(bodies) {}
 
 SpringKernel AlikeNodes::spring_kernel(int lanes) const {
   const std::size_t parts = AlikeSprings::slice_nodes / static_cast<std::size_t>(lanes);

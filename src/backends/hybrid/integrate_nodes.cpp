@@ -23,7 +23,7 @@ using Quad = float __attribute__((vector_size(16)));
 
 /// The forces to add at the slice's nodes, in the order of forces: the sum of its entries, in one stream.
 HWY_INLINE void add_forces(const PackedSprings& packed, const float* forces, std::size_t slice, float* sums) {
-  const FloatTag d;
+  const RealTag d;
   constexpr std::size_t at_a_time = 4 * vector_nodes;
   const float* end = forces + packed.first_entry[slice + 1] * slice_floats;
   for (std::size_t from = 0; from < slice_floats; from += at_a_time) {
@@ -62,8 +62,8 @@ HWY_INLINE Lanes3 load_sums(const float* sums, std::size_t node) {
   const float* sum = sums + 4 * PackedSprings::force_place(node);
   return {sum[0], sum[1], sum[2]};
 #else
-  const FloatTag d;
-  hn::Vec<FloatTag> component[4];
+  const RealTag d;
+  hn::Vec<RealTag> component[4];
   transpose_blocks(hn::Load(d, sums + node), hn::Load(d, sums + slice_nodes + node),
                    hn::Load(d, sums + 2 * slice_nodes + node), hn::Load(d, sums + 3 * slice_nodes + node),
                    component);
@@ -91,9 +91,8 @@ HWY_NOINLINE void integrate_slices(const HostNodes& nodes, const MappedNodes& ma
       const float* constants = nodes.constants.data() + slice * 2 * slice_nodes;
       for (std::size_t number = 0; number < slice_nodes; number += vector_nodes) {
         const Lanes3 force = load_sums(sums + i * slice_floats, number);
-        const Lanes inverse_mass = hn::Load(FloatTag(), constants + number);
-        const Mask free =
-            hn::Eq(hn::Load(FloatTag(), constants + slice_nodes + number), hn::Zero(FloatTag()));
+        const Lanes inverse_mass = hn::Load(RealTag(), constants + number);
+        const Mask free = hn::Eq(hn::Load(RealTag(), constants + slice_nodes + number), hn::Zero(RealTag()));
         const std::size_t offset = (slice * slice_nodes + number) * record_floats;
         const NodeLanes node =
             load_nodes(mapped.pairs[index(integrators[method].stages[stage].gather)] + offset);
@@ -126,7 +125,7 @@ HWY_NOINLINE void integrate_slices(const AlikeNodes& nodes, const MappedNodes& m
       constexpr Pair gathered = integrators[method].stages[stage].gather;
       const NodeLanes node{load(std::integral_constant<Slot, position_slot(gathered)>{}),
                            load(std::integral_constant<Slot, velocity_slot(gathered)>{})};
-      const Mask free = hn::FirstN(FloatTag(), springs.pinned[slice] != 0 ? 0 : lane_count());
+      const Mask free = hn::FirstN(RealTag(), springs.pinned[slice] != 0 ? 0 : lane_count());
       update_lanes<method, stage>(
           node, sum, free, Lanes(nodes.surroundings.gravity), nodes.coefficients, nodes.surroundings, load,
           [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { store3(at(slot), value, slice_nodes); });

@@ -28,7 +28,7 @@ struct SpringKernel {
 /// Data with which the host's threads sum the spring forces at the nodes and integrate them, for one
 /// integrator and one dt (made in hybrid.cpp). Nodes are records (kernels/records.h), forces are in the order
 /// of PackedSprings, four floats each, N.
-struct HostNodes : ExplicitSteps {
+struct HostNodes : ExplicitSteps<float> {
   PackedSprings packed;
   /// [slices][inverse mass, held][16]: 1/kg; 1 if pinned or padding, else 0.
   AlignedArray constants;
@@ -46,7 +46,7 @@ struct HostNodes : ExplicitSteps {
 };
 
 /// HostNodes for alike bodies: data with which the host's threads sum the spring forces and integrate.
-struct AlikeNodes : ExplicitSteps {
+struct AlikeNodes : ExplicitSteps<float> {
   AlikeSprings springs;
 
   /// `bodies`: all bodies of the system.

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "integrators/integrator.h"
@@ -18,11 +19,18 @@
 
 namespace mssim {
 
-/// The surroundings of a system in single precision.
-inline Surroundings surroundings_of(const System& system) {
-  return {static_cast<float>(system.viscous_damping), static_cast<float>(system.gravity),
-          static_cast<float>(system.floor.height), static_cast<float>(system.floor.restitution),
-          static_cast<float>(system.floor.friction)};
+/// Surroundings (kernels/parameters.h) in double precision.
+struct SurroundingsInDouble {
+  double viscous_damping, gravity, floor_height, restitution, friction;
+};
+/// The surroundings of a system for steps in numbers of type `Real`: float or double.
+template <class Real>
+using SurroundingsOf = std::conditional_t<std::is_same_v<Real, float>, Surroundings, SurroundingsInDouble>;
+template <class Real = float>
+SurroundingsOf<Real> surroundings_of(const System& system) {
+  return {static_cast<Real>(system.viscous_damping), static_cast<Real>(system.gravity),
+          static_cast<Real>(system.floor.height), static_cast<Real>(system.floor.restitution),
+          static_cast<Real>(system.floor.friction)};
 }
 
 /// Costs of communication between processes that step together; none of those that they do not tell.

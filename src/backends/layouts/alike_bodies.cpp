@@ -8,17 +8,18 @@
 
 namespace mssim {
 
-std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) {
+template <class Real>
+std::optional<std::vector<AlikeBodiesOf<Real>>> find_alike_bodies(const System& system) {
   const std::vector<std::uint32_t> order = reverse_cuthill_mckee(system.nodes(), system.springs);
   const std::vector<std::uint32_t> place = places_in(order);
   const SpringsByFirstEnd springs(system.springs, place, place);
   std::vector<std::uint8_t> pinned(system.nodes(), 0);
   for (const std::uint32_t node : system.pins) pinned[node] = 1;
 
-  std::vector<AlikeBodies> all;
+  std::vector<AlikeBodiesOf<Real>> all;
   std::size_t begin = 0;
   for (const std::size_t end : component_ends(system.springs, place)) {
-    AlikeBodies body;
+    AlikeBodiesOf<Real> body;
     body.bodies.emplace_back(order.begin() + static_cast<std::ptrdiff_t>(begin),
                              order.begin() + static_cast<std::ptrdiff_t>(end));
     const double mass = system.node_mass[order[begin]];
@@ -32,18 +33,18 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
         const Spring& spring = system.springs[number];
         if (spring.kind != kind.value_or(spring.kind)) return std::nullopt;
         kind = spring.kind;
-        const SpringPerMass law =
-            spring_per_mass(system.materials[spring.kind], static_cast<double>(spring.rest_length), mass);
+        const SpringPerMassOf<Real> law = spring_per_mass<Real>(
+            system.materials[spring.kind], static_cast<double>(spring.rest_length), mass);
         body.constants = law.constants;
         body.springs.push_back(
             {springs.second_slot(spring) - static_cast<std::uint32_t>(begin), law.stiffness_rest});
       }
       std::ranges::sort(body.springs.begin() + static_cast<std::ptrdiff_t>(first), body.springs.end(), {},
-                        &AlikeBodies::SpringAhead::other);
+                        &AlikeBodiesOf<Real>::SpringAhead::other);
     }
     body.first_spring.push_back(static_cast<std::uint32_t>(body.springs.size()));
     begin = end;
-    const auto known = std::ranges::find_if(all, [&](const AlikeBodies& of) {
+    const auto known = std::ranges::find_if(all, [&](const AlikeBodiesOf<Real>& of) {
       return of.constants == body.constants && of.pinned == body.pinned &&
              of.first_spring == body.first_spring && of.springs == body.springs;
     });
@@ -55,22 +56,27 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
   return all;
 }
 
-std::size_t spring_vectors(const std::vector<AlikeBodies>& bodies, std::size_t lanes) {
+template <class Real>
+std::size_t spring_vectors(const std::vector<AlikeBodiesOf<Real>>& bodies, std::size_t lanes) {
   std::size_t vectors = 0;
-  for (const AlikeBodies& of : bodies) vectors += (of.bodies.size() + lanes - 1) / lanes * of.springs.size();
+  for (const AlikeBodiesOf<Real>& of : bodies)
+    vectors += (of.bodies.size() + lanes - 1) / lanes * of.springs.size();
   return vectors;
 }
 
-std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes,
-                                                         double per_body) {
-  std::optional<std::vector<AlikeBodies>> bodies = find_alike_bodies(system);
+template <class Real>
+std::optional<std::vector<AlikeBodiesOf<Real>>> alike_bodies_for(const System& system, std::size_t lanes,
+                                                                 double per_body) {
+  auto bodies = find_alike_bodies<Real>(system);
   if (bodies && static_cast<double>(lanes * spring_vectors(*bodies, lanes)) >
                     per_body * static_cast<double>(system.springs.size()))
     bodies.reset();
   return bodies;
 }
 
-AlikeSlices::AlikeSlices(const std::vector<AlikeBodies>& bodies, std::size_t lane_count) : lanes(lane_count) {
+template <class Real>
+AlikeSlices::AlikeSlices(const std::vector<AlikeBodiesOf<Real>>& bodies, std::size_t lane_count)
+    : lanes(lane_count) {
   for (std::size_t shape = 0; shape < bodies.size(); ++shape) {
     const std::vector<std::vector<std::uint32_t>>& all = bodies[shape].bodies;
     nodes += all.size() * bodies[shape].nodes();
@@ -84,7 +90,8 @@ AlikeSlices::AlikeSlices(const std::vector<AlikeBodies>& bodies, std::size_t lan
   }
 }
 
-void AlikeSlices::write(const State& state, float* pair) const {
+template <class Real>
+void AlikeSlices::write(const State& state, Real* pair) const {
   for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::uint32_t node = scene_node[slice * lanes + lane];
@@ -93,7 +100,8 @@ void AlikeSlices::write(const State& state, float* pair) const {
     }
 }
 
-State AlikeSlices::read(const float* pair) const {
+template <class Real>
+State AlikeSlices::read(const Real* pair) const {
   State state{std::vector<Vec3d>(nodes), std::vector<Vec3d>(nodes)};
   for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -103,5 +111,19 @@ State AlikeSlices::read(const float* pair) const {
     }
   return state;
 }
+
+// NOLINTBEGIN(bugprone-macro-parentheses): a type has no parentheses
+#define MSSIM_INSTANTIATE(Real)                                                                         \
+  template std::optional<std::vector<AlikeBodiesOf<Real>>> find_alike_bodies(const System&);            \
+  template std::size_t spring_vectors(const std::vector<AlikeBodiesOf<Real>>&, std::size_t);            \
+  template std::optional<std::vector<AlikeBodiesOf<Real>>> alike_bodies_for(const System&, std::size_t, \
+                                                                            double);                    \
+  template AlikeSlices::AlikeSlices(const std::vector<AlikeBodiesOf<Real>>&, std::size_t);              \
+  template void AlikeSlices::write(const State&, Real*) const;                                          \
+  template State AlikeSlices::read(const Real*) const;
+MSSIM_INSTANTIATE(float)
+MSSIM_INSTANTIATE(double)
+#undef MSSIM_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace mssim

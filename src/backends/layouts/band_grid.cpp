@@ -11,20 +11,22 @@ bool has_row(const BandLayout& layout, std::ptrdiff_t row) {
 }
 
 /// The constants of a row of the bands.
-std::vector<float> values_of_row(const BandLayout& layout, const std::vector<SpringPerMass>& springs,
-                                 float gravity, const ColumnsToEnd& to_end, std::ptrdiff_t band_row) {
+template <class Real>
+std::vector<Real> values_of_row(const BandLayout& layout, const std::vector<SpringPerMassOf<Real>>& springs,
+                                Real gravity, const ColumnsToEnd& to_end, std::ptrdiff_t band_row) {
+  using Rows = BandRowsOf<Real>;
   const std::size_t lanes = layout.lanes;
-  std::vector<float> values((BandRows::gravity_vector + 1) * lanes);
+  std::vector<Real> values((Rows::gravity_vector + 1) * lanes);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lane % layout.bands * layout.height) + band_row;
     const std::size_t columns = to_end[lane / layout.bands];
     if (columns == 0 || !has_row(layout, row)) continue;
-    values[BandRows::gravity_vector * lanes + lane] = gravity;
+    values[Rows::gravity_vector * lanes + lane] = gravity;
     for (std::size_t i = 0; i < grid_stencil.size(); ++i) {
       if (!has_row(layout, row + grid_stencil[i].rows)) continue;
       if (static_cast<std::size_t>(grid_stencil[i].columns) >= columns) continue;
-      const SpringPerMass& spring = springs[grid_stencil[i].kind];
-      float* of_lane = values.data() + i * BandRows::spring_vectors * lanes + lane;
+      const SpringPerMassOf<Real>& spring = springs[grid_stencil[i].kind];
+      Real* of_lane = values.data() + i * Rows::spring_vectors * lanes + lane;
       *write_constants(of_lane, lanes, spring.constants) = spring.stiffness_rest;
     }
   }
@@ -69,19 +71,20 @@ ColumnCosts usual_column_costs() { return {0.7, 0.97, cache_bytes(_SC_LEVEL1_DCA
 
 }  // namespace
 
-BandRows::BandRows(const BandLayout& layout, const std::vector<SpringPerMass>& springs, float gravity,
-                   ColumnsToEnd to_end) {
-  std::vector<float> all;
-  std::map<std::vector<float>, std::uint32_t> offset_of;
+template <class Real>
+BandRowsOf<Real>::BandRowsOf(const BandLayout& layout, const std::vector<SpringPerMassOf<Real>>& springs,
+                             Real gravity, ColumnsToEnd to_end) {
+  std::vector<Real> all;
+  std::map<std::vector<Real>, std::uint32_t> offset_of;
   const auto beyond = static_cast<std::ptrdiff_t>(BandLayout::halo);
   const auto height = static_cast<std::ptrdiff_t>(layout.height);
   for (std::ptrdiff_t row = -beyond; row < height + beyond; ++row) {
-    const std::vector<float> values = values_of_row(layout, springs, gravity, to_end, row);
+    const std::vector<Real> values = values_of_row<Real>(layout, springs, gravity, to_end, row);
     const auto [found, is_new] = offset_of.try_emplace(values, static_cast<std::uint32_t>(all.size()));
     if (is_new) all.insert(all.end(), values.begin(), values.end());
     offsets_.push_back(found->second);
   }
-  values_ = AlignedArray(all.size());
+  values_ = AlignedArrayOf<Real>(all.size());
   std::ranges::copy(all, values_.data());
 }
 
@@ -102,7 +105,7 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
   constexpr std::size_t columns_per_stage = 16;
   const std::size_t cache = cache_bytes(_SC_LEVEL3_CACHE_SIZE, 16L << 20);
   const std::size_t steps = stages_under_way / integrator.stage_count;
-  const bool fits = layout.columns * layout.column_floats() * sizeof(float) <= cache / 2;
+  const bool fits = layout.columns * layout.column_floats() * layout.number_bytes <= cache / 2;
   const bool narrow =
       partitions > 1 && layout.columns / partitions < columns_per_stage * steps * integrator.stage_count;
   return fits || narrow ? 1 : steps;
@@ -125,8 +128,10 @@ std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, s
   const ColumnCosts costs =
       integrator.stage_count * steps_per_pass == 1 ? of_one_stage : usual_column_costs();
   const BandLayout folded(
-      {static_cast<std::uint32_t>(layout.rows), static_cast<std::uint32_t>(layout.columns)}, layout.lanes, 2);
-  const std::size_t under_way = (3 * folded.column_floats() + 2 * folded.force_floats()) * sizeof(float);
+      {static_cast<std::uint32_t>(layout.rows), static_cast<std::uint32_t>(layout.columns)}, layout.lanes, 2,
+      layout.number_bytes);
+  const std::size_t under_way =
+      (3 * folded.column_floats() + 2 * folded.force_floats()) * folded.number_bytes;
   if (under_way > costs.bytes) return 1;
   const auto rows = [&](const BandLayout& of) {
     return rows_of_pass(of, integrator, steps_per_pass, threads, costs.rows_beside);
@@ -134,10 +139,11 @@ std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, s
   return rows(folded) < costs.clearly_fewer * rows(layout) ? 2 : 1;
 }
 
-BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-                   std::size_t lanes, std::size_t most_threads, const BandCut& given)
-    : ExplicitSteps(system, method, 1),
-      layout(grid, lanes),
+template <class Real>
+BandGridOf<Real>::BandGridOf(const System& system, const GridPatch& grid, const Integrator& method,
+                             double dt_s, std::size_t lanes, std::size_t most_threads, const BandCut& given)
+    : ExplicitSteps<Real>(system, method, 1),
+      layout(grid, lanes, 1, sizeof(Real)),
       columns(layout.columns),
       own(given.piece.value_or(ColumnRange{0, columns})),
       dt_s_(dt_s),
@@ -146,38 +152,39 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
   steps_per_pass = given.steps_per_pass.value_or(
       steps_per_pass_for(layout, method, partitions_for(own.count, most_threads, method, 1)));
   if (!given.piece && given.halves.value_or(halves_for(layout, method, steps_per_pass, most_threads)) > 1) {
-    layout = BandLayout(grid, lanes, 2);
+    layout = BandLayout(grid, lanes, 2, sizeof(Real));
     const std::size_t ghosts = ghost_columns(method, steps_per_pass);
     own = {ghosts, (columns + 1) / 2};
     columns = own.end() + ghosts;
   }
   cut(most_threads);
-  surroundings.gravity = static_cast<float>(system.gravity * dt_s * dt_s);
-  surroundings.viscous_damping = static_cast<float>(system.viscous_damping * dt_s);
-  const std::vector<SpringPerMass> springs = springs_per_mass(system, grid, dt_s);
-  for (BandPartition& partition : partitions) {
+  this->surroundings.gravity = static_cast<Real>(system.gravity * dt_s * dt_s);
+  this->surroundings.viscous_damping = static_cast<Real>(system.viscous_damping * dt_s);
+  const auto springs = springs_per_mass<Real>(system, grid, dt_s);
+  for (Partition& partition : partitions) {
     const std::size_t local_columns = partition.ghosts + partition.count + partition.ghosts;
     for (const Pair pair : stored_pairs(method, Storage::in_place))
       partition.pairs[index(pair)] =
-          AlignedArray((pair == Pair::state ? local_columns : ring_columns) * layout.column_floats());
-    partition.forces = AlignedArray(stages_under_way * 2 * layout.force_floats());
+          AlignedArrayOf<Real>((pair == Pair::state ? local_columns : ring_columns) * layout.column_floats());
+    partition.forces = AlignedArrayOf<Real>(stages_under_way * 2 * layout.force_floats());
     partition.column_rows.resize(local_columns);
     partition.pins.resize(local_columns);
     choose_rows(partition, springs);
     add_pins(partition, system);
   }
   for (std::size_t p = 0; p + 1 < partitions.size(); ++p)
-    for (EdgeColumns* edge : {&partitions[p].right, &partitions[p + 1].left})
-      for (AlignedArray& set : edge->sets)
-        set = AlignedArray(partitions[p].ghosts * EdgeColumns::column_floats(layout));
+    for (EdgeColumns<Real>* edge : {&partitions[p].right, &partitions[p + 1].left})
+      for (AlignedArrayOf<Real>& set : edge->sets)
+        set = AlignedArrayOf<Real>(partitions[p].ghosts * EdgeColumns<Real>::column_floats(layout));
 }
 
-void BandGrid::cut(std::size_t most_threads) {
-  const std::size_t ghosts = ghost_columns(*integrator, steps_per_pass);
+template <class Real>
+void BandGridOf<Real>::cut(std::size_t most_threads) {
+  const std::size_t ghosts = ghost_columns(*this->integrator, steps_per_pass);
   const bool is_piece = layout.halves == 1;  // or all: then there are no adjacent columns
   const bool left = is_piece && own.first > 0, right = is_piece && own.end() < columns;
   const std::size_t edge_columns = ghosts * (std::size_t{left} + std::size_t{right});
-  const bool has_edges = own.count >= edge_columns + narrowest_partition(*integrator, steps_per_pass);
+  const bool has_edges = own.count >= edge_columns + narrowest_partition(*this->integrator, steps_per_pass);
   ColumnRange inner = own;
   if (has_edges && left) {
     add_partition({own.first, ghosts});
@@ -188,24 +195,27 @@ void BandGrid::cut(std::size_t most_threads) {
   // Without edges one partition has all columns: messages bring only the first and the last ghosts.
   threads = (left || right) && !has_edges
                 ? 1
-                : partitions_for(inner.count, most_threads, *integrator, steps_per_pass);
+                : partitions_for(inner.count, most_threads, *this->integrator, steps_per_pass);
   for (std::size_t p = 0; p < threads; ++p) add_partition(part_of(inner, p, threads));
   if (has_edges && right) add_partition({inner.end(), ghosts});
 }
 
-void BandGrid::add_partition(ColumnRange its) {
-  BandPartition& partition = partitions.emplace_back();
+template <class Real>
+void BandGridOf<Real>::add_partition(ColumnRange its) {
+  Partition& partition = partitions.emplace_back();
   partition.first = its.first;
   partition.count = its.count;
-  partition.ghosts = ghost_columns(*integrator, steps_per_pass);
+  partition.ghosts = ghost_columns(*this->integrator, steps_per_pass);
   partition.first_of_cloth = layout.halves == 1 ? its.first : layout.halves * (its.first - own.first);
 }
 
-ColumnRange BandGrid::filled_columns(const BandPartition& partition) const {
+template <class Real>
+ColumnRange BandGridOf<Real>::filled_columns(const Partition& partition) const {
   return with_ghosts({partition.first, partition.count}, partition.ghosts, columns);
 }
 
-void BandGrid::choose_rows(BandPartition& partition, const std::vector<SpringPerMass>& springs) {
+template <class Real>
+void BandGridOf<Real>::choose_rows(Partition& partition, const std::vector<SpringPerMassOf<Real>>& springs) {
   const auto to_end = [&](std::ptrdiff_t column) {
     const auto left = static_cast<std::ptrdiff_t>(layout.columns) - column;
     if (column < 0 || left < 0) return std::size_t{0};
@@ -217,11 +227,12 @@ void BandGrid::choose_rows(BandPartition& partition, const std::vector<SpringPer
     for (std::size_t half = 0; half < layout.halves; ++half)
       key[half] = to_end(partition.cloth_column(column, half));
     partition.column_rows[partition.local(column)] =
-        &band_rows.try_emplace(key, layout, springs, surroundings.gravity, key).first->second;
+        &band_rows.try_emplace(key, layout, springs, this->surroundings.gravity, key).first->second;
   }
 }
 
-void BandGrid::add_pins(BandPartition& partition, const System& system) const {
+template <class Real>
+void BandGridOf<Real>::add_pins(Partition& partition, const System& system) const {
   const ColumnRange filled = filled_columns(partition);
   for (const std::uint32_t node : system.pins)
     for (std::size_t half = 0; half < layout.halves; ++half) {
@@ -229,19 +240,21 @@ void BandGrid::add_pins(BandPartition& partition, const System& system) const {
       const std::ptrdiff_t behind =
           static_cast<std::ptrdiff_t>(node % layout.columns) - partition.cloth_column(filled.first, half);
       if (behind < 0 || static_cast<std::size_t>(behind) >= filled.count) continue;
-      const Vec3<float> position = vec3_cast<float>(system.start.position[node]);
+      const Vec3<Real> position = vec3_cast<Real>(system.start.position[node]);
       partition.pins[partition.local(filled.first + static_cast<std::size_t>(behind))].push_back(
           {layout.offset(row, half), {position.x, position.y, position.z}});
     }
 }
 
-void BandGrid::fill_partition(BandPartition& partition, const State& state) const {
+template <class Real>
+void BandGridOf<Real>::fill_partition(Partition& partition, const State& state) const {
   // Above the floor, if there is one (without_floor): springs to dummies must be finite.
   constexpr double lowest_floor = -1e6;
-  const double dummy_height = std::max(static_cast<double>(surroundings.floor_height), lowest_floor) + 1;
+  const double dummy_height =
+      std::max(static_cast<double>(this->surroundings.floor_height), lowest_floor) + 1;
   const ColumnRange filled = filled_columns(partition);
   for (std::size_t column = filled.first; column < filled.end(); ++column) {
-    float* out = partition.column(layout, Pair::state, column) + layout.offset(0);
+    Real* out = partition.column(layout, Pair::state, column) + layout.offset(0);
     for (std::size_t r = 0; r < layout.height; ++r, out += layout.row_floats())
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {
         const std::size_t row = lane % layout.bands * layout.height + r;
@@ -262,7 +275,8 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
   }
 }
 
-void BandGrid::set_state(const State& state) {
+template <class Real>
+void BandGridOf<Real>::set_state(const State& state) {
 #pragma omp parallel for num_threads(static_cast <int>(partitions.size())) schedule(static, 1)
   for (std::size_t p = 0; p < partitions.size(); ++p) {
     fill_partition(partitions[p], state);
@@ -270,12 +284,13 @@ void BandGrid::set_state(const State& state) {
   }
 }
 
-void BandGrid::fill_edges(std::size_t p) {
-  BandPartition& partition = partitions[p];
-  const auto fill = [&](EdgeColumns& edge, std::size_t first, std::size_t half) {
+template <class Real>
+void BandGridOf<Real>::fill_edges(std::size_t p) {
+  Partition& partition = partitions[p];
+  const auto fill = [&](EdgeColumns<Real>& edge, std::size_t first, std::size_t half) {
     for (std::size_t i = 0; i < partition.ghosts; ++i) {
-      const float* from = partition.column(layout, Pair::state, first + i) + layout.offset(0);
-      float* to = edge.column(layout, passes, i);
+      const Real* from = partition.column(layout, Pair::state, first + i) + layout.offset(0);
+      Real* to = edge.column(layout, passes, i);
       for (std::size_t n = 0; n < layout.height * BandLayout::components; ++n)
         std::copy_n(from + n * layout.lanes + half * layout.bands, layout.bands, to + n * layout.bands);
     }
@@ -286,22 +301,24 @@ void BandGrid::fill_edges(std::size_t p) {
     fill(partition.right, partition.first + partition.count - partition.ghosts, layout.halves - 1);
 }
 
-State BandGrid::state() const {
+template <class Real>
+State BandGridOf<Real>::state() const {
   return state({0, 0, static_cast<std::uint32_t>(layout.rows), static_cast<std::uint32_t>(layout.columns)});
 }
 
-State BandGrid::state(const GridWindow& window) const {
+template <class Real>
+State BandGridOf<Real>::state(const GridWindow& window) const {
   State state;
   state.position.resize(window.nodes());
   state.velocity.resize(window.nodes());
-  for (const BandPartition& partition : partitions)
+  for (const Partition& partition : partitions)
     for (std::size_t i = 0; i < layout.halves * partition.count; ++i) {
       const std::size_t half = i / partition.count, its = partition.first + i % partition.count;
       const auto of_cloth = static_cast<std::size_t>(partition.cloth_column(its, half));
       if (of_cloth < window.column || of_cloth >= window.column + window.columns) continue;
-      const float* column = partition.column(layout, Pair::state, its);
+      const Real* column = partition.column(layout, Pair::state, its);
       for (std::size_t row = 0; row < window.rows; ++row) {
-        const float* in = column + layout.offset(window.row + row, half);
+        const Real* in = column + layout.offset(window.row + row, half);
         const std::size_t node = row * window.columns + of_cloth - window.column;
         state.position[node] = read_vector(in, layout.lanes);
         const Vec3d v = read_vector(in + 3 * layout.lanes, layout.lanes);
@@ -310,5 +327,10 @@ State BandGrid::state(const GridWindow& window) const {
     }
   return state;
 }
+
+template class BandRowsOf<float>;
+template class BandRowsOf<double>;
+template struct BandGridOf<float>;
+template struct BandGridOf<double>;
 
 }  // namespace mssim

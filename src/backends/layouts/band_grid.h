@@ -19,9 +19,10 @@
 
 namespace mssim {
 
-/// A cloth laid out for vectors of `lanes` floats: the rows are divided into `lanes` bands of `height` rows,
-/// and lane b has band b. A row of the layout is thus `lanes` nodes that are `height` rows apart, and every
-/// neighbour of a node is an aligned load of the same lane, without a shuffle or a gather.
+/// A cloth laid out for vectors of `lanes` numbers, floats or doubles: the rows are divided into `lanes`
+/// bands of `height` rows, and lane b has band b. A row of the layout is thus `lanes` nodes that are `height`
+/// rows apart, and every neighbour of a node is an aligned load of the same lane, without a shuffle or a
+/// gather.
 ///
 ///     [column][row -2 .. height + 1][x y z u v w][lane]       (u v w: velocity)
 ///
@@ -39,25 +40,29 @@ struct BandLayout {
   std::size_t bands;          ///< lanes per half
   std::size_t rows, columns;  ///< of the cloth
   std::size_t height;         ///< rows per band
+  std::size_t number_bytes;   ///< of a number: 4 or 8
 
   static constexpr std::size_t halo = 2;        ///< longest spring, in rows or columns
   static constexpr std::size_t components = 6;  ///< position and velocity
 
-  BandLayout(const GridPatch& grid, std::size_t lane_count, std::size_t half_count = 1)
+  BandLayout(const GridPatch& grid, std::size_t lane_count, std::size_t half_count = 1,
+             std::size_t bytes = sizeof(float))
       : lanes(lane_count),
         halves(half_count),
         bands(lanes / halves),
         rows(grid.rows),
         columns(grid.columns),
-        height(std::max(halo, (rows + bands - 1) / bands)) {}
+        height(std::max(halo, (rows + bands - 1) / bands)),
+        number_bytes(bytes) {}
 
+  /// Numbers of a row of nodes and of a column.
   std::size_t row_floats() const { return components * lanes; }
   std::size_t column_floats() const { return (height + 2 * halo) * row_floats(); }
-  /// Floats from a column's start to the x of the node in a row of the cloth.
+  /// Numbers from a column's start to the x of the node in a row of the cloth.
   std::size_t offset(std::size_t row, std::size_t half = 0) const {
     return (row % height + halo) * row_floats() + half * bands + row / height;
   }
-  /// Floats of one column of forces: rows 0 .. height, three components. The last row has the forces of the
+  /// Numbers of one column of forces: rows 0 .. height, three components. The last row has the forces of the
   /// first row on the column's last row, one lane before.
   std::size_t force_floats() const { return (height + 1) * 3 * lanes; }
 };
@@ -69,12 +74,13 @@ using ColumnsToEnd = std::array<std::size_t, 2>;
 /// Constants for the nodes of each row of a banded cloth, one value per lane: those of the springs that they
 /// own, and gravity. All are zero if there is no such spring or node: then nothing pulls, dummies stay at
 /// rest, and the vector code needs no masks. Most rows share their values.
-class BandRows {
+template <class Real>
+class BandRowsOf {
  public:
   /// The constants of a column with `to_end` columns to the end, unless it is far from the cloth's end.
   /// `springs`: by GridSpringKind. `gravity` in m/s^2, or in the springs' unit of time.
-  BandRows(const BandLayout& layout, const std::vector<SpringPerMass>& springs, float gravity,
-           ColumnsToEnd to_end = {far_from_end, far_from_end});
+  BandRowsOf(const BandLayout& layout, const std::vector<SpringPerMassOf<Real>>& springs, Real gravity,
+             ColumnsToEnd to_end = {far_from_end, far_from_end});
 
   /// Columns to the end beyond which springs do not reach it.
   static constexpr std::size_t far_from_end = BandLayout::halo + 1;
@@ -83,15 +89,16 @@ class BandRows {
   static constexpr std::size_t spring_vectors = spring_constant_count + 1;
   static constexpr std::size_t gravity_vector = grid_stencil.size() * spring_vectors;
 
-  /// Values of row 0; another row's are offset_of_row() floats later.
-  const float* values() const { return values_.data(); }
+  /// Values of row 0; another row's are offset_of_row() numbers later.
+  const Real* values() const { return values_.data(); }
   /// Offset of row 0; those of the halo rows are before and after the rows'.
   const std::uint32_t* offset_of_row() const { return offsets_.data() + BandLayout::halo; }
 
  private:
-  AlignedArray values_;
+  AlignedArrayOf<Real> values_;
   std::vector<std::uint32_t> offsets_;
 };
+using BandRows = BandRowsOf<float>;
 
 /// Consecutive columns of a cloth.
 struct ColumnRange {
@@ -181,17 +188,18 @@ inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * sta
 /// Columns at one end of a partition, for the adjacent partition: copies, because the walk overwrites the
 /// state. Two alternating sets, so that a thread that is one pass behind still finds the data of its pass:
 /// threads need no barrier.
+template <class Real>
 struct EdgeColumns {
   /// [pass % 2][ghosts][height][x y z u v w][lane of a half]: without halo rows, and without the half that no
   /// other thread reads, to move less between caches.
-  std::array<AlignedArray, 2> sets;
+  std::array<AlignedArrayOf<Real>, 2> sets;
   ThreadProgress pass;  ///< the next pass that may read its set
 
   bool exists() const { return sets[0].size() > 0; }  ///< whether there is a partition that reads them
   static std::size_t column_floats(const BandLayout& layout) {
     return layout.height * BandLayout::components * layout.bands;
   }
-  float* column(const BandLayout& layout, std::uint64_t of_pass, std::size_t number) {
+  Real* column(const BandLayout& layout, std::uint64_t of_pass, std::size_t number) {
     return sets[of_pass % 2].data() + number * column_floats(layout);
   }
 };
@@ -199,20 +207,21 @@ struct EdgeColumns {
 /// The columns of one thread, numbered as in the layout, with ghost columns on each side that repeat the
 /// neighbours': two for each active stage. The thread recomputes there all stages except the last, so it
 /// needs no other thread until the last is done.
-struct BandPartition {
+template <class Real>
+struct BandPartitionOf {
   std::size_t first = 0;
   std::size_t count = 0;           ///< own columns of the thread
   std::size_t first_of_cloth = 0;  ///< column of the cloth that `first` is in the first half
   std::size_t ghosts = 0;          ///< on each side
   /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty if
   /// not stored.
-  std::array<AlignedArray, pair_kinds> pairs;
-  std::vector<std::vector<PlacedPin>> pins;  ///< [ghosts + count + ghosts] by column
-  std::vector<const BandRows*> column_rows;  ///< by column: constants of its rows
-  AlignedArray forces;                       ///< [stages_under_way][2][force_floats], active columns
+  std::array<AlignedArrayOf<Real>, pair_kinds> pairs;
+  std::vector<std::vector<PlacedPin<Real>>> pins;    ///< [ghosts + count + ghosts] by column
+  std::vector<const BandRowsOf<Real>*> column_rows;  ///< by column: constants of its rows
+  AlignedArrayOf<Real> forces;                       ///< [stages_under_way][2][force_floats], active columns
   /// Its first `ghosts` columns for the partition before it and its last ones for the next; empty if there is
   /// none.
-  EdgeColumns left, right;
+  EdgeColumns<Real> left, right;
 
   /// Index of a column in `pins` and in the state; first - ghosts <= column.
   std::size_t local(std::size_t column) const { return column + ghosts - first; }
@@ -222,10 +231,10 @@ struct BandPartition {
     return static_cast<std::ptrdiff_t>(first_of_cloth + column + half * count) -
            static_cast<std::ptrdiff_t>(first);
   }
-  float* column(const BandLayout& layout, Pair stored, std::size_t column) {
+  Real* column(const BandLayout& layout, Pair stored, std::size_t column) {
     return pairs[index(stored)].data() + offset(layout, stored, column);
   }
-  const float* column(const BandLayout& layout, Pair stored, std::size_t column) const {
+  const Real* column(const BandLayout& layout, Pair stored, std::size_t column) const {
     return pairs[index(stored)].data() + offset(layout, stored, column);
   }
 
@@ -234,6 +243,7 @@ struct BandPartition {
     return (stored == Pair::state ? local(column) : column % ring_columns) * layout.column_floats();
   }
 };
+using BandPartition = BandPartitionOf<float>;
 
 /// Data that the vector code needs to step a cloth. The unit of time is a step: velocities are in m per step,
 /// so a displacement is added without a multiplication.
@@ -241,16 +251,17 @@ struct BandPartition {
 /// The cloth may be a piece of a larger one, whose other columns other processes step: it owns some columns,
 /// and the adjacent ones are ghosts, which messages bring. Columns for other processes are walked first: the
 /// edge columns of a wide piece are partitions of their own.
-struct BandGrid : ExplicitSteps {
+template <class Real>
+struct BandGridOf : ExplicitSteps<Real> {
   BandLayout layout;
-  std::map<ColumnsToEnd, BandRows> band_rows;
+  std::map<ColumnsToEnd, BandRowsOf<Real>> band_rows;
   std::size_t steps_per_pass = 1;  ///< steps active at once
   /// Columns of the layout: those of the cloth; if it is folded, those of a half, with ghosts at both ends.
   /// There the halves continue across the cut, and beyond the cloth's ends are dummies.
   std::size_t columns = 0;
   ColumnRange own;  ///< those of them that the partitions cover: of the piece, or of a half
-  std::deque<BandPartition> partitions;  ///< in the order of their columns
-  std::size_t first_inner = 0;           ///< earlier partitions are an edge
+  std::deque<BandPartitionOf<Real>> partitions;  ///< in the order of their columns
+  std::size_t first_inner = 0;                   ///< earlier partitions are an edge
   std::size_t threads = 0;   ///< number of inner partitions, with a thread each; the rest are an edge
   std::uint64_t passes = 0;  ///< so far
   ColumnMessages* messages = nullptr;  ///< of a piece; must outlive the steps
@@ -258,8 +269,8 @@ struct BandGrid : ExplicitSteps {
 
   /// Divides the cloth for `lanes` lanes and at most `most_threads` inner partitions. Arrays are untouched
   /// until set_state.
-  BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-           std::size_t lanes, std::size_t most_threads, const BandCut& given = {});
+  BandGridOf(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
+             std::size_t lanes, std::size_t most_threads, const BandCut& given = {});
   /// Distributes the state over the partitions, including ghosts and dummies; each thread writes its own.
   void set_state(const State& state);
   State state() const;
@@ -267,18 +278,20 @@ struct BandGrid : ExplicitSteps {
   State state(const GridWindow& window) const;
 
  private:
+  using Partition = BandPartitionOf<Real>;
   double dt_s_ = 0;
   double spacing_ = 0;  ///< m, for the positions of dummies, with the next
   std::size_t first_column_ = 0;
   void cut(std::size_t most_threads);
   void add_partition(ColumnRange its);
-  void choose_rows(BandPartition& partition, const std::vector<SpringPerMass>& springs);
-  void add_pins(BandPartition& partition, const System& system) const;
+  void choose_rows(Partition& partition, const std::vector<SpringPerMassOf<Real>>& springs);
+  void add_pins(Partition& partition, const System& system) const;
   /// The columns of a partition to fill: own ones and ghosts within the layout.
-  ColumnRange filled_columns(const BandPartition& partition) const;
+  ColumnRange filled_columns(const Partition& partition) const;
   /// Copies the state's columns for the neighbours of a partition.
   void fill_edges(std::size_t p);
-  void fill_partition(BandPartition& partition, const State& state) const;
+  void fill_partition(Partition& partition, const State& state) const;
 };
+using BandGrid = BandGridOf<float>;
 
 }  // namespace mssim

@@ -2,15 +2,15 @@
 
 #include <sys/mman.h>
 
-#include <algorithm>
 #include <new>
 
 namespace mssim {
 
-AlignedArray::AlignedArray(std::size_t size) : size_(size) {
+template <class Real>
+AlignedArrayOf<Real>::AlignedArrayOf(std::size_t size) : size_(size) {
   constexpr std::size_t huge_page = std::size_t{2} << 20;
-  const std::size_t page = size * sizeof(float) >= huge_page ? huge_page : alignment;
-  const std::size_t bytes = round_up(size * sizeof(float), page);
+  const std::size_t page = size * sizeof(Real) >= huge_page ? huge_page : alignment;
+  const std::size_t bytes = round_up(size * sizeof(Real), page);
   if (bytes == 0) return;
   // The system maps one array directly below another, and a hardware prefetcher continues across the end of a
   // page: it would take the beginning of one array out of the cache of the thread that writes it, for a
@@ -21,27 +21,15 @@ AlignedArray::AlignedArray(std::size_t size) : size_(size) {
   if (memory == MAP_FAILED) throw std::bad_alloc();
   if (page == huge_page)
     madvise(memory, bytes, MADV_HUGEPAGE);  // only a hint: without it the array is slower
-  data_ = {static_cast<float*>(memory), Unmap{mapped}};
+  data_ = {static_cast<Real*>(memory), Unmap{mapped}};
 }
 
-void AlignedArray::Unmap::operator()(float* data) const { munmap(data, bytes); }
-
-void write_records(const State& state, std::span<const std::uint32_t> slot, float* records) {
-  for (std::size_t node = 0; node < slot.size(); ++node) {
-    const Vec3<float> x = vec3_cast<float>(state.position[node]), v = vec3_cast<float>(state.velocity[node]);
-    const std::array<float, record_floats> record{x.x, x.y, x.z, 0, v.x, v.y, v.z, 0};
-    std::copy(record.begin(), record.end(), records + std::size_t{slot[node]} * record_floats);
-  }
+template <class Real>
+void AlignedArrayOf<Real>::Unmap::operator()(Real* data) const {
+  munmap(data, bytes);
 }
 
-State read_records(const float* records, std::span<const std::uint32_t> slot) {
-  State state;
-  for (const std::uint32_t number : slot) {
-    const float* record = records + std::size_t{number} * record_floats;
-    state.position.push_back({record[0], record[1], record[2]});
-    state.velocity.push_back({record[4], record[5], record[6]});
-  }
-  return state;
-}
+template class AlignedArrayOf<float>;
+template class AlignedArrayOf<double>;
 
 }  // namespace mssim

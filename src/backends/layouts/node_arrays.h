@@ -31,60 +31,83 @@ constexpr std::size_t odd_pitch(std::size_t floats, std::size_t lanes) {
   return whole / lanes % 2 == 0 ? whole + lanes : whole;
 }
 
-/// Reads a vector in space whose components are `step` floats apart.
-inline Vec3d read_vector(const float* from, std::size_t step) {
+/// Reads a vector in space whose components are `step` numbers apart.
+template <class Real>
+Vec3d read_vector(const Real* from, std::size_t step) {
   return {double{from[0]}, double{from[step]}, double{from[2 * step]}};
 }
-/// Writes such a vector, rounded to float.
-inline void write_vector(float* to, std::size_t step, const Vec3d& value) {
-  to[0] = static_cast<float>(value.x);
-  to[step] = static_cast<float>(value.y);
-  to[2 * step] = static_cast<float>(value.z);
+/// Writes such a vector, rounded to Real.
+template <class Real>
+void write_vector(Real* to, std::size_t step, const Vec3d& value) {
+  to[0] = static_cast<Real>(value.x);
+  to[step] = static_cast<Real>(value.y);
+  to[2 * step] = static_cast<Real>(value.z);
 }
 
 /// A node of a cloth that is reset after every update.
+template <class Real>
 struct PlacedPin {
-  std::size_t offset;  ///< floats from the start of its row or column to the node's x
-  std::array<float, 3> position;
+  std::size_t offset;  ///< numbers from the start of its row or column to the node's x
+  std::array<Real, 3> position;
 };
 
-/// An array of floats, aligned for every vector width and for the devices' zero-copy buffers. Its memory is
-/// zero and, if large, requests huge pages, which made the 350,000-node cloth 2 to 14 % faster.
-class AlignedArray {
+/// An array of numbers (Real: float or double), aligned for every vector width and for the devices' zero-copy
+/// buffers. Its memory is zero and, if large, requests huge pages, which made the 350,000-node cloth 2 to
+/// 14 % faster.
+template <class Real>
+class AlignedArrayOf {
  public:
   /// Bytes: a page, also the granularity of zero-copy buffers.
   static constexpr std::size_t alignment = 4096;
 
-  AlignedArray() = default;
-  /// `size` floats, all zero and untouched: the first writer determines their NUMA node. Throws
+  AlignedArrayOf() = default;
+  /// `size` numbers, all zero and untouched: the first writer determines their NUMA node. Throws
   /// std::bad_alloc.
-  explicit AlignedArray(std::size_t size);
+  explicit AlignedArrayOf(std::size_t size);
 
-  float* data() { return data_.get(); }
-  const float* data() const { return data_.get(); }
+  Real* data() { return data_.get(); }
+  const Real* data() const { return data_.get(); }
   std::size_t size() const { return size_; }
-  std::size_t bytes() const { return size_ * sizeof(float); }
+  std::size_t bytes() const { return size_ * sizeof(Real); }
 
  private:
   struct Unmap {
     std::size_t bytes;
-    void operator()(float* data) const;
+    void operator()(Real* data) const;
   };
-  std::unique_ptr<float, Unmap> data_{nullptr, Unmap{0}};
+  std::unique_ptr<Real, Unmap> data_{nullptr, Unmap{0}};
   std::size_t size_ = 0;
 };
+using AlignedArray = AlignedArrayOf<float>;
 
-/// Nodes as records of eight floats, x y z 0 u v w 0 (u v w: velocity), half a cache line, as in
+/// Nodes as records of eight numbers, x y z 0 u v w 0 (u v w: velocity), half a cache line of floats, as in
 /// kernels/records.h: a vector of neighbours is gathered by loading whole records and transposing them in
 /// registers. On two Zen 4 cores with 38,148 nodes that is 3.6 times as fast as gather instructions on
 /// separate components.
 constexpr std::size_t record_floats = 8;
 
-/// Writes the record of every node: node i's is number `slot[i]`. Rounds to float.
-void write_records(const State& state, std::span<const std::uint32_t> slot, float* records);
+/// Writes the record of every node: node i's is number `slot[i]`. Rounds to Real.
+template <class Real>
+void write_records(const State& state, std::span<const std::uint32_t> slot, Real* records) {
+  for (std::size_t node = 0; node < slot.size(); ++node) {
+    Real* const record = records + std::size_t{slot[node]} * record_floats;
+    write_vector(record, 1, state.position[node]);
+    write_vector(record + record_floats / 2, 1, state.velocity[node]);
+    record[3] = record[7] = 0;
+  }
+}
 
 /// Reads the records that `write_records`, or later a backend, wrote.
-State read_records(const float* records, std::span<const std::uint32_t> slot);
+template <class Real>
+State read_records(const Real* records, std::span<const std::uint32_t> slot) {
+  State state;
+  for (const std::uint32_t number : slot) {
+    const Real* const record = records + std::size_t{number} * record_floats;
+    state.position.push_back(read_vector(record, 1));
+    state.velocity.push_back(read_vector(record + record_floats / 2, 1));
+  }
+  return state;
+}
 
 /// Components of each node of a cloth as a structure of arrays, for vectors of consecutive nodes of a row:
 ///
@@ -125,49 +148,55 @@ struct RowLayout {
 };
 
 /// Parameters of explicit steps, independent of the layout: one integrator, one dt.
+template <class Real>
 struct ExplicitSteps {
   const Integrator* integrator;
-  Coefficients<float> coefficients;
-  Surroundings surroundings;
+  Coefficients<Real> coefficients;
+  SurroundingsOf<Real> surroundings;
 
   ExplicitSteps(const System& system, const Integrator& method, double dt_s)
       : integrator(&method),
-        coefficients(coefficients_of<float>(method, dt_s)),
-        surroundings(surroundings_of(system)) {}
+        coefficients(coefficients_of<Real>(method, dt_s)),
+        surroundings(surroundings_of<Real>(system)) {}
 };
 
 /// Explicit steps whose pairs have their own arrays.
-struct SeparateSteps : ExplicitSteps {
-  std::array<AlignedArray, pair_kinds> pairs;  ///< empty if not stored
-  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` swap
+template <class Real>
+struct SeparateSteps : ExplicitSteps<Real> {
+  std::array<AlignedArrayOf<Real>, pair_kinds> pairs;  ///< empty if not stored
+  std::array<Real*, pair_kinds> base{};                ///< of `pairs`, by role: `state` and `next` swap
 
-  using ExplicitSteps::ExplicitSteps;
-  /// Allocates the pairs, `floats` floats each.
-  void make_pairs(std::size_t floats) {
-    for (const Pair pair : stored_pairs(*integrator, Storage::separate)) {
-      pairs[index(pair)] = AlignedArray(floats);
+  using ExplicitSteps<Real>::ExplicitSteps;
+  /// Allocates the pairs, `size` numbers each.
+  void make_pairs(std::size_t size) {
+    for (const Pair pair : stored_pairs(*this->integrator, Storage::separate)) {
+      pairs[index(pair)] = AlignedArrayOf<Real>(size);
       base[index(pair)] = pairs[index(pair)].data();
     }
   }
 };
 
 /// A spring divided by the mass of a node, so that its force is an acceleration.
-using SpringPerMass = LinearSpring<float>;
+template <class Real>
+using SpringPerMassOf = LinearSpring<Real>;
+using SpringPerMass = SpringPerMassOf<float>;
 
 /// Makes it from rest_length in m and mass in kg. `unit_s`: the unit of time, s.
-inline SpringPerMass spring_per_mass(const SpringMaterial& material, double rest_length, double mass,
-                                     double unit_s = 1) {
+template <class Real = float>
+SpringPerMassOf<Real> spring_per_mass(const SpringMaterial& material, double rest_length, double mass,
+                                      double unit_s = 1) {
   static_assert(spring_constant_count == 2, "scale another constant by its power of time, too");
   auto spring = linear_spring(material, rest_length);
   spring.constants.stiffness *= unit_s * unit_s;
   spring.stiffness_rest *= unit_s * unit_s;
   spring.constants.damping *= unit_s;
-  return spring_from<float>([mass](double number) { return number / mass; }, spring);
+  return spring_from<Real>([mass](double number) { return number / mass; }, spring);
 }
 
-/// Writes the constants of one spring or node, `step` floats apart. Returns the position after the last.
-inline float* write_constants(float* to, std::size_t step, const SpringConstants<float>& constants) {
-  for (const float number : std::bit_cast<std::array<float, spring_constant_count>>(constants)) {
+/// Writes the constants of one spring or node, `step` numbers apart. Returns the position after the last.
+template <class Real>
+Real* write_constants(Real* to, std::size_t step, const SpringConstants<Real>& constants) {
+  for (const Real number : std::bit_cast<std::array<Real, spring_constant_count>>(constants)) {
     *to = number;
     to += step;
   }
@@ -176,13 +205,14 @@ inline float* write_constants(float* to, std::size_t step, const SpringConstants
 
 /// SpringPerMass of a cloth's springs, by GridSpringKind. `unit_s`: as in spring_per_mass. Throws Unsupported
 /// if its nodes differ in mass.
-inline std::vector<SpringPerMass> springs_per_mass(const System& system, const GridPatch& grid,
-                                                   double unit_s = 1) {
+template <class Real = float>
+std::vector<SpringPerMassOf<Real>> springs_per_mass(const System& system, const GridPatch& grid,
+                                                    double unit_s = 1) {
   const double mass = require_uniform_mass(system);
-  std::vector<SpringPerMass> springs;
+  std::vector<SpringPerMassOf<Real>> springs;
   for (const GridSpringKind kind : {structural, shear, bending})
-    springs.push_back(
-        spring_per_mass(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass, unit_s));
+    springs.push_back(spring_per_mass<Real>(system.materials[kind],
+                                            static_cast<double>(grid.rest_length(kind)), mass, unit_s));
   return springs;
 }
 

@@ -19,22 +19,23 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
+inline namespace MSSIM_PRECISION {
 
 /// Springs in registers.
 using SpringLanes = LinearSpring<Lanes>;
 
 /// The constants in every lane.
-HWY_INLINE SpringConstants<Lanes> in_every_lane(const mssim::SpringConstants<float>& constants) {
+HWY_INLINE SpringConstants<Lanes> in_every_lane(const mssim::SpringConstants<Real>& constants) {
   return HWY_NAMESPACE::constants_from<Lanes>(std::identity(), constants);
 }
-HWY_INLINE SpringLanes in_every_lane(const mssim::LinearSpring<float>& spring) {
+HWY_INLINE SpringLanes in_every_lane(const mssim::LinearSpring<Real>& spring) {
   return {in_every_lane(spring.constants), spring.stiffness_rest};
 }
 
 /// Loads the constants of each lane, one vector per constant (write_constants). Advances `from` past them.
-HWY_INLINE SpringConstants<Lanes> load_constants(const float*& from) {
+HWY_INLINE SpringConstants<Lanes> load_constants(const Real*& from) {
   const auto next = [&from]() MSSIM_INLINE_LAMBDA {
-    const Lanes number = hn::Load(FloatTag(), from);
+    const Lanes number = hn::Load(RealTag(), from);
     from += lane_count();
     return number;
   };
@@ -48,7 +49,7 @@ HWY_INLINE SpringConstants<Lanes> load_constants(const float*& from) {
 struct WalkedRows {
   SpringLanes spring[3];  ///< by GridSpringKind
   std::ptrdiff_t pitch;   ///< RowLayout::pitch
-  HWY_INLINE WalkedRows(const std::vector<SpringPerMass>& springs, std::size_t of_layout)
+  HWY_INLINE WalkedRows(const std::vector<SpringPerMassOf<Real>>& springs, std::size_t of_layout)
       : spring{in_every_lane(springs[structural]), in_every_lane(springs[shear]),
                in_every_lane(springs[bending])},
         pitch(static_cast<std::ptrdiff_t>(of_layout)) {}
@@ -84,18 +85,18 @@ struct EdgeVector {
 };
 
 /// Three components of a vector of nodes at an unaligned address.
-HWY_INLINE Lanes3 load_components(const float* from, auto pitch) {
-  const FloatTag d;
+HWY_INLINE Lanes3 load_components(const Real* from, auto pitch) {
+  const RealTag d;
   return {hn::LoadU(d, from), hn::LoadU(d, from + pitch), hn::LoadU(d, from + 2 * pitch)};
 }
 /// The components x y z u v w of a vector of nodes at an unaligned address.
-HWY_INLINE NodeLanes load_node(const float* from, auto pitch) {
+HWY_INLINE NodeLanes load_node(const Real* from, auto pitch) {
   return {load_components(from, pitch), load_components(from + 3 * pitch, pitch)};
 }
 
 /// Applies the floor to the new state of the nodes that are `free` (a Mask or EveryLane).
 template <class Free>
-HWY_INLINE void touch_floor(Free free, const Surroundings& surroundings, Lanes3& x, Lanes3& v) {
+HWY_INLINE void touch_floor(Free free, const SurroundingsOf<Real>& surroundings, Lanes3& x, Lanes3& v) {
   const Lanes height(surroundings.floor_height);
   touch_floor(both(free, hn::Lt(x.y.v, height.v)), height, Lanes(surroundings.restitution),
               Lanes(surroundings.friction), x, v);
@@ -106,7 +107,7 @@ HWY_INLINE void touch_floor(Free free, const Surroundings& surroundings, Lanes3&
 /// `surroundings`. `load` and `store` are update_stage's.
 template <std::size_t method, std::size_t stage, class Free, class Load, class Store>
 HWY_INLINE void update_lanes(const NodeLanes& node, const Lanes3& pull, Free free, Lanes gravity,
-                             const Coefficients<float>& coefficients, const Surroundings& surroundings,
+                             const Coefficients<Real>& coefficients, const SurroundingsOf<Real>& surroundings,
                              Load load, Store store) {
   // Held nodes are at rest; without acceleration every assignment returns their old value.
   const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping), gravity));
@@ -115,6 +116,7 @@ HWY_INLINE void update_lanes(const NodeLanes& node, const Lanes3& pull, Free fre
                                   MSSIM_INLINE_LAMBDA { touch_floor(free, surroundings, x, v); });
 }
 
+}  // namespace MSSIM_PRECISION
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

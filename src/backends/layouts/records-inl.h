@@ -8,6 +8,7 @@
 #endif
 
 #include <array>
+#include <type_traits>
 #include <utility>
 
 #include "backends/layouts/node_arrays.h"
@@ -15,26 +16,27 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
+inline namespace MSSIM_PRECISION {
 
 #if HWY_TARGET == HWY_SCALAR
 
-/// A record of eight floats.
+/// A record of eight numbers.
 struct SingleRecord {
-  const float* floats;
+  const Real* numbers;
   template <class Record>
-  HWY_INLINE explicit SingleRecord(Record record) : floats(record(0)) {}
-  /// Float i of the first four, and of the last four.
-  HWY_INLINE Lanes first(std::size_t i) const { return floats[i]; }
-  HWY_INLINE Lanes last(std::size_t i) const { return floats[4 + i]; }
+  HWY_INLINE explicit SingleRecord(Record record) : numbers(record(0)) {}
+  /// Number i of the first four, and of the last four.
+  HWY_INLINE Lanes first(std::size_t i) const { return numbers[i]; }
+  HWY_INLINE Lanes last(std::size_t i) const { return numbers[4 + i]; }
 };
 template <std::size_t lanes>
 using TransposedRecords = SingleRecord;
 
 /// Writes `lanes` contiguous records at `to`.
 template <std::size_t lanes>
-HWY_INLINE void store_records(float* to, const NodeLanes& node) {
+HWY_INLINE void store_records(Real* to, const NodeLanes& node) {
   static_assert(lanes == 1);
-  const FloatTag d;
+  const RealTag d;
   hn::Store(node.x.x.v, d, to);
   hn::Store(node.x.y.v, d, to + 1);
   hn::Store(node.x.z.v, d, to + 2);
@@ -45,11 +47,11 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
 
 #else
 
-/// Transposes each block of four floats: from four vectors of records to their components, or back.
+/// For floats only: transposes each block of four, from four vectors of records to their components, or back.
 template <class V>
 HWY_INLINE void transpose_blocks(V r0, V r1, V r2, V r3, V* out) {
-  const FloatTag d;
-  const hn::RepartitionToWide<FloatTag> wide;
+  const hn::DFromV<V> d;
+  const hn::RepartitionToWide<hn::DFromV<V> > wide;
   const auto low_01 = hn::BitCast(wide, hn::InterleaveLower(d, r0, r1));
   const auto low_23 = hn::BitCast(wide, hn::InterleaveLower(d, r2, r3));
   const auto high_01 = hn::BitCast(wide, hn::InterleaveUpper(d, r0, r1));
@@ -68,7 +70,7 @@ HWY_INLINE V even_blocks(V low, V high) {
   return V{
       __builtin_shufflevector(low.raw, high.raw, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)};
 #else
-  return hn::ConcatLowerLower(FloatTag(), high, low);
+  return hn::ConcatLowerLower(hn::DFromV<V>(), high, low);
 #endif
 }
 
@@ -79,22 +81,72 @@ HWY_INLINE V odd_blocks(V low, V high) {
   return V{
       __builtin_shufflevector(low.raw, high.raw, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31)};
 #else
-  return hn::ConcatUpperUpper(FloatTag(), high, low);
+  return hn::ConcatUpperUpper(hn::DFromV<V>(), high, low);
 #endif
 }
 
+/// Two vectors of `lanes` doubles.
+template <std::size_t lanes>
+struct TwoVectors {
+  hn::Vec<hn::FixedTag<Real, lanes> > first, second;
+};
+
+/// Doubles `at` and `at + 1` of `lanes` records from record(begin) on.
+template <std::size_t lanes, class Record>
+HWY_INLINE TwoVectors<lanes> load_two(Record record, std::size_t begin, std::size_t at) {
+  const hn::FixedTag<Real, lanes> d;
+  if constexpr (lanes == 2) {
+    const auto a = hn::Load(d, record(begin) + at), b = hn::Load(d, record(begin + 1) + at);
+    return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)};
+  } else {
+    const TwoVectors<lanes / 2> low = load_two<lanes / 2>(record, begin, at);
+    const TwoVectors<lanes / 2> high = load_two<lanes / 2>(record, begin + lanes / 2, at);
+    return {hn::Combine(d, high.first, low.first), hn::Combine(d, high.second, low.second)};
+  }
+}
+
+/// Stores them in contiguous records, the first of them at `to`.
+template <std::size_t lanes>
+HWY_INLINE void store_two(Real* to, const TwoVectors<lanes>& two) {
+  const hn::FixedTag<Real, lanes> d;
+  if constexpr (lanes == 2) {
+    hn::Store(hn::InterleaveLower(d, two.first, two.second), d, to);
+    hn::Store(hn::InterleaveUpper(d, two.first, two.second), d, to + 8);
+  } else {
+    const hn::FixedTag<Real, lanes / 2> half;
+    store_two<lanes / 2>(to, {hn::LowerHalf(half, two.first), hn::LowerHalf(half, two.second)});
+    store_two<lanes / 2>(to + 8 * lanes / 2,
+                         {hn::UpperHalf(half, two.first), hn::UpperHalf(half, two.second)});
+  }
+}
+
+/// Records of eight doubles, one per lane, transposed.
+template <std::size_t lanes>
+struct TransposedDoubles {
+  TwoVectors<lanes> xy, z, uv, w;
+
+  template <class Record>
+  HWY_INLINE explicit TransposedDoubles(Record record)
+      : xy(load_two<lanes>(record, 0, 0)),
+        z(load_two<lanes>(record, 0, 2)),
+        uv(load_two<lanes>(record, 0, 4)),
+        w(load_two<lanes>(record, 0, 6)) {}
+  HWY_INLINE Lanes first(std::size_t i) const { return i == 0 ? xy.first : i == 1 ? xy.second : z.first; }
+  HWY_INLINE Lanes last(std::size_t i) const { return i == 0 ? uv.first : i == 1 ? uv.second : w.first; }
+};
+
 /// Records of eight floats, one per lane, transposed except for an exchange of blocks of four floats.
 template <std::size_t lanes>
-struct TransposedRecords {
+struct TransposedFloats {
   static_assert(lanes == 4 || lanes == 8 || lanes == 16);
-  using Vector = hn::Vec<FloatTag>;
+  using Vector = hn::Vec<RealTag>;
   /// With 4 lanes: the components of the first and of the last four floats. With more lanes: blocks of both
   /// alternate, for the first and the second half of the records.
   Vector low[4], high[4];
 
   template <class Record>
-  HWY_INLINE explicit TransposedRecords(Record record) {
-    const FloatTag d;
+  HWY_INLINE explicit TransposedFloats(Record record) {
+    const RealTag d;
     if constexpr (lanes == 4) {
       transpose_blocks<Vector>(hn::Load(d, record(0)), hn::Load(d, record(1)), hn::Load(d, record(2)),
                                hn::Load(d, record(3)), low);
@@ -104,7 +156,7 @@ struct TransposedRecords {
       // Record i, with 16 lanes followed by record i + 4.
       const auto load = [&](std::size_t i) MSSIM_INLINE_LAMBDA -> Vector {
         if constexpr (lanes == 16) {
-          const hn::Half<FloatTag> half;
+          const hn::Half<RealTag> half;
           return hn::Combine(d, hn::Load(half, record(i + 4)), hn::Load(half, record(i)));
         } else {
           return hn::Load(d, record(i));
@@ -126,13 +178,22 @@ struct TransposedRecords {
   }
 };
 
+template <std::size_t lanes>
+using TransposedRecords =
+    std::conditional_t<std::is_same_v<Real, float>, TransposedFloats<lanes>, TransposedDoubles<lanes> >;
+
 /// Stores the nodes of a vector as contiguous records.
 template <std::size_t lanes>
-HWY_INLINE void store_records(float* to, const NodeLanes& node) {
-  const FloatTag d;
-  using Vector = hn::Vec<FloatTag>;
+HWY_INLINE void store_records(Real* to, const NodeLanes& node) {
+  const RealTag d;
+  using Vector = hn::Vec<RealTag>;
   const Vector zero = hn::Zero(d);
-  if constexpr (lanes == 4) {
+  if constexpr (!std::is_same_v<Real, float>) {
+    store_two<lanes>(to, {node.x.x.v, node.x.y.v});
+    store_two<lanes>(to + 2, {node.x.z.v, zero});
+    store_two<lanes>(to + 4, {node.v.x.v, node.v.y.v});
+    store_two<lanes>(to + 6, {node.v.z.v, zero});
+  } else if constexpr (lanes == 4) {
     Vector x[4], v[4];
     transpose_blocks<Vector>(node.x.x.v, node.x.y.v, node.x.z.v, zero, x);
     transpose_blocks<Vector>(node.v.x.v, node.v.y.v, node.v.z.v, zero, v);
@@ -152,7 +213,7 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
                              zero, records + 4);
     for (std::size_t i = 0; i < 8; ++i) {
       if constexpr (lanes == 16) {
-        const hn::Half<FloatTag> half;
+        const hn::Half<RealTag> half;
         hn::Store(hn::LowerHalf(half, records[i]), half, to + 8 * i);
         hn::Store(hn::UpperHalf(half, records[i]), half, to + 8 * (i + 8));
       } else {
@@ -171,23 +232,23 @@ HWY_INLINE NodeLanes load_records(Record record) {
   return {{all.first(0), all.first(1), all.first(2)}, {all.last(0), all.last(1), all.last(2)}};
 }
 
-constexpr std::size_t vector_nodes = hn::MaxLanes(FloatTag());
+constexpr std::size_t vector_nodes = hn::MaxLanes(RealTag());
 
 /// Start of each pair's nodes, by role.
-using Pairs = std::array<float*, pair_kinds>;
+using Pairs = std::array<Real*, pair_kinds>;
 
 /// Loads the nodes of contiguous records from `first` on.
-HWY_INLINE NodeLanes load_nodes(const float* first) {
+HWY_INLINE NodeLanes load_nodes(const Real* first) {
   return load_records<vector_nodes>([&](std::size_t i)
                                         MSSIM_INLINE_LAMBDA { return first + i * record_floats; });
 }
 
-/// One stage at the nodes whose records begin `offset` floats after each pair's start. `pull`: the
+/// One stage at the nodes whose records begin `offset` numbers after each pair's start. `pull`: the
 /// acceleration from the springs; `node`: the gathered pair; nodes not `free` are unchanged.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeLanes& node,
-                             const Lanes3& pull, Mask free, const Coefficients<float>& coefficients,
-                             const Surroundings& surroundings) {
+                             const Lanes3& pull, Mask free, const Coefficients<Real>& coefficients,
+                             const SurroundingsOf<Real>& surroundings) {
   constexpr Stage table = integrators[method].stages[stage];
   NodeLanes loaded[pair_kinds];
   const auto half = [&](auto slot) MSSIM_INLINE_LAMBDA -> Lanes3& {
@@ -217,6 +278,7 @@ HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeL
   });
 }
 
+}  // namespace MSSIM_PRECISION
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

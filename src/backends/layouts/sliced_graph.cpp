@@ -57,10 +57,12 @@ std::vector<bool> edge_nodes(const System& system, std::size_t own) {
 
 }  // namespace
 
-SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
-    : SlicedGraph(system, slice_lanes, whole_of(system)) {}
+template <class Real>
+SlicedGraphOf<Real>::SlicedGraphOf(const System& system, std::size_t slice_lanes)
+    : SlicedGraphOf(system, slice_lanes, whole_of(system)) {}
 
-SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const GraphPart& part)
+template <class Real>
+SlicedGraphOf<Real>::SlicedGraphOf(const System& system, std::size_t slice_lanes, const GraphPart& part)
     : lanes(slice_lanes), slot(system.nodes()), ghosts(system.nodes() - part.own) {
   const std::vector<std::uint32_t> kinds = kind_of_nodes(system);
   const std::vector<std::uint32_t> degree = degrees_of(system.nodes(), system.springs);
@@ -111,7 +113,7 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const Gr
     const double mass = system.node_mass[scene_node[i]];
     std::size_t element = first_entry[slice] * lanes + i % lanes;
     for (const Neighbour& other : springs[i]) {
-      const SpringPerMass spring = spring_per_mass(material, static_cast<double>(other.rest_length), mass);
+      const auto spring = spring_per_mass<Real>(material, static_cast<double>(other.rest_length), mass);
       constants[i] = spring.constants;
       neighbour[element] = slot[other.node];
       stiffness_rest[element] = spring.stiffness_rest;
@@ -122,10 +124,12 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const Gr
     if (pin < part.own) held[slot[pin]] = 1;
 }
 
+template struct SlicedGraphOf<float>;
+template struct SlicedGraphOf<double>;
+
 void require_nameable_records(const System& system, std::size_t floats_of_record) {
-  const std::size_t most_nodes =
-      std::numeric_limits<std::uint32_t>::max() / (floats_of_record / slice_offset_floats) -
-      SlicedGraph::window;
+  const std::size_t most_nodes = std::numeric_limits<std::uint32_t>::max() /
+                                 (floats_of_record / slice_offset_unit<float>)-SlicedGraph::window;
   if (system.nodes() > most_nodes)
     throw Unsupported("the scene has {} nodes; openmp supports bodies of at most {}", system.nodes(),
                       most_nodes);

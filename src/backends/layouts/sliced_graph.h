@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "backends/layouts/node_arrays.h"
@@ -36,10 +37,11 @@ struct GraphPart {
 ///
 /// A graph may be a part of a whole: then its nodes with ghost neighbours (edge nodes) are in slices of their
 /// own after the others, and the ghosts, which are in no slice, come after them.
-struct SlicedGraph {
+template <class Real>
+struct SlicedGraphOf {
   static constexpr std::size_t window = 256;  ///< nodes; more saves few empty entries and costs locality
   static constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
-  static constexpr float empty_entry = -1;
+  static constexpr Real empty_entry = -1;
 
   std::size_t lanes = 0;                  ///< nodes per slice
   std::vector<std::uint32_t> scene_node;  ///< [slots] the scene's node number, or no_node
@@ -47,45 +49,53 @@ struct SlicedGraph {
   std::vector<std::uint32_t> slot;
   std::size_t ghosts = 0;            ///< nodes in no slice
   std::size_t first_edge_slice = 0;  ///< slices from here on have edge nodes; slices() if there are none
-  std::vector<std::uint32_t> first_entry;         ///< [slices + 1] the last one is the number of entries
-  std::vector<std::uint32_t> neighbour;           ///< [entries][lanes] slots
-  std::vector<float> stiffness_rest;              ///< [entries][lanes] stiffness * rest length / mass, m/s^2
-  std::vector<SpringConstants<float>> constants;  ///< [slots] divided by mass, of all springs of the node
-  std::vector<std::uint32_t> held;                ///< [slots] 1 if pinned or padding, else 0
+  std::vector<std::uint32_t> first_entry;        ///< [slices + 1] the last one is the number of entries
+  std::vector<std::uint32_t> neighbour;          ///< [entries][lanes] slots
+  std::vector<Real> stiffness_rest;              ///< [entries][lanes] stiffness * rest length / mass, m/s^2
+  std::vector<SpringConstants<Real>> constants;  ///< [slots] divided by mass, of all springs of the node
+  std::vector<std::uint32_t> held;               ///< [slots] 1 if pinned or padding, else 0
 
   /// Throws Unsupported if springs of different materials meet in a node, or if there are too many springs
   /// for 32-bit indices from both ends.
-  SlicedGraph(const System& system, std::size_t slice_lanes);
+  SlicedGraphOf(const System& system, std::size_t slice_lanes);
   /// Slices a part of a graph: its nodes have the same entries as in the whole's graph, in the same order,
   /// with the same constants. Springs between ghosts are omitted.
-  SlicedGraph(const System& system, std::size_t slice_lanes, const GraphPart& part);
+  SlicedGraphOf(const System& system, std::size_t slice_lanes, const GraphPart& part);
 
   std::size_t nodes() const { return slot.size(); }
   std::size_t slots() const { return scene_node.size(); }  ///< slices() * lanes
   std::size_t slices() const { return first_entry.size() - 1; }
   std::size_t entries() const { return first_entry.back(); }
 };
+using SlicedGraph = SlicedGraphOf<float>;
 
-/// Unit of record offsets in slice entries, in floats: a scale factor that CPU addressing supports.
-inline constexpr std::size_t slice_offset_floats = 2;
+/// Unit of record offsets in slice entries, in numbers: eight bytes, a scale factor that CPU addressing
+/// supports.
+template <class Real>
+inline constexpr std::size_t slice_offset_unit = 8 / sizeof(Real);
 
 /// Throws Unsupported if there are more nodes than entries can address as records of `floats_of_record`
-/// floats.
+/// numbers.
 void require_nameable_records(const System& system, std::size_t floats_of_record);
 
-/// [entries][2][lanes] in one stream: offsets of the neighbours' records, in units of slice_offset_floats and
-/// as std::uint32_t, then SlicedGraph::stiffness_rest. An entry that names only the first record follows, for
+/// An unsigned number of the size of a Real.
+template <class Real>
+using BitsOf = std::conditional_t<sizeof(Real) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
+
+/// [entries][2][lanes] in one stream: offsets of the neighbours' records, in units of slice_offset_unit and
+/// as BitsOf<Real>, then SlicedGraph::stiffness_rest. An entry that names only the first record follows, for
 /// code that loads records one entry ahead. record_of(slot): the number of a slot's record.
-template <class RecordOf>
-AlignedArray slice_entries(const SlicedGraph& graph, std::size_t floats_of_record, RecordOf record_of) {
+template <class Real, class RecordOf>
+AlignedArrayOf<Real> slice_entries(const SlicedGraphOf<Real>& graph, std::size_t floats_of_record,
+                                   RecordOf record_of) {
   const std::size_t lanes = graph.lanes;
-  AlignedArray entries((graph.entries() + 1) * 2 * lanes);
+  AlignedArrayOf<Real> entries((graph.entries() + 1) * 2 * lanes);
   for (std::size_t entry = 0; entry < graph.entries(); ++entry)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      float* row = entries.data() + entry * 2 * lanes;
+      Real* row = entries.data() + entry * 2 * lanes;
       const std::size_t element = entry * lanes + lane;
-      row[lane] = std::bit_cast<float>(static_cast<std::uint32_t>(record_of(graph.neighbour[element]) *
-                                                                  (floats_of_record / slice_offset_floats)));
+      row[lane] = std::bit_cast<Real>(static_cast<BitsOf<Real>>(
+          record_of(graph.neighbour[element]) * (floats_of_record / slice_offset_unit<Real>)));
       row[lanes + lane] = graph.stiffness_rest[element];
     }
   return entries;

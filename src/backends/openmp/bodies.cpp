@@ -53,9 +53,10 @@ constexpr std::size_t components = 3;
 /// Costs of ranges of a shape's nodes, in springs of all lanes.
 class PieceCosts {
  public:
-  explicit PieceCosts(const AlikeBodies& shape)
+  template <class Real>
+  explicit PieceCosts(const AlikeBodiesOf<Real>& shape)
       : begun_before_(shape.first_spring), ended_before_(shape.nodes() + 1, 0) {
-    for (const AlikeBodies::SpringAhead& spring : shape.springs) ++ended_before_[spring.other + 1];
+    for (const auto& spring : shape.springs) ++ended_before_[spring.other + 1];
     std::partial_sum(ended_before_.begin(), ended_before_.end(), ended_before_.begin());
   }
   std::size_t nodes() const { return ended_before_.size() - 1; }
@@ -124,12 +125,14 @@ std::vector<Cut> cut_groups_into(const std::vector<AlikeSlices::Group>& groups,
   return cut_groups(groups, costs, high);
 }
 
-BodyLanes::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut, const AlikeBodies& bodies,
-                          std::size_t node_floats) {
-  BodyLanes::Piece piece{group.shape, 2 * node_floats * group.first_slice, cut.begin, cut.end, cut.end, {}};
+template <class Real>
+typename BodyLanesOf<Real>::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut,
+                                           const AlikeBodiesOf<Real>& bodies, std::size_t node_floats) {
+  typename BodyLanesOf<Real>::Piece piece{
+      group.shape, 2 * node_floats * group.first_slice, cut.begin, cut.end, cut.end, {}};
   for (std::size_t node = 0; node < cut.end; ++node)
     for (std::size_t s = bodies.first_spring[node]; s < bodies.first_spring[node + 1]; ++s) {
-      const AlikeBodies::SpringAhead& spring = bodies.springs[s];
+      const auto& spring = bodies.springs[s];
       if (node >= cut.begin)
         piece.reach = std::max<std::size_t>(piece.reach, spring.other + 1);
       else if (spring.other >= cut.begin && spring.other < cut.end)
@@ -141,63 +144,68 @@ BodyLanes::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut, const
 
 }  // namespace
 
-void BodySteps::make_pairs_where_stepped(std::size_t floats,
-                                         const std::function<std::size_t(std::size_t chunk)>& first_float) {
-  constexpr std::size_t page = AlignedArray::alignment / sizeof(float);
-  make_pairs(floats);
+template <class Real>
+void BodySteps<Real>::make_pairs_where_stepped(
+    std::size_t size, const std::function<std::size_t(std::size_t chunk)>& first_number) {
+  constexpr std::size_t page = AlignedArrayOf<Real>::alignment / sizeof(Real);
+  this->make_pairs(size);
 #pragma omp parallel for num_threads(static_cast <int>(threads)) schedule(static, 1)
   for (std::size_t range = 0; range < threads; ++range) {
-    const std::size_t begin = first_float(chunks.size() * range / threads);
-    const std::size_t end = first_float(chunks.size() * (range + 1) / threads);
-    for (AlignedArray& pair : pairs)
+    const std::size_t begin = first_number(chunks.size() * range / threads);
+    const std::size_t end = first_number(chunks.size() * (range + 1) / threads);
+    for (AlignedArrayOf<Real>& pair : this->pairs)
       for (std::size_t i = begin; i < std::min(end, pair.size()); i += page) pair.data()[i] = 0;
   }
 }
 
-SlicedBodies::SlicedBodies(const System& system, const Integrator& method, double dt_s,
-                           std::size_t slice_lanes, std::size_t thread_count)
-    : SlicedBodies(system,
-                   (require_nameable_records(system, record_floats), SlicedGraph(system, slice_lanes)),
-                   method, dt_s, thread_count) {}
+template <class Real>
+SlicedBodiesOf<Real>::SlicedBodiesOf(const System& system, const Integrator& method, double dt_s,
+                                     std::size_t slice_lanes, std::size_t thread_count)
+    : SlicedBodiesOf(
+          system, (require_nameable_records(system, record_floats), SlicedGraphOf<Real>(system, slice_lanes)),
+          method, dt_s, thread_count) {}
 
-SlicedBodies::SlicedBodies(const System& system, SlicedGraph graph, const Integrator& method, double dt_s,
-                           std::size_t thread_count)
-    : BodySteps(system, method, dt_s), lanes(graph.lanes) {
+template <class Real>
+SlicedBodiesOf<Real>::SlicedBodiesOf(const System& system, SlicedGraphOf<Real> graph,
+                                     const Integrator& method, double dt_s, std::size_t thread_count)
+    : BodySteps<Real>(system, method, dt_s), lanes(graph.lanes) {
   require_nameable_records(system, record_floats);
   entries = slice_entries(graph, record_floats, [](std::uint32_t node_slot) { return node_slot; });
-  constants = AlignedArray(graph.slots() * slice_constants);
+  constants = AlignedArrayOf<Real>(graph.slots() * slice_constants);
   for (std::size_t i = 0; i < graph.slots(); ++i) {
-    float* of_slot = constants.data() + i / lanes * slice_constants * lanes + i % lanes;
-    *write_constants(of_slot, lanes, graph.constants[i]) = static_cast<float>(graph.held[i]);
+    Real* of_slot = constants.data() + i / lanes * slice_constants * lanes + i % lanes;
+    *write_constants(of_slot, lanes, graph.constants[i]) = static_cast<Real>(graph.held[i]);
   }
   slot.assign(graph.slot.begin(), graph.slot.end() - static_cast<std::ptrdiff_t>(graph.ghosts));
   first_entry = std::move(graph.first_entry);
-  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slices()));
-  spins = slice_spins;
+  this->threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slices()));
+  this->spins = slice_spins;
   const std::size_t by_cost = cost_of_slices_before(first_entry, slices()) / chunk_cost;
-  const std::size_t count =
-      std::min({std::max(least_chunks * threads, by_cost), slices(), std::size_t{ChunkTickets::most_chunks}});
-  chunks = balanced_chunks(first_entry, {0, graph.first_edge_slice}, count);
+  const std::size_t count = std::min(
+      {std::max(least_chunks * this->threads, by_cost), slices(), std::size_t{ChunkTickets::most_chunks}});
+  this->chunks = balanced_chunks(first_entry, {0, graph.first_edge_slice}, count);
   if (graph.ghosts > 0) edge_chunks = balanced_chunks(first_entry, {graph.first_edge_slice, slices()}, count);
-  make_pairs_where_stepped((graph.slots() + graph.ghosts) * record_floats, [&](std::size_t chunk) {
-    return (chunk < chunks.size() ? chunks[chunk].begin : graph.first_edge_slice) * lanes * record_floats;
+  this->make_pairs_where_stepped((graph.slots() + graph.ghosts) * record_floats, [&](std::size_t chunk) {
+    return (chunk < this->chunks.size() ? this->chunks[chunk].begin : graph.first_edge_slice) * lanes *
+           record_floats;
   });
 }
 
-BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
-                     double dt_s, std::size_t lane_count, std::size_t thread_count)
-    : BodySteps(system, method, dt_s), slices(bodies, lane_count) {
+template <class Real>
+BodyLanesOf<Real>::BodyLanesOf(const System& system, const std::vector<AlikeBodiesOf<Real>>& bodies,
+                               const Integrator& method, double dt_s, std::size_t lane_count,
+                               std::size_t thread_count)
+    : BodySteps<Real>(system, method, dt_s), slices(bodies, lane_count) {
   const std::size_t node_floats = components * lane_count;
   const std::size_t allowed_nodes = std::numeric_limits<std::uint32_t>::max() / node_floats;
   std::vector<PieceCosts> costs;
   std::size_t most_nodes = 0;
-  for (const AlikeBodies& of : bodies) {
+  for (const AlikeBodiesOf<Real>& of : bodies) {
     if (of.nodes() > allowed_nodes)
       throw Unsupported("a body has {} nodes; openmp supports at most {}", of.nodes(), allowed_nodes);
     most_nodes = std::max(most_nodes, of.nodes());
     shapes.push_back({of.constants, of.pinned, of.first_spring, of.springs, {}});
-    for (AlikeBodies::SpringAhead& spring : shapes.back().springs)
-      spring.other *= static_cast<std::uint32_t>(node_floats);
+    for (auto& spring : shapes.back().springs) spring.other *= static_cast<std::uint32_t>(node_floats);
     costs.emplace_back(of);
   }
 
@@ -209,29 +217,36 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
   for (const Cut& cut : cuts) {
     const bool next_share = !pieces.empty() && cut.share != cuts[pieces.size() - 1].share;
     if (cost >= least || next_share) {
-      chunks.push_back({pieces.size(), pieces.size()});
+      this->chunks.push_back({pieces.size(), pieces.size()});
       cost = 0;
     }
     pieces.push_back(
         piece_of(slices.groups[cut.group], cut, bodies[slices.groups[cut.group].shape], node_floats));
     cost += cut.cost;
     largest = std::max(largest, cost);
-    ++chunks.back().end;
+    ++this->chunks.back().end;
   }
-  spins = static_cast<int>(std::min<std::size_t>(most_spins, largest / springs_a_spin));
-  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, chunks.size()));
-  for (std::size_t thread = 0; thread < threads; ++thread) forces.emplace_back(most_nodes * node_floats);
-  make_pairs_where_stepped(slices.floats(), [&](std::size_t chunk) {
-    if (chunk == chunks.size()) return slices.floats();
-    const Piece& piece = pieces[chunks[chunk].begin];
+  this->spins = static_cast<int>(std::min<std::size_t>(most_spins, largest / springs_a_spin));
+  this->threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, this->chunks.size()));
+  for (std::size_t thread = 0; thread < this->threads; ++thread)
+    forces.emplace_back(most_nodes * node_floats);
+  this->make_pairs_where_stepped(slices.floats(), [&](std::size_t chunk) {
+    if (chunk == this->chunks.size()) return slices.floats();
+    const Piece& piece = pieces[this->chunks[chunk].begin];
     return piece.offset + 2 * piece.begin * components * lane_count;
   });
 }
 
-std::uint64_t BodyLanes::stored_springs() const {
+template <class Real>
+std::uint64_t BodyLanesOf<Real>::stored_springs() const {
   std::uint64_t stored = 0;
-  for (const AlikeBodies& shape : shapes) stored += shape.springs.size();
+  for (const AlikeBodiesOf<Real>& shape : shapes) stored += shape.springs.size();
   return stored;
 }
+
+template struct SlicedBodiesOf<float>;
+template struct SlicedBodiesOf<double>;
+template struct BodyLanesOf<float>;
+template struct BodyLanesOf<double>;
 
 }  // namespace mssim

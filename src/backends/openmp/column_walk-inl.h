@@ -22,25 +22,26 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
+inline namespace MSSIM_PRECISION {
 
-/// Floats of a row of nodes.
+/// Numbers of a row of nodes.
 HWY_INLINE std::ptrdiff_t row_floats() { return static_cast<std::ptrdiff_t>(6 * lane_count()); }
 
 /// The nodes of a row in a column of a pair whose row 0 begins at `column`.
-HWY_INLINE NodeLanes nodes_of(const float* column, std::ptrdiff_t row) {
-  const float* nodes = column + row * row_floats();
+HWY_INLINE NodeLanes nodes_of(const Real* column, std::ptrdiff_t row) {
+  const Real* nodes = column + row * row_floats();
   return {load3(nodes), load3(nodes + row_floats() / 2)};
 }
 /// Writes nodes to a row of such a column.
-HWY_INLINE void store_nodes(const NodeLanes& nodes, float* column, std::ptrdiff_t row) {
-  float* to = column + row * row_floats();
+HWY_INLINE void store_nodes(const NodeLanes& nodes, Real* column, std::ptrdiff_t row) {
+  Real* to = column + row * row_floats();
   store3(to, nodes.x);
   store3(to + row_floats() / 2, nodes.v);
 }
 
 /// Component of a missing node: far from all nodes, because the length of springs without stiffness to it
 /// must not be zero.
-constexpr float far_away = 1e9F;
+constexpr Real far_away = 1e9F;
 
 /// The row with each lane's values taken from the lane before, or after.
 HWY_INLINE NodeLanes of_lane_before(const NodeLanes& row, std::size_t bands) {
@@ -51,7 +52,7 @@ HWY_INLINE NodeLanes of_lane_behind(const NodeLanes& row, std::size_t bands) {
 }
 
 /// Writes row -1 of a column of `height` rows.
-HWY_INLINE void write_row_above(float* column, std::ptrdiff_t height, std::size_t bands) {
+HWY_INLINE void write_row_above(Real* column, std::ptrdiff_t height, std::size_t bands) {
   store_nodes(of_lane_before(nodes_of(column, height - 1), bands), column, -1);
 }
 
@@ -76,28 +77,28 @@ static_assert(grid_stencil[5].rows == 0 && grid_stencil[5].columns == 2, "right_
 
 /// The data that the walk reads and writes in a column. Pointers to columns are to row 0.
 struct ColumnView {
-  const BandRows* rows;                  ///< constants of this column
-  float* here;                           ///< gathered pair, this column; its halo rows may be overwritten
-  float* next;                           ///< the column to the right, likewise
-  const float* next_2;                   ///< the column after that
-  std::array<float*, pair_kinds> pairs;  ///< this column of every stored pair, for the update
+  const BandRowsOf<Real>* rows;         ///< constants of this column
+  Real* here;                           ///< gathered pair, this column; its halo rows may be overwritten
+  Real* next;                           ///< the column to the right, likewise
+  const Real* next_2;                   ///< the column after that
+  std::array<Real*, pair_kinds> pairs;  ///< this column of every stored pair, for the update
   /// [row][x y z][lane] from earlier columns; when a row has been read, the forces on the column after the
   /// next replace it, so more rows fit in the first-level cache.
-  float* forces_here;
-  float* forces_next;
+  Real* forces_here;
+  Real* forces_next;
 };
 
 /// Parameters of the bands for every row. A copy, like the walk's ColumnView: the compiler must assume that a
 /// vector store may change any object in memory, and would reload all of it in every row. On two Zen 5 cores
 /// at 500 x 700, copies are 1.04 to 1.16 times as fast.
 struct RowConstants {
-  Coefficients<float> coefficients;
-  Surroundings surroundings;
-  const float* values;                 ///< BandRows::values
+  Coefficients<Real> coefficients;
+  SurroundingsOf<Real> surroundings;
+  const Real* values;                  ///< BandRows::values
   const std::uint32_t* offset_of_row;  ///< BandRows::offset_of_row
   std::ptrdiff_t height;               ///< of the bands
   std::size_t bands;                   ///< in a half of the lanes
-  HWY_INLINE RowConstants(const BandGrid& grid, const ColumnView& column)
+  HWY_INLINE RowConstants(const BandGridOf<Real>& grid, const ColumnView& column)
       : coefficients(grid.coefficients),
         surroundings(grid.surroundings),
         values(column.rows->values()),
@@ -105,15 +106,15 @@ struct RowConstants {
         height(static_cast<std::ptrdiff_t>(grid.layout.height)),
         bands(grid.layout.bands) {}
   /// The constants of a row (BandRows).
-  HWY_INLINE const float* of_row(std::ptrdiff_t row) const { return values + offset_of_row[row]; }
+  HWY_INLINE const Real* of_row(std::ptrdiff_t row) const { return values + offset_of_row[row]; }
 };
 
 /// The constants of one of the springs that a row's nodes own (RowConstants::of_row).
-HWY_INLINE SpringLanes spring_of_row(const float* of_row, SpringSet spring) {
+HWY_INLINE SpringLanes spring_of_row(const Real* of_row, SpringSet spring) {
   const auto number = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(spring)));
-  const float* of_spring = of_row + number * BandRows::spring_vectors * lane_count();
+  const Real* of_spring = of_row + number * BandRowsOf<Real>::spring_vectors * lane_count();
   const SpringConstants<Lanes> constants = load_constants(of_spring);
-  return {constants, hn::Load(FloatTag(), of_spring)};
+  return {constants, hn::Load(RealTag(), of_spring)};
 }
 
 /// Forces on later rows, kept while the walk goes down.
@@ -148,9 +149,9 @@ HWY_INLINE Lanes3 force_of(const BegunSpring& begun, const SpringLanes& spring) 
 
 /// Prefetches the row that the walk reaches a fixed number of rows later. On Zen 5 at 500 x 700, whose state
 /// is in the last-level cache: 1.04 to 1.1 times as fast with two threads, up to twice with one.
-HWY_INLINE void prefetch_row(const float* row) {
+HWY_INLINE void prefetch_row(const Real* row) {
   constexpr std::ptrdiff_t rows_ahead = 16;  // columns are contiguous: every address is valid
-  constexpr std::ptrdiff_t line_floats = 16;
+  constexpr std::ptrdiff_t line_floats = 64 / sizeof(Real);
   for (std::ptrdiff_t i = 0; i < row_floats(); i += line_floats)
     hwy::Prefetch(row + rows_ahead * row_floats() + i);
 }
@@ -169,7 +170,7 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
                            std::ptrdiff_t row) {
   const unsigned to_find = set & ~known.set;
   const std::ptrdiff_t force_floats = 3 * static_cast<std::ptrdiff_t>(lane_count());
-  const float* const of_row = constants.of_row(row);
+  const Real* const of_row = constants.of_row(row);
 
   BegunSpring to_below{}, to_below_2{}, to_right_above{}, to_right{}, to_right_below{}, to_right_2{};
   if ((to_find & down) != 0) to_below = begin_spring(node, nodes_of(column.here, row + 1));
@@ -223,7 +224,7 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
 }
 
 /// Address of the position (slot 0) or velocity (1) of a row's nodes in a pair.
-HWY_INLINE float* stored_at(const ColumnView& column, Pair pair, std::size_t slot, std::ptrdiff_t row) {
+HWY_INLINE Real* stored_at(const ColumnView& column, Pair pair, std::size_t slot, std::ptrdiff_t row) {
   return column.pairs[index(pair)] + row * row_floats() +
          static_cast<std::ptrdiff_t>(slot % 2) * row_floats() / 2;
 }
@@ -233,7 +234,8 @@ HWY_INLINE float* stored_at(const ColumnView& column, Pair pair, std::size_t slo
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& column, const NodeLanes& node,
                            const Lanes3& force, std::ptrdiff_t row, Lanes& lowest) {
-  const Lanes gravity = hn::Load(FloatTag(), constants.of_row(row) + BandRows::gravity_vector * lane_count());
+  const Lanes gravity =
+      hn::Load(RealTag(), constants.of_row(row) + BandRowsOf<Real>::gravity_vector * lane_count());
   update_stage<method, stage, true>(
       constants.coefficients, node.x, node.v,
       node_acceleration(force, node.v, Lanes(constants.surroundings.viscous_damping), gravity),
@@ -257,8 +259,8 @@ template <std::size_t method, std::size_t stage>
 HWY_INLINE void touch_floor_in_column(const RowConstants& constants, const ColumnView& column,
                                       const Lanes& lowest) {
   if constexpr (stage + 1 == integrators[method].stage_count) {
-    if (HWY_LIKELY(hn::AllFalse(FloatTag(),
-                                hn::Lt(lowest.v, hn::Set(FloatTag(), constants.surroundings.floor_height)))))
+    if (HWY_LIKELY(hn::AllFalse(RealTag(),
+                                hn::Lt(lowest.v, hn::Set(RealTag(), constants.surroundings.floor_height)))))
       return;
     constexpr Pair next = walk_writes_to(integrators[method], stage, Pair::next);
     for (std::ptrdiff_t row = 0; row < constants.height; ++row) {
@@ -283,7 +285,7 @@ HWY_INLINE EndForces forces_across_ends(const RowConstants& constants, const Col
                          SpringSet spring) MSSIM_INLINE_LAMBDA {
     return force_of(begin_spring(node, other), spring_of_row(constants.of_row(row), spring));
   };
-  const auto below_band = [&](const float* of, std::ptrdiff_t row) MSSIM_INLINE_LAMBDA {
+  const auto below_band = [&](const Real* of, std::ptrdiff_t row) MSSIM_INLINE_LAMBDA {
     return of_lane_behind(nodes_of(of, row), constants.bands);
   };
   const std::ptrdiff_t last = constants.height - 1, last_but_one = constants.height - 2;
@@ -338,11 +340,11 @@ HWY_INLINE void walk_rows(const RowConstants& constants, const ColumnView& colum
 
 /// A column whose nodes own all springs and are updated: the usual case.
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& view) {
+HWY_NOINLINE void walk_inner_column(const BandGridOf<Real>& bands, const ColumnView& view) {
   constexpr bool gathers_state = integrators[method].stages[stage].gather == Pair::state;
   const RowConstants constants(bands, view);
   const ColumnView column = view;
-  Lanes lowest(std::numeric_limits<float>::max());
+  Lanes lowest(std::numeric_limits<Real>::max());
   walk_rows<every_spring, gathers_state, true>(
       constants, column,
       [&](std::ptrdiff_t row, const NodeLanes& node, const Lanes3& force)
@@ -352,7 +354,7 @@ HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& vie
 
 /// A column before the updated ones, whose springs of `set` act on them, in any stage.
 template <unsigned set>
-HWY_NOINLINE void walk_column_before(const BandGrid& bands, const ColumnView& view) {
+HWY_NOINLINE void walk_column_before(const BandGridOf<Real>& bands, const ColumnView& view) {
   const RowConstants constants(bands, view);
   const ColumnView column = view;
   walk_rows<set, false, false>(constants, column,
@@ -362,7 +364,7 @@ HWY_NOINLINE void walk_column_before(const BandGrid& bands, const ColumnView& vi
 /// A column at the end of the cloth, without springs beyond it, in any stage: the complete forces on its
 /// nodes replace those from earlier columns.
 template <unsigned set>
-HWY_NOINLINE void pull_last_column(const BandGrid& bands, const ColumnView& view) {
+HWY_NOINLINE void pull_last_column(const BandGridOf<Real>& bands, const ColumnView& view) {
   const RowConstants constants(bands, view);
   const ColumnView column = view;
   walk_rows<set, false, true>(
@@ -373,14 +375,15 @@ HWY_NOINLINE void pull_last_column(const BandGrid& bands, const ColumnView& view
 
 /// A column at the end of the cloth, with less than BandLayout::halo columns after it.
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void walk_last_column(const BandGrid& bands, const ColumnView& view, std::size_t behind) {
+HWY_NOINLINE void walk_last_column(const BandGridOf<Real>& bands, const ColumnView& view,
+                                   std::size_t behind) {
   if (behind == 0)
     pull_last_column<within_column>(bands, view);
   else
     pull_last_column<within_column | to_next_column>(bands, view);
   const RowConstants constants(bands, view);
   const ColumnView column = view;
-  Lanes lowest(std::numeric_limits<float>::max());
+  Lanes lowest(std::numeric_limits<Real>::max());
   for (std::ptrdiff_t row = 0; row < constants.height; ++row)
     update_row<method, stage>(constants, column, nodes_of(column.here, row),
                               load3(column.forces_here + row * static_cast<std::ptrdiff_t>(3 * lane_count())),
@@ -388,6 +391,7 @@ HWY_NOINLINE void walk_last_column(const BandGrid& bands, const ColumnView& view
   touch_floor_in_column<method, stage>(constants, column, lowest);
 }
 
+}  // namespace MSSIM_PRECISION
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

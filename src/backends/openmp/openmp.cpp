@@ -22,11 +22,12 @@ namespace {
 /// often, and has `roots`: seven bodies leave nine of 16 lanes empty. On two Zen 4 cores, bodies20587, AVX2
 /// instead of AVX-512: 0.75 of the time with one thread and 0.57 to 0.70 with two, although AVX2's code uses
 /// roots and divisions.
-StepKernel<BodyLanes> narrowest_kernel(const std::vector<StepKernel<BodyLanes>>& kernels,
-                                       const StepKernel<BodyLanes>& best,
-                                       const std::vector<AlikeBodies>& bodies, Roots roots) {
-  StepKernel<BodyLanes> narrowest = best;
-  for (const StepKernel<BodyLanes>& kernel : kernels)
+template <class Real>
+StepKernel<BodyLanesOf<Real>> narrowest_kernel(const std::vector<StepKernel<BodyLanesOf<Real>>>& kernels,
+                                               const StepKernel<BodyLanesOf<Real>>& best,
+                                               const std::vector<AlikeBodiesOf<Real>>& bodies, Roots roots) {
+  StepKernel<BodyLanesOf<Real>> narrowest = best;
+  for (const StepKernel<BodyLanesOf<Real>>& kernel : kernels)
     if (kernel.lanes < narrowest.lanes && kernel.fuses == best.fuses &&
         (roots == Roots::fast || kernel.exact_roots) &&
         spring_vectors(bodies, kernel.lanes) <= spring_vectors(bodies, best.lanes))
@@ -35,45 +36,58 @@ StepKernel<BodyLanes> narrowest_kernel(const std::vector<StepKernel<BodyLanes>>&
 }
 
 /// `roots`: empty to use only this instruction set.
-std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
-                                     std::size_t threads, std::string_view instruction_set,
-                                     std::optional<Roots> roots) {
+template <class Real>
+std::unique_ptr<Backend> openmp_for_set(const System& system, const Integrator& integrator, double dt_s,
+                                        std::size_t threads, std::string_view instruction_set,
+                                        std::optional<Roots> roots) {
+  using Bands = BandGridOf<Real>;
+  using Slices = SlicedBodiesOf<Real>;
+  using Abreast = BodyLanesOf<Real>;
   if (const auto* grid = std::get_if<GridPatch>(&system.topology)) {
-    const StepKernel<BandGrid> kernel = kernel_named(step_kernels<BandGrid>(integrator), instruction_set);
-    return std::make_unique<VectorBackend<BandGrid>>(kernel, system, *grid, integrator, dt_s, kernel.lanes,
-                                                     threads);
+    const StepKernel<Bands> kernel = kernel_named(step_kernels<Bands>(integrator), instruction_set);
+    return std::make_unique<VectorBackend<Bands>>(kernel, system, *grid, integrator, dt_s, kernel.lanes,
+                                                  threads);
   }
-  const std::vector<StepKernel<BodyLanes>> kernels = step_kernels<BodyLanes>(integrator);
-  StepKernel<BodyLanes> abreast = kernel_named(kernels, instruction_set);
+  const std::vector<StepKernel<Abreast>> kernels = step_kernels<Abreast>(integrator);
+  StepKernel<Abreast> abreast = kernel_named(kernels, instruction_set);
   // A vector of springs takes a third of the time of two entries of slices, which compute each spring twice
   // but leave no lane empty.
   constexpr double lanes_per_body = 3;
-  if (const auto alike = alike_bodies_for(system, abreast.lanes, lanes_per_body)) {
+  if (const auto alike = alike_bodies_for<Real>(system, abreast.lanes, lanes_per_body)) {
     if (roots) abreast = narrowest_kernel(kernels, abreast, *alike, *roots);
-    return std::make_unique<VectorBackend<BodyLanes>>(abreast, system, *alike, integrator, dt_s,
-                                                      abreast.lanes, threads);
+    return std::make_unique<VectorBackend<Abreast>>(abreast, system, *alike, integrator, dt_s, abreast.lanes,
+                                                    threads);
   }
-  const StepKernel<SlicedBodies> kernel =
-      kernel_named(step_kernels<SlicedBodies>(integrator), instruction_set);
-  return std::make_unique<VectorBackend<SlicedBodies>>(kernel, system, integrator, dt_s, kernel.lanes,
-                                                       threads);
+  const StepKernel<Slices> kernel = kernel_named(step_kernels<Slices>(integrator), instruction_set);
+  return std::make_unique<VectorBackend<Slices>>(kernel, system, integrator, dt_s, kernel.lanes, threads);
+}
+
+template <class Real>
+std::unique_ptr<Backend> openmp_of(const System& system, const Integrator& integrator, double dt_s,
+                                   const ExecutionOptions& options) {
+  const auto best =
+      best_kernel(step_kernels<SlicedBodiesOf<Real>>(integrator), options.roots, options.instruction_set);
+  return openmp_for_set<Real>(system, integrator, dt_s, static_cast<std::size_t>(options.threads),
+                              best.instruction_set,
+                              options.instruction_set.empty() ? std::optional(options.roots) : std::nullopt);
 }
 
 }  // namespace
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const auto best =
-      best_kernel(step_kernels<SlicedBodies>(integrator), options.roots, options.instruction_set);
-  return make_openmp(system, integrator, dt_s, static_cast<std::size_t>(options.threads),
-                     best.instruction_set,
-                     options.instruction_set.empty() ? std::optional(options.roots) : std::nullopt);
+  return openmp_of<float>(system, integrator, dt_s, options);
+}
+
+std::unique_ptr<Backend> make_openmp_in_double(const System& system, const Integrator& integrator,
+                                               double dt_s, const ExecutionOptions& options) {
+  return openmp_of<double>(system, integrator, dt_s, options);
 }
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options, std::string_view instruction_set) {
-  return make_openmp(system, integrator, dt_s, static_cast<std::size_t>(options.threads), instruction_set,
-                     std::nullopt);
+  return openmp_for_set<float>(system, integrator, dt_s, static_cast<std::size_t>(options.threads),
+                               instruction_set, std::nullopt);
 }
 
 }  // namespace mssim

@@ -17,6 +17,11 @@ namespace mssim {
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 
+/// make_openmp in double precision: half as many lanes, twice the memory. Roots are always exact, so all
+/// instruction sets that fuse multiply-adds (AVX2, AVX-512, NEON) are bitwise identical.
+std::unique_ptr<Backend> make_openmp_in_double(const System& system, const Integrator& integrator,
+                                               double dt_s, const ExecutionOptions& options);
+
 /// The instruction sets for which its vector code is compiled and which this CPU supports, by Highway's
 /// names, the best first. The order of every sum is the scene's (a column's nodes from the top, a body's
 /// neighbours by their number), independent of lanes. So, of those with exact roots (has_exact_roots), all

@@ -1,5 +1,5 @@
 // The walk over a banded cloth: stages follow each other, partitions are adjacent, with ghosts between them.
-// Compiled for the integrators of MSSIM_STAGES.
+// Compiled for the integrators of MSSIM_STAGES, in MSSIM_REAL.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -16,26 +16,27 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
+inline namespace MSSIM_PRECISION {
 
-/// Copies half a vector `count` times; the sources are from_stride floats apart, the targets to_stride.
-HWY_INLINE void copy_half(float* to, std::size_t to_stride, const float* from, std::size_t from_stride,
+/// Copies half a vector `count` times; the sources are from_stride numbers apart, the targets to_stride.
+HWY_INLINE void copy_half(Real* to, std::size_t to_stride, const Real* from, std::size_t from_stride,
                           std::size_t count) {
-  const hn::Half<FloatTag> d;
+  const hn::Half<RealTag> d;
   for (std::size_t n = 0; n < count; ++n)
     hn::Store(hn::Load(d, from + n * from_stride), d, to + n * to_stride);
 }
 
 /// Copies the ghost columns of a pass at one side of a partition, in one half, from the adjacent partition,
 /// as soon as they are available. Adds the time to `waited` if it was long.
-HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& partition, EdgeColumns& edge,
-                                     std::size_t first, std::size_t half, std::uint64_t pass,
-                                     TeamGain::Duration& waited) {
+HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartitionOf<Real>& partition,
+                                     EdgeColumns<Real>& edge, std::size_t first, std::size_t half,
+                                     std::uint64_t pass, TeamGain::Duration& waited) {
   edge.pass.wait_for(pass, waited);
   for (std::size_t i = 0; i < partition.ghosts; ++i) {
-    float* to = partition.column(layout, Pair::state, first + i) + layout.offset(0);
-    const float* from = edge.column(layout, pass, i);
+    Real* to = partition.column(layout, Pair::state, first + i) + layout.offset(0);
+    const Real* from = edge.column(layout, pass, i);
     if (layout.halves == 1)
-      std::memcpy(to, from, EdgeColumns::column_floats(layout) * sizeof(float));
+      std::memcpy(to, from, EdgeColumns<Real>::column_floats(layout) * sizeof(Real));
     else
       copy_half(to + half * layout.bands, layout.lanes, from, layout.bands,
                 layout.height * BandLayout::components);
@@ -44,7 +45,7 @@ HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& pa
 
 /// Copies the ghost columns of a pass at the cut between the halves of a folded partition: each half gets, in
 /// its own lanes, the columns at the other one's end.
-HWY_NOINLINE inline void take_ghosts_of_halves(const BandLayout& layout, BandPartition& partition) {
+HWY_NOINLINE inline void take_ghosts_of_halves(const BandLayout& layout, BandPartitionOf<Real>& partition) {
   const auto copy = [&](std::size_t to, std::size_t to_half, std::size_t from) HWY_ATTR {
     const auto lanes_of = [&](std::size_t column, std::size_t half) HWY_ATTR {
       return partition.column(layout, Pair::state, column) + layout.offset(0) + half * layout.bands;
@@ -67,17 +68,18 @@ HWY_NOINLINE inline void take_ghosts_of_halves(const BandLayout& layout, BandPar
 class EdgeAhead {
  public:
   /// `mine`: the edge for the adjacent partition, from which `theirs` is read in a pass.
-  HWY_INLINE EdgeAhead(const BandLayout& layout, EdgeColumns& mine, EdgeColumns& theirs, std::uint64_t pass)
+  HWY_INLINE EdgeAhead(const BandLayout& layout, EdgeColumns<Real>& mine, EdgeColumns<Real>& theirs,
+                       std::uint64_t pass)
       : write_(mine.column(layout, pass + 1, 0)),
         read_(theirs.column(layout, pass, 0)),
         theirs_(&theirs),
         pass_(pass) {}
   EdgeAhead() = default;  ///< at an end of the cloth: no prefetch
 
-  /// Prefetches `floats` more floats, of `all`, once the other thread has published the data to be read: it
+  /// Prefetches `floats` more numbers, of `all`, once the other thread has published the data to be read: it
   /// has then also read the data to be overwritten.
   HWY_INLINE void ask(std::size_t floats, std::size_t all) {
-    constexpr std::size_t line_floats = 16;
+    constexpr std::size_t line_floats = 64 / sizeof(Real);
     if (!theirs_ || asked_ >= all || !theirs_->pass.has_reached(pass_)) return;
     for (const std::size_t end = std::min(all, asked_ + floats); asked_ < end; asked_ += line_floats) {
       ask_to_write(write_ + asked_);
@@ -86,7 +88,7 @@ class EdgeAhead {
   }
 
  private:
-  static HWY_INLINE void ask_to_write(const float* line) {
+  static HWY_INLINE void ask_to_write(const Real* line) {
 #if HWY_ARCH_X86
     asm volatile("prefetchw %0" : : "m"(*line));
 #else
@@ -94,21 +96,21 @@ class EdgeAhead {
 #endif
   }
 
-  float* write_ = nullptr;
-  const float* read_ = nullptr;
-  const EdgeColumns* theirs_ = nullptr;
+  Real* write_ = nullptr;
+  const Real* read_ = nullptr;
+  const EdgeColumns<Real>* theirs_ = nullptr;
   std::uint64_t pass_ = 0;
   std::size_t asked_ = 0;
 };
 
 /// Copies a complete column of a partition if it is a ghost of another one in the next pass.
-HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition, std::size_t column,
+HWY_INLINE void leave_column(const BandLayout& layout, BandPartitionOf<Real>& partition, std::size_t column,
                              std::uint64_t pass) {
-  const auto leave = [&](EdgeColumns& edge, std::size_t number, std::size_t half) HWY_ATTR {
-    float* to = edge.column(layout, pass + 1, number);
-    const float* from = partition.column(layout, Pair::state, column) + layout.offset(0);
+  const auto leave = [&](EdgeColumns<Real>& edge, std::size_t number, std::size_t half) HWY_ATTR {
+    Real* to = edge.column(layout, pass + 1, number);
+    const Real* from = partition.column(layout, Pair::state, column) + layout.offset(0);
     if (layout.halves == 1)
-      std::memcpy(to, from, EdgeColumns::column_floats(layout) * sizeof(float));
+      std::memcpy(to, from, EdgeColumns<Real>::column_floats(layout) * sizeof(Real));
     else
       copy_half(to, layout.bands, from + half * layout.bands, layout.lanes,
                 layout.height * BandLayout::components);
@@ -123,13 +125,14 @@ HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition,
 /// Resets the pins of a newly written column in every pair that the stage has written and that a later stage,
 /// or the next step's first, gathers.
 template <std::size_t method, std::size_t stage>
-HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition, std::size_t column) {
+HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartitionOf<Real>& partition,
+                              std::size_t column) {
   const auto put_back = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
     constexpr Pair pair = static_cast<Pair>(i), stored = walk_writes_to(integrators[method], stage, pair);
     if constexpr (writes_to_gather(integrators[method], stage, pair))
-      for (const PlacedPin& pin : partition.pins[partition.local(column)])
+      for (const PlacedPin<Real>& pin : partition.pins[partition.local(column)])
         for (std::size_t k = 0; k < 3; ++k) {
-          float* component = partition.column(layout, stored, column) + pin.offset + k * lane_count();
+          Real* component = partition.column(layout, stored, column) + pin.offset + k * lane_count();
           component[0] = pin.position[k];
           component[3 * lane_count()] = 0;
         }
@@ -141,7 +144,7 @@ HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition
 }
 
 /// Forces on a stage's current column and on the next one, as in ColumnView.
-using ForcesUnderWay = std::array<float*, 2>;
+using ForcesUnderWay = std::array<Real*, 2>;
 
 /// One of the active stages in a partition.
 struct StageUnderWay {
@@ -150,7 +153,7 @@ struct StageUnderWay {
 };
 
 /// The view of a column for a stage that gathers `gather`.
-HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& partition,
+HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartitionOf<Real>& partition,
                                        const StageUnderWay& under_way, Pair gather, std::size_t column) {
   const std::size_t to_row_0 = layout.offset(0);
   ColumnView view;
@@ -169,8 +172,8 @@ HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& 
 
 /// Executes the stage in one column, if it updates that or one of the next two, on which its springs act.
 template <std::size_t method, std::size_t stage>
-HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, StageUnderWay& under_way,
-                           std::size_t column) {
+HWY_INLINE void walk_stage(const BandGridOf<Real>& bands, BandPartitionOf<Real>& partition,
+                           StageUnderWay& under_way, std::size_t column) {
   const BandLayout& layout = bands.layout;
   constexpr Pair gather =
       storage_of(integrators[method], integrators[method].stages[stage].gather, Storage::in_place);
@@ -189,8 +192,8 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
 }
 
 /// The first `count` stages of a pass over a partition, before its first column.
-inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGrid& bands,
-                                                                  BandPartition& partition,
+inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGridOf<Real>& bands,
+                                                                  BandPartitionOf<Real>& partition,
                                                                   std::size_t count) {
   std::array<StageUnderWay, stages_under_way> stages;
   for (std::size_t i = 0; i < count; ++i) {
@@ -200,7 +203,7 @@ inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGrid
     stages[i].end = std::min(partition.first + partition.count + reach, bands.columns);
     for (std::size_t f = 0; f < 2; ++f)
       stages[i].forces[f] = partition.forces.data() + (2 * i + f) * bands.layout.force_floats();
-    std::memset(stages[i].forces[0], 0, 2 * bands.layout.force_floats() * sizeof(float));
+    std::memset(stages[i].forces[0], 0, 2 * bands.layout.force_floats() * sizeof(Real));
   }
   return stages;
 }
@@ -222,11 +225,11 @@ struct BandPass {
 /// columns for a pass has seen those that the reader published in the previous pass, after reading the same
 /// set.
 template <std::size_t method>
-HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& pass, ColumnMessages* messages,
-                               std::optional<ForcesUnderWay>* handed_on) {
+HWY_INLINE void walk_partition(BandGridOf<Real>& bands, std::size_t p, const BandPass& pass,
+                               ColumnMessages* messages, std::optional<ForcesUnderWay>* handed_on) {
   constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
   const std::size_t count = pass.steps * stages;
-  BandPartition& partition = bands.partitions[p];
+  BandPartitionOf<Real>& partition = bands.partitions[p];
   std::array<StageUnderWay, stages_under_way> under_way = stages_of_pass(bands, partition, count);
   const bool goes_on = handed_on && *handed_on && count == 1 && bands.layout.halves == 1;
   if (goes_on) under_way[0].forces = **handed_on;
@@ -242,7 +245,7 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& p
     left_ahead = EdgeAhead(bands.layout, partition.left, bands.partitions[p - 1].right, pass.number + 1);
   if (has_next && !handed_on)
     right_ahead = EdgeAhead(bands.layout, partition.right, bands.partitions[p + 1].left, pass.number);
-  const std::size_t edge_floats = partition.ghosts * EdgeColumns::column_floats(bands.layout);
+  const std::size_t edge_floats = partition.ghosts * EdgeColumns<Real>::column_floats(bands.layout);
   const std::size_t floats_ahead = edge_floats * 3 / (2 * partition.count) + 1;
   if (bands.layout.halves > 1) take_ghosts_of_halves(bands.layout, partition);
   if (p > 0 && !goes_on)
@@ -275,7 +278,7 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& p
 
 /// Passes between meetings of a cloth's threads, which check whether several threads pay off: enough to make
 /// meetings a small fraction of the time.
-HWY_INLINE std::size_t passes_between_meetings(const BandGrid& bands) {
+HWY_INLINE std::size_t passes_between_meetings(const BandGridOf<Real>& bands) {
   constexpr std::size_t updates = 100'000;  // node updates: about a tenth of a millisecond
   const std::size_t of_a_pass = bands.layout.rows * bands.layout.halves * bands.own.count *
                                 bands.steps_per_pass * bands.integrator->stage_count;
@@ -283,7 +286,7 @@ HWY_INLINE std::size_t passes_between_meetings(const BandGrid& bands) {
 }
 
 template <std::size_t method>
-HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
+HWY_INLINE void step_method(BandGridOf<Real>& bands, std::size_t count) {
   // Every thread computes its own columns completely: the order of every sum depends only on the cloth, and
   // the result is bitwise identical for any number of threads and processes.
   const std::size_t partitions = bands.partitions.size();
@@ -351,7 +354,7 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
 }
 
 template <std::size_t stages>
-void step_bands(BandGrid& bands, int count) {
+void step_bands(BandGridOf<Real>& bands, int count) {
   with_integrator(*bands.integrator, [&](auto method) HWY_ATTR {
     if constexpr (Stages<stages>::have(integrators[method]))
       step_method<method>(bands, static_cast<std::size_t>(count));
@@ -359,14 +362,15 @@ void step_bands(BandGrid& bands, int count) {
 }
 
 namespace {
-StepKernel<BandGrid> band_kernel() { return kernel_here(&step_bands<MSSIM_STAGES>); }
+StepKernel<BandGridOf<Real>> band_kernel() { return kernel_here(&step_bands<MSSIM_STAGES>); }
 }  // namespace
 
+}  // namespace MSSIM_PRECISION
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-MSSIM_COMPILED_KERNELS(BandGrid, band_kernel)
+MSSIM_COMPILED_KERNELS(BandGridOf<MSSIM_REAL>, band_kernel)
 }  // namespace mssim
 #endif

@@ -1,5 +1,5 @@
 // The walks over bodies: over slices, chunk by chunk, and over alike bodies, one per lane, node by node and
-// each spring once. Compiled for the integrators of MSSIM_STAGES.
+// each spring once. Compiled for the integrators of MSSIM_STAGES, in MSSIM_REAL.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,14 +20,15 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
+inline namespace MSSIM_PRECISION {
 
 /// spring_pull (kernels/spring_law.h) between nodes `to_other` apart (m), the other one moving by `closing`
 /// relative to this one (m/s). Finite even without a spring, if both ends are the same node: 1e-36 is added
 /// to the length squared. Elsewhere that can only decide a tie; a spring of length zero gives no force,
 /// whereas serial gives NaN.
 HWY_INLINE Lanes body_spring_pull(const Lanes3& to_other, const Lanes3& closing, const SpringLanes& spring) {
-  return spring_pull_at(inverse_length(dot_add(to_other, to_other, Lanes(1e-36F))), dot(closing, to_other),
-                        spring);
+  return spring_pull_at(inverse_length(dot_add(to_other, to_other, Lanes(Real{1e-36F}))),
+                        dot(closing, to_other), spring);
 }
 
 /// The pairs in a stage, counted from the first one of a call: `state` and `next` swap in every step. `base`:
@@ -43,7 +44,7 @@ HWY_INLINE Pairs pairs_in(const Pairs& base, std::uint32_t stage) {
 /// Calls act(thread, ticket) for every chunk of `phases` phases, one phase after the other. The thread that
 /// finishes phase n calls between(n), while all others wait.
 template <class Act, class Between>
-HWY_INLINE void work_in_phases(const BodySteps& bodies, std::uint32_t phases, const Act& act,
+HWY_INLINE void work_in_phases(const BodySteps<Real>& bodies, std::uint32_t phases, const Act& act,
                                const Between& between) {
   ChunkTickets tickets(static_cast<std::uint32_t>(bodies.chunks.size()),
                        static_cast<std::uint32_t>(bodies.threads));
@@ -70,16 +71,16 @@ HWY_INLINE void work_in_phases(const BodySteps& bodies, std::uint32_t phases, co
 class EntryWalk {
  public:
   /// `pair`: the gathered one.
-  HWY_INLINE EntryWalk(const SlicedBodies& bodies, const float* pair, std::size_t first_slice)
+  HWY_INLINE EntryWalk(const SlicedBodiesOf<Real>& bodies, const Real* pair, std::size_t first_slice)
       : pair_(pair), entry_(first_entry(bodies, first_slice)), next_(load()) {}
 
   /// Start of a slice's entries.
-  static HWY_INLINE const float* first_entry(const SlicedBodies& bodies, std::size_t slice) {
+  static HWY_INLINE const Real* first_entry(const SlicedBodiesOf<Real>& bodies, std::size_t slice) {
     return bodies.entries.data() + bodies.first_entry[slice] * floats;
   }
-  HWY_INLINE bool is_before(const float* end) const { return entry_ < end; }
+  HWY_INLINE bool is_before(const Real* end) const { return entry_ < end; }
   /// SlicedGraph::stiffness_rest of this entry.
-  HWY_INLINE Lanes stiffness_rest() const { return hn::Load(FloatTag(), entry_ + vector_nodes); }
+  HWY_INLINE Lanes stiffness_rest() const { return hn::Load(RealTag(), entry_ + vector_nodes); }
   /// Returns the neighbours of this entry and advances to the next.
   HWY_INLINE NodeLanes take() {
     const NodeLanes taken = next_;
@@ -93,18 +94,18 @@ class EntryWalk {
 
   HWY_INLINE NodeLanes load() const {
     return load_records<vector_nodes>([&](std::size_t i) MSSIM_INLINE_LAMBDA {
-      return pair_ + std::size_t{std::bit_cast<std::uint32_t>(entry_[i])} * slice_offset_floats;
+      return pair_ + std::size_t{std::bit_cast<BitsOf<Real>>(entry_[i])} * slice_offset_unit<Real>;
     });
   }
 
-  const float* const pair_;
-  const float* entry_;
+  const Real* const pair_;
+  const Real* entry_;
   NodeLanes next_;
 };
 
 /// Acceleration of a slice's nodes by their springs, neighbour by neighbour in the order of entries up to
 /// `end`.
-HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, const NodeLanes& node,
+HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const Real* end, const NodeLanes& node,
                                       const SpringConstants<Lanes>& constants) {
   Lanes3 sum = zero3();
   while (entries.is_before(end)) {
@@ -120,19 +121,20 @@ HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, cons
 
 /// One stage at the nodes of one slice.
 template <std::size_t method, std::size_t stage>
-HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::size_t slice,
+HWY_INLINE void step_slice(const SlicedBodiesOf<Real>& bodies, const Pairs& base, std::size_t slice,
                            EntryWalk& entries) {
   const std::size_t offset = slice * vector_nodes * record_floats;
   const NodeLanes node = load_nodes(base[index(integrators[method].stages[stage].gather)] + offset);
-  const float* of_slice = bodies.constants.data() + slice * SlicedBodies::slice_constants * vector_nodes;
+  const Real* of_slice =
+      bodies.constants.data() + slice * SlicedBodiesOf<Real>::slice_constants * vector_nodes;
   const SpringConstants<Lanes> constants = load_constants(of_slice);
-  const Mask free = hn::Eq(hn::Load(FloatTag(), of_slice), hn::Zero(FloatTag()));
+  const Mask free = hn::Eq(hn::Load(RealTag(), of_slice), hn::Zero(RealTag()));
   const Lanes3 a = spring_acceleration(entries, EntryWalk::first_entry(bodies, slice + 1), node, constants);
   update_nodes<method, stage>(base, offset, node, a, free, bodies.coefficients, bodies.surroundings);
 }
 
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, IndexRange chunk,
+HWY_NOINLINE void step_chunk(const SlicedBodiesOf<Real>& bodies, const Pairs& base, IndexRange chunk,
                              std::uint32_t /*thread*/) {
   EntryWalk entries(bodies, base[index(integrators[method].stages[stage].gather)], chunk.begin);
   for (std::size_t slice = chunk.begin; slice < chunk.end; ++slice)
@@ -140,40 +142,41 @@ HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, Inde
 }
 
 /// Positions and velocities of a node in all lanes: [x y z u v w][lanes].
-HWY_INLINE NodeLanes load_bodies(const float* from) { return {load3(from), load3(from + 3 * vector_nodes)}; }
+HWY_INLINE NodeLanes load_bodies(const Real* from) { return {load3(from), load3(from + 3 * vector_nodes)}; }
 
 /// Adds the forces of springs from earlier pieces to those on a piece's nodes.
-HWY_NOINLINE inline void add_cut_springs(const AlikeBodies& shape, const BodyLanes::Piece& piece,
-                                         const float* gathered, float* forces) {
+HWY_NOINLINE inline void add_cut_springs(const AlikeBodiesOf<Real>& shape,
+                                         const BodyLanesOf<Real>::Piece& piece, const Real* gathered,
+                                         Real* forces) {
   const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
-  for (const BodyLanes::CutSpring& cut : piece.cut) {
+  for (const BodyLanesOf<Real>::CutSpring& cut : piece.cut) {
     const NodeLanes first = load_bodies(gathered + 2 * std::size_t{cut.first});
     const NodeLanes second = load_bodies(gathered + 2 * std::size_t{cut.second});
     const Lanes3 to_other = second.x - first.x;
     const Lanes pull = body_spring_pull(to_other, second.v - first.v, {constants, Lanes(cut.stiffness_rest)});
-    float* const force = forces + cut.second;
+    Real* const force = forces + cut.second;
     store3(force, mul_add(-pull, to_other, load3(force)));
   }
 }
 
 /// One stage at the nodes of a piece. `forces` must be zero, and is zero afterwards.
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const BodyLanes::Piece& piece,
-                             float* const forces) {
+HWY_NOINLINE void step_piece(const BodyLanesOf<Real>& bodies, const Pairs& base,
+                             const BodyLanesOf<Real>::Piece& piece, Real* const forces) {
   constexpr std::size_t force_floats = 3 * vector_nodes;
-  const AlikeBodies& shape = bodies.shapes[piece.shape];
+  const AlikeBodiesOf<Real>& shape = bodies.shapes[piece.shape];
   const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
   // Copies, because the compiler must assume that a vector store may change any object in memory.
-  const Coefficients<float> coefficients = bodies.coefficients;
-  const Surroundings surroundings = bodies.surroundings;
+  const Coefficients<Real> coefficients = bodies.coefficients;
+  const SurroundingsOf<Real> surroundings = bodies.surroundings;
   const std::size_t end = piece.end, reach = piece.reach;
   const std::uint32_t* const first_spring = shape.first_spring.data();
   const std::uint8_t* const pinned = shape.pinned.data();
-  const AlikeBodies::SpringAhead* const all = shape.springs.data();
+  const AlikeBodiesOf<Real>::SpringAhead* const all = shape.springs.data();
   Pairs pairs = base;
-  for (float*& pair : pairs)
+  for (Real*& pair : pairs)
     if (pair != nullptr) pair += piece.offset;
-  const float* const gathered = pairs[index(integrators[method].stages[stage].gather)];
+  const Real* const gathered = pairs[index(integrators[method].stages[stage].gather)];
 
   add_cut_springs(shape, piece, gathered, forces);
   for (std::size_t node = piece.begin; node < end; ++node) {
@@ -181,17 +184,17 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
     const NodeLanes here = load_bodies(gathered + 2 * offset);
     Lanes3 sum = load3(forces + offset);
     store3(forces + offset, zero3());
-    const AlikeBodies::SpringAhead* const last = all + first_spring[node + 1];
-    for (const AlikeBodies::SpringAhead* spring = all + first_spring[node]; spring < last; ++spring) {
+    const AlikeBodiesOf<Real>::SpringAhead* const last = all + first_spring[node + 1];
+    for (const AlikeBodiesOf<Real>::SpringAhead* spring = all + first_spring[node]; spring < last; ++spring) {
       const NodeLanes other = load_bodies(gathered + 2 * std::size_t{spring->other});
       const Lanes3 to_other = other.x - here.x;
       const Lanes pull =
           body_spring_pull(to_other, other.v - here.v, {constants, Lanes(spring->stiffness_rest)});
-      float* const force = forces + spring->other;
+      Real* const force = forces + spring->other;
       store3(force, mul_add(-pull, to_other, load3(force)));
       sum = mul_add(pull, to_other, sum);
     }
-    const Mask free = hn::FirstN(FloatTag(), pinned[node] != 0 ? 0 : vector_nodes);
+    const Mask free = hn::FirstN(RealTag(), pinned[node] != 0 ? 0 : vector_nodes);
     const auto at = [&](auto slot) MSSIM_INLINE_LAMBDA {
       constexpr std::size_t number = index(decltype(slot)::value);
       return pairs[number / 2] + 2 * offset + number % 2 * force_floats;
@@ -205,7 +208,8 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
 }
 
 template <std::size_t method, std::size_t stage>
-HWY_INLINE void step_chunk(BodyLanes& bodies, const Pairs& base, IndexRange chunk, std::uint32_t thread) {
+HWY_INLINE void step_chunk(BodyLanesOf<Real>& bodies, const Pairs& base, IndexRange chunk,
+                           std::uint32_t thread) {
   for (std::size_t piece = chunk.begin; piece < chunk.end; ++piece)
     step_piece<method, stage>(bodies, base, bodies.pieces[piece], bodies.forces[thread].data());
 }
@@ -233,9 +237,9 @@ HWY_INLINE void take_stages(Bodies& bodies, std::uint32_t count) {
 /// Each stage of a part has two phases: nodes without ghost neighbours are stepped while messages bring the
 /// ghosts; then the edge nodes, which are sent as soon as they are complete.
 template <std::size_t method>
-HWY_INLINE void take_stages(SlicedBodies& bodies, std::uint32_t count) {
-  if (bodies.messages == nullptr) return take_stages<method, SlicedBodies>(bodies, count);
-  NodeMessages& messages = *bodies.messages;
+HWY_INLINE void take_stages(SlicedBodiesOf<Real>& bodies, std::uint32_t count) {
+  if (bodies.messages == nullptr) return take_stages<method, SlicedBodiesOf<Real>>(bodies, count);
+  NodeMessages<Real>& messages = *bodies.messages;
   const auto gathered_in = [&](std::uint32_t number) {
     const Stage& stage = integrators[method].stages[number % integrators[method].stage_count];
     return pairs_in<method>(bodies.base, number)[index(stage.gather)];
@@ -283,16 +287,21 @@ void step_bodies(Bodies& bodies, int count) {
 }
 
 namespace {
-StepKernel<SlicedBodies> slice_kernel() { return kernel_here(&step_bodies<MSSIM_STAGES, SlicedBodies>); }
-StepKernel<BodyLanes> body_lanes_kernel() { return kernel_here(&step_bodies<MSSIM_STAGES, BodyLanes>); }
+StepKernel<SlicedBodiesOf<Real>> slice_kernel() {
+  return kernel_here(&step_bodies<MSSIM_STAGES, SlicedBodiesOf<Real>>);
+}
+StepKernel<BodyLanesOf<Real>> body_lanes_kernel() {
+  return kernel_here(&step_bodies<MSSIM_STAGES, BodyLanesOf<Real>>);
+}
 }  // namespace
 
+}  // namespace MSSIM_PRECISION
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-MSSIM_COMPILED_KERNELS(SlicedBodies, slice_kernel)
-MSSIM_COMPILED_KERNELS(BodyLanes, body_lanes_kernel)
+MSSIM_COMPILED_KERNELS(SlicedBodiesOf<MSSIM_REAL>, slice_kernel)
+MSSIM_COMPILED_KERNELS(BodyLanesOf<MSSIM_REAL>, body_lanes_kernel)
 }  // namespace mssim
 #endif

@@ -13,7 +13,7 @@ std::unique_ptr<Backend> make_serial(const System& system, const Integrator& int
 
 /// make_serial in double precision.
 std::unique_ptr<Backend> make_serial_in_double(const System& system, const Integrator& integrator,
-                                               double dt_s);
+                                               double dt_s, const ExecutionOptions& options);
 
 /// The paper's "Multi-thread CPU" as published (Hong et al., Figure 5): springs and nodes are split into one
 /// group per thread; each thread computes its springs' forces and adds them to the nodes inside a critical

@@ -41,7 +41,7 @@ std::unique_ptr<Backend> make_serial(const System& system, const Integrator& int
 }
 
 std::unique_ptr<Backend> make_serial_in_double(const System& system, const Integrator& integrator,
-                                               double dt_s) {
+                                               double dt_s, const ExecutionOptions& /*options*/) {
   return std::make_unique<Serial<double>>(system, integrator, dt_s);
 }
 

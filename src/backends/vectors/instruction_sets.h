@@ -7,13 +7,13 @@
 #error "backends/vectors/instruction_sets.h must be included before Highway"
 #endif
 
-// On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, Highway's "AVX3"). Highway's SSE4 is SSE4.2 with AES and
-// carry-less multiplication, which a few CPUs up to about 2013 lack; plain floats for them would take a
-// quarter of the compile time of vector code. No targets beyond AVX3 (lower bits): newer versions of Highway
-// would compile the same code again for Zen 4 and for Sapphire Rapids. On arm64 NEON (4), not Arm's SVE: a
-// vector whose length is known only at run time cannot be a struct member, as Lanes requires, and phones with
-// SVE have vectors of 128 bits, no longer than NEON's. On other CPUs the compiler's baseline, or plain
-// floats, one lane.
+// On x86-64: SSE4 (4 lanes of floats), AVX2 (8), AVX-512 (16, Highway's "AVX3"). Highway's SSE4 is SSE4.2
+// with AES and carry-less multiplication, which a few CPUs up to about 2013 lack; plain floats for them would
+// take a quarter of the compile time of vector code. No targets beyond AVX3 (lower bits): newer versions of
+// Highway would compile the same code again for Zen 4 and for Sapphire Rapids. On arm64 NEON (4), not Arm's
+// SVE: a vector whose length is known only at run time cannot be a struct member, as Lanes requires, and
+// phones with SVE have vectors of 128 bits, no longer than NEON's. On other CPUs the compiler's baseline, or
+// plain floats, one lane.
 #define HWY_DISABLED_TARGETS ((HWY_AVX3 - 1) | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #if defined(__x86_64__) && !defined(__SSE4_2__)
 #define HWY_BASELINE_TARGETS HWY_SSE4
@@ -30,6 +30,13 @@
 #ifndef MSSIM_STAGES
 #define MSSIM_STAGES 1
 #endif
+// The type of its numbers, float or double, and the namespace of that code in HWY_NAMESPACE.
+#ifndef MSSIM_REAL
+#define MSSIM_REAL float
+#endif
+#define MSSIM_PRECISION_OF(real) in_##real
+#define MSSIM_PRECISION_NAMED(real) MSSIM_PRECISION_OF(real)
+#define MSSIM_PRECISION MSSIM_PRECISION_NAMED(MSSIM_REAL)
 
 namespace mssim {
 

@@ -19,7 +19,7 @@ namespace mssim {
 /// Vector code for one instruction set that steps a `Data` laid out for its lanes.
 template <class Data>
 struct StepKernel {
-  std::size_t lanes;                    ///< floats per vector; the data must be laid out for it
+  std::size_t lanes;                    ///< numbers per vector; the data must be laid out for it
   const char* instruction_set;          ///< Highway's name for it
   bool exact_roots;                     ///< see inverse_length (lanes-inl.h)
   bool fuses;                           ///< whether multiply-adds are rounded once

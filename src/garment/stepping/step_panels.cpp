@@ -20,17 +20,17 @@ HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
 HWY_INLINE Lanes3 load(const Float3Arrays& a, std::size_t at) {
-  return {hn::Load(FloatTag(), a.x.data() + at), hn::Load(FloatTag(), a.y.data() + at),
-          hn::Load(FloatTag(), a.z.data() + at)};
+  return {hn::Load(RealTag(), a.x.data() + at), hn::Load(RealTag(), a.y.data() + at),
+          hn::Load(RealTag(), a.z.data() + at)};
 }
 HWY_INLINE Lanes3 load_unaligned(const Float3Arrays& a, std::size_t at) {
-  return {hn::LoadU(FloatTag(), a.x.data() + at), hn::LoadU(FloatTag(), a.y.data() + at),
-          hn::LoadU(FloatTag(), a.z.data() + at)};
+  return {hn::LoadU(RealTag(), a.x.data() + at), hn::LoadU(RealTag(), a.y.data() + at),
+          hn::LoadU(RealTag(), a.z.data() + at)};
 }
 HWY_INLINE void store(Float3Arrays& a, std::size_t at, const Lanes3& value) {
-  hn::Store(value.x.v, FloatTag(), a.x.data() + at);
-  hn::Store(value.y.v, FloatTag(), a.y.data() + at);
-  hn::Store(value.z.v, FloatTag(), a.z.data() + at);
+  hn::Store(value.x.v, RealTag(), a.x.data() + at);
+  hn::Store(value.y.v, RealTag(), a.y.data() + at);
+  hn::Store(value.z.v, RealTag(), a.z.data() + at);
 }
 
 /// Constants of a step.
@@ -76,11 +76,11 @@ HWY_INLINE void compute_forces(const GarmentGrid& grid, const GarmentGrid::Panel
       const std::ptrdiff_t offset =
           panel_stencil[d].rows * static_cast<std::ptrdiff_t>(panel.stride) + panel_stencil[d].columns;
       const Lanes3 away = load_unaligned(grid.position, at + static_cast<std::size_t>(offset)) - own;
-      const Lanes rest = hn::Load(FloatTag(), grid.rest[d].data() + at);
+      const Lanes rest = hn::Load(RealTag(), grid.rest[d].data() + at);
       const SpringConstants<Lanes> undamped{.stiffness = Lanes(panel.stiffness[d][row]),
                                             .damping = Lanes(0.0F)};
       const Lanes pull = spring_pull(dot(away, away), Lanes(0.0F), linear_spring(undamped, rest));
-      const Mask exists = hn::Gt(rest.v, hn::Zero(FloatTag()));
+      const Mask exists = hn::Gt(rest.v, hn::Zero(RealTag()));
       store(scratch.forces(), scratch.at(d, row) + column, keep(exists, pull * away));
     }
   }
@@ -104,8 +104,8 @@ HWY_INLINE Lanes3 force_on(ForceScratch& scratch, std::size_t row, std::size_t c
 /// Second half of loop 4: contact of a vector of nodes with the body. Changes `x` and `v`; returns the nodes
 /// that friction holds.
 HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real, Lanes3& x, Lanes3& v) {
-  constexpr std::size_t lanes = hn::MaxLanes(FloatTag());
-  const hn::RebindToSigned<FloatTag> index_tag;
+  constexpr std::size_t lanes = hn::MaxLanes(RealTag());
+  const hn::RebindToSigned<RealTag> index_tag;
   const BodyFrame& frame = maps.frame();
   const Lanes dt(rule.dt);
   const Lanes3 next = mul_add(dt, v, x);
@@ -126,13 +126,13 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
                                  planes_of.first(3), planes_of.last(0),  planes_of.last(1),
                                  planes_of.last(2),  planes_of.last(3)};
   const BodyContact<Lanes> contact = body_contact(planes, next.x, next.y, next.z);
-  const Mask inside = hn::And(real, hn::Lt(contact.distance.v, hn::Zero(FloatTag())));
-  if (hn::AllFalse(FloatTag(), inside)) return inside;
+  const Mask inside = hn::And(real, hn::Lt(contact.distance.v, hn::Zero(RealTag())));
+  if (hn::AllFalse(RealTag(), inside)) return inside;
   const ClothResponse<Lanes> after = body_response(ClothPoint<Lanes>{x.x, x.y, x.z, v.x, v.y, v.z}, contact,
                                                    Lanes(rule.phase.friction), Lanes(rule.push_speed), dt);
   x = select(inside, {after.x, after.y, after.z}, x);
   v = select(inside, {after.u, after.v, after.w}, v);
-  return hn::And(inside, hn::Gt(after.stuck.v, hn::Zero(FloatTag())));
+  return hn::And(inside, hn::Gt(after.stuck.v, hn::Zero(RealTag())));
 }
 
 /// Second half of loop 4 for a row of nodes: applies contact with the body to moved positions and velocities,
@@ -141,15 +141,15 @@ HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Panel& p
                                   const StepRule& rule) {
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
     const std::size_t at = panel.first + row * panel.stride + column;
-    Lanes free = hn::Load(FloatTag(), grid.inverse_mass.data() + at);
+    Lanes free = hn::Load(RealTag(), grid.inverse_mass.data() + at);
     if (panel.body != nullptr) {
-      const Mask real = hn::Gt(free.v, hn::Zero(FloatTag()));
+      const Mask real = hn::Gt(free.v, hn::Zero(RealTag()));
       Lanes3 x = load(grid.moved, at), v = load(grid.velocity, at);
       free = select(touch_body(*panel.body, rule, real, x, v), Lanes(0.0F), free);
       store(grid.velocity, at, v);
       store(grid.moved, at, x);
     }
-    hn::Store(free.v, FloatTag(), grid.free.data() + at);
+    hn::Store(free.v, RealTag(), grid.free.data() + at);
   }
 }
 
@@ -168,8 +168,8 @@ HWY_INLINE void update_velocities(GarmentGrid& grid, const GarmentGrid::Block& b
     compute_forces(grid, panel, row, scratch);
     for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
       const std::size_t at = panel.first + row * panel.stride + column;
-      const Lanes inverse_mass = hn::Load(FloatTag(), grid.inverse_mass.data() + at);
-      const Mask real = hn::Gt(inverse_mass.v, hn::Zero(FloatTag()));
+      const Lanes inverse_mass = hn::Load(RealTag(), grid.inverse_mass.data() + at);
+      const Mask real = hn::Gt(inverse_mass.v, hn::Zero(RealTag()));
       const Lanes3 v = load(grid.velocity, at);
       Lanes3 a =
           node_acceleration_unfused(inverse_mass * force_on(scratch, row, column), v, damping, gravity);
@@ -187,7 +187,7 @@ HWY_INLINE void update_velocities(GarmentGrid& grid, const GarmentGrid::Block& b
 
 /// Lanes with a spring longer than its limit.
 HWY_INLINE Mask is_elongated(Lanes length_squared, Lanes limit) {
-  return hn::Gt(elongation_excess(length_squared, limit).v, hn::Zero(FloatTag()));
+  return hn::Gt(elongation_excess(length_squared, limit).v, hn::Zero(RealTag()));
 }
 
 /// Corrects the springs of a direction between two rows of nodes, a vector at a time: no two have a common
@@ -200,19 +200,19 @@ HWY_INLINE void correct_between_rows(GarmentGrid& grid, const GarmentGrid::Panel
     const std::size_t at = panel.first + row * panel.stride + column, other = at + offset;
     const Lanes3 d = load_unaligned(grid.moved, other) - load(grid.moved, at);
     const Lanes squared = dot(d, d);
-    const Lanes limit = Lanes(hn::Load(FloatTag(), grid.rest[direction].data() + at)) * Lanes(rule.limit);
+    const Lanes limit = Lanes(hn::Load(RealTag(), grid.rest[direction].data() + at)) * Lanes(rule.limit);
     const Mask acts = is_elongated(squared, limit);
-    if (HWY_LIKELY(hn::AllFalse(FloatTag(), acts))) continue;
-    const Lanes own_free = hn::Load(FloatTag(), grid.free.data() + at);
-    const Lanes other_free = hn::LoadU(FloatTag(), grid.free.data() + other);
+    if (HWY_LIKELY(hn::AllFalse(RealTag(), acts))) continue;
+    const Lanes own_free = hn::Load(RealTag(), grid.free.data() + at);
+    const Lanes other_free = hn::LoadU(RealTag(), grid.free.data() + other);
     const Lanes3 own = load(grid.velocity, at), far = load_unaligned(grid.velocity, other);
     const Lanes impulse = keep(acts, elongation_impulse(squared, dot(far - own, d), limit,
                                                         Lanes(rule.rate_per_s), own_free + other_free));
     store(grid.velocity, at, mul_add(own_free * impulse, d, own));
     const Lanes3 after = far - (other_free * impulse) * d;
-    hn::StoreU(after.x.v, FloatTag(), grid.velocity.x.data() + other);
-    hn::StoreU(after.y.v, FloatTag(), grid.velocity.y.data() + other);
-    hn::StoreU(after.z.v, FloatTag(), grid.velocity.z.data() + other);
+    hn::StoreU(after.x.v, RealTag(), grid.velocity.x.data() + other);
+    hn::StoreU(after.y.v, RealTag(), grid.velocity.y.data() + other);
+    hn::StoreU(after.z.v, RealTag(), grid.velocity.z.data() + other);
   }
 }
 
@@ -236,11 +236,11 @@ HWY_INLINE void correct_row(GarmentGrid& grid, const GarmentGrid::Panel& panel, 
   for (std::size_t i = 0; i < vectors; ++i) {
     const std::size_t at = panel.first + row * panel.stride + lanes * (forwards ? i : vectors - 1 - i);
     const Lanes3 d = load_unaligned(grid.moved, at + 1) - load(grid.moved, at);
-    const Lanes limit = Lanes(hn::Load(FloatTag(), grid.rest[0].data() + at)) * Lanes(rule.limit);
+    const Lanes limit = Lanes(hn::Load(RealTag(), grid.rest[0].data() + at)) * Lanes(rule.limit);
     const Mask acts = is_elongated(dot(d, d), limit);
-    if (HWY_LIKELY(hn::AllFalse(FloatTag(), acts))) continue;
+    if (HWY_LIKELY(hn::AllFalse(RealTag(), acts))) continue;
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(FloatTag(), acts, bits);
+    hn::StoreMaskBits(RealTag(), acts, bits);
     for (std::size_t k = 0; k < lanes; ++k) {
       const std::size_t lane = forwards ? k : lanes - 1 - k;
       if ((bits[lane / 8] >> (lane % 8) & 1) != 0) correct_along_row(grid, at + lane, rule);
@@ -287,7 +287,7 @@ HWY_INLINE void move_block(GarmentGrid& grid, const GarmentGrid::Block& block, L
   const Lanes height(static_cast<float>(floor.height));
   for (std::size_t at = first; at < last; at += lane_count()) {
     Lanes3 v = load(grid.velocity, at), x = mul_add(dt, v, load(grid.moved, at));
-    const Mask real = hn::Gt(hn::Load(FloatTag(), grid.inverse_mass.data() + at), hn::Zero(FloatTag()));
+    const Mask real = hn::Gt(hn::Load(RealTag(), grid.inverse_mass.data() + at), hn::Zero(RealTag()));
     const Mask under = hn::And(real, hn::Lt(x.y.v, height.v));
     touch_floor(under, height, Lanes(static_cast<float>(floor.restitution)),
                 Lanes(static_cast<float>(floor.friction)), x, v);

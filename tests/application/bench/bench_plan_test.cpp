@@ -171,11 +171,23 @@ TEST_F(BenchPlanTest, TakesTheBaselineInDoublePrecision) {
     EXPECT_EQ(end_of(*backend), end_of(*make_reference(system, *integrator, 1e-4))) << integrator->name;
   }
   EXPECT_THROW(make_backend(twice, system, *find_integrator("implicit-euler"), 1e-4, {}), Unsupported);
-  for (const char* wrong :
-       {"openmp:double", "serial:double:double", "serial:each:double", "serial:double:2"}) {
+  for (const char* wrong : {"hybrid:double", "serial:double:double", "serial:double:2", "openmp:2:double"}) {
     options_.backends = {wrong};
     EXPECT_THROW(plan_of(options_), UsageError) << wrong;
   }
+}
+
+TEST_F(BenchPlanTest, TakesOpenMpInDoublePrecisionWithThreadsAndInstructionSets) {
+  const std::string least(instruction_sets().back());
+  options_.backends = {"openmp", "openmp:double", "openmp:double:1", "openmp:double:" + least};
+  options_.execution.threads = 2;
+  const BenchPlan plan = plan_of(options_);
+  ASSERT_THAT(names_in(plan.settings.backends),
+              testing::ElementsAre("openmp", "openmp:double", "openmp:double:1", "openmp:double:" + least));
+  EXPECT_EQ(std::ranges::count(plan.settings.backends, true, &BackendInfo::in_double), 3);
+  EXPECT_GT(plan.settings.backends[1]->step_share, plan.settings.backends[0]->step_share);
+  EXPECT_EQ(plan.settings.backends[2]->threads, 1);
+  EXPECT_EQ(plan.settings.backends[3]->instruction_set, least);
 }
 
 TEST_F(BenchPlanTest, TakesABackendThatStepsEachBodyForItself) {

@@ -47,6 +47,21 @@ TEST(BandCut, FoldsAClothWhoseBandsAreLow) {
   }
 }
 
+TEST(BandCut, TakesDoublesForTwiceTheBytes) {
+  const Integrator& euler = *find_integrator("semi-euler");
+  const auto layout = [](std::uint32_t rows, std::uint32_t columns, std::size_t bytes) {
+    return BandLayout(GridPatch{rows, columns, 0.01}, 16, 1, bytes);
+  };
+  // Folded, 13 rows of 16 lanes: 24,960 bytes of floats in use, 49,920 of doubles.
+  EXPECT_EQ(halves_for(layout(100, 100, 4), euler, 1, 1, xeon), 2U);
+  EXPECT_EQ(halves_for(layout(100, 100, 8), euler, 1, 1, xeon), 1U);
+  // Half of the last-level cache holds it in floats, 24 bytes a node, and not in doubles.
+  const long found = sysconf(_SC_LEVEL3_CACHE_SIZE);
+  const auto columns = static_cast<std::uint32_t>((found > 0 ? found : 16L << 20) / (500 * 64));
+  EXPECT_EQ(steps_per_pass_for(layout(500, columns, 4), euler, 1), 1U);
+  EXPECT_EQ(steps_per_pass_for(layout(500, columns, 8), euler, 1), stages_under_way);
+}
+
 TEST(BandCut, DoesNotFoldWhatWouldBeWalkedOverTwice) {
   EXPECT_EQ(halves(50, 50, "rk4", 2), 1U) << "the halves would recompute twelve columns each";
   EXPECT_EQ(halves(50, 50, "semi-euler", 12), 1U) << "two columns a thread and half";

@@ -31,13 +31,13 @@ System many_bodies() {
   return system;
 }
 
-class BodyLanesOf : public testing::TestWithParam<std::string_view> {};
-INSTANTIATE_TEST_SUITE_P(Integrators, BodyLanesOf,
+class BodiesAbreast : public testing::TestWithParam<std::string_view> {};
+INSTANTIATE_TEST_SUITE_P(Integrators, BodiesAbreast,
                          testing::Values("semi-euler", "midpoint", "rk4", "rk4-frozen", "explicit-euler"),
                          ByName());
 
 // What a body's node feels, and in which order that is added, does not depend on how bodies lie in memory.
-TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstructionSet) {
+TEST_P(BodiesAbreast, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstructionSet) {
   const Integrator& method = *find_integrator(GetParam());
   const System system = many_bodies();
   const auto alike = find_alike_bodies(system);

@@ -16,7 +16,7 @@ namespace mssim::HWY_NAMESPACE {
 
 void invert(float* numbers, std::size_t count) {
   for (std::size_t i = 0; i < count; i += lane_count())
-    hn::StoreU(inverse_length(hn::LoadU(FloatTag(), numbers + i)).v, FloatTag(), numbers + i);
+    hn::StoreU(inverse_length(hn::LoadU(RealTag(), numbers + i)).v, RealTag(), numbers + i);
 }
 
 InverseLength inverse_length_kernel() { return {hwy::TargetName(HWY_TARGET), exact_roots, &invert}; }

@@ -38,13 +38,13 @@ HWY_INLINE SpringLanes select(Mask first, const SpringLanes& a, const SpringLane
 
 /// Three components of a vector of nodes at an unaligned address.
 HWY_INLINE void store_part(EveryLane, const Lanes3& value, float* to, std::size_t pitch) {
-  const FloatTag d;
+  const RealTag d;
   hn::StoreU(value.x.v, d, to);
   hn::StoreU(value.y.v, d, to + pitch);
   hn::StoreU(value.z.v, d, to + 2 * pitch);
 }
 HWY_INLINE void store_part(Mask lanes, const Lanes3& value, float* to, std::size_t pitch) {
-  const FloatTag d;
+  const RealTag d;
   hn::BlendedStore(value.x.v, lanes, d, to);
   hn::BlendedStore(value.y.v, lanes, d, to + pitch);
   hn::BlendedStore(value.z.v, lanes, d, to + 2 * pitch);
@@ -101,7 +101,7 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
       const float* const first_free = cloth.free_of_row[row] + springs.stream * pitch;
       const float* const second_free = cloth.free_of_row[other_row] + other * pitch + further;
       const SpringLanes of_pinned = in_every_lane(cloth.of_pinned[springs.kind]);
-      const FloatTag d;
+      const RealTag d;
       for (std::size_t at = 0; at < count; at += lanes) {
         const Mask there = below(hn::Iota(IndexTag(), 0), static_cast<std::uint32_t>(count - at));
         const Mask first_moves = hn::And(there, hn::Ne(hn::LoadU(d, first_free + at), hn::Zero(d)));
@@ -119,7 +119,7 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
 
 /// Gravity and air damping in `rows` rows.
 HWY_NOINLINE inline void let_fall(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
-  const FloatTag d;
+  const RealTag d;
   const std::size_t pitch = cloth.layout.pitch, nodes = cloth.layout.springs(0, 0);
   const Lanes gravity(cloth.fall), kept(cloth.kept);
   for (std::size_t row = first_row; row < first_row + rows; ++row)
@@ -162,7 +162,7 @@ HWY_INLINE void project_across_rows(QuarteredRows& cloth, std::size_t first_row,
 /// The end of a substep, x += h v, and at the end of a step the floor.
 HWY_NOINLINE inline void advance(QuarteredRows& cloth, std::size_t first_row, std::size_t rows,
                                  bool meets_floor) {
-  const FloatTag d;
+  const RealTag d;
   const std::size_t pitch = cloth.layout.pitch, nodes = cloth.layout.springs(0, 0);
   const Lanes h(cloth.h_s);
   for (std::size_t row = first_row; row < first_row + rows; ++row)
@@ -310,7 +310,7 @@ void step_cloth(QuarteredRows& cloth, int count) {
   with_team(cloth.threads, take_passes, cloth.team_gain);
 }
 
-constexpr std::size_t vector_springs = hn::MaxLanes(FloatTag());
+constexpr std::size_t vector_springs = hn::MaxLanes(RealTag());
 
 /// Writes the velocities of the nodes whose records are at record(0), record(1) ..., one per lane, in stores
 /// of blocks of four floats. With scatter instructions, one per component, a step of 38,233 and of 3,858
@@ -318,7 +318,7 @@ constexpr std::size_t vector_springs = hn::MaxLanes(FloatTag());
 #if HWY_TARGET == HWY_SCALAR
 template <class Record>
 HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
-  const FloatTag d;
+  const RealTag d;
   hn::Store(v.x.v, d, record(0) + 4);
   hn::Store(v.y.v, d, record(0) + 5);
   hn::Store(v.z.v, d, record(0) + 6);
@@ -336,9 +336,9 @@ HWY_INLINE void store_blocks(Tag d, V blocks, std::size_t first, Record record) 
 }
 template <class Record>
 HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
-  const FloatTag d;
-  hn::Vec<FloatTag> blocks[4];  // block b of number i is that of lane 4 b + i
-  transpose_blocks<hn::Vec<FloatTag> >(v.x.v, v.y.v, v.z.v, hn::Zero(d), blocks);
+  const RealTag d;
+  hn::Vec<RealTag> blocks[4];  // block b of number i is that of lane 4 b + i
+  transpose_blocks<hn::Vec<RealTag> >(v.x.v, v.y.v, v.z.v, hn::Zero(d), blocks);
   for (std::size_t i = 0; i < 4; ++i) store_blocks(d, blocks[i], i, record);
 }
 #endif
@@ -346,7 +346,7 @@ HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
 /// The springs of vectors [begin, end) of a batch.
 HWY_INLINE void project_batch(SpringBatches& bodies, const SpringBatches::Batch& batch, std::size_t begin,
                               std::size_t end) {
-  const FloatTag d;
+  const RealTag d;
   float* const nodes = bodies.nodes.data();
   const Lanes h(bodies.h_s);
   SpringLanes spring{in_every_lane(batch.constants), Lanes(0.0F)};
@@ -390,7 +390,7 @@ struct Between {
 /// Executes them at vectors [begin, end) of nodes.
 HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& between, std::size_t begin,
                                     std::size_t end) {
-  const FloatTag d;
+  const RealTag d;
   const Lanes h(bodies.h_s), gravity(bodies.fall), kept(bodies.kept);
   for (std::size_t vector = begin; vector < end; ++vector) {
     float* const records = bodies.nodes.data() + vector * vector_springs * record_floats;

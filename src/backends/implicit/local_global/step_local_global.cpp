@@ -23,8 +23,8 @@ constexpr std::size_t columns_at_once = 4;
 template <std::size_t columns>
 HWY_INLINE void add_columns(const float* HWY_RESTRICT panel, std::size_t rows,
                             const float* HWY_RESTRICT right, float* HWY_RESTRICT front) {
-  const FloatTag d;
-  hn::Vec<FloatTag> factor[columns][3];
+  const RealTag d;
+  hn::Vec<RealTag> factor[columns][3];
   for (std::size_t j = 0; j < columns; ++j)
     for (std::size_t c = 0; c < 3; ++c) factor[j][c] = hn::Set(d, right[3 * j + c]);
   for (std::size_t i = 0; i < rows; i += lane_count()) {
@@ -47,8 +47,8 @@ template <std::size_t columns>
 HWY_INLINE void multiply_columns(const float* HWY_RESTRICT panel, std::size_t rows,
                                  const float* HWY_RESTRICT solution, std::size_t length,
                                  float* HWY_RESTRICT sums) {
-  const FloatTag d;
-  hn::Vec<FloatTag> sum[columns][3];
+  const RealTag d;
+  hn::Vec<RealTag> sum[columns][3];
   for (std::size_t j = 0; j < columns; ++j)
     for (std::size_t c = 0; c < 3; ++c) sum[j][c] = hn::Zero(d);
   for (std::size_t i = 0; i < length; i += lane_count()) {

@@ -22,7 +22,7 @@ class DoubleSum {
 #if HWY_TARGET == HWY_SCALAR
     low_ = hn::Add(low_, hn::PromoteTo(Tag(), values.v));
 #else
-    const hn::Half<FloatTag> half;
+    const hn::Half<RealTag> half;
     low_ = hn::Add(low_, hn::PromoteTo(Tag(), hn::LowerHalf(half, values.v)));
     high_ = hn::Add(high_, hn::PromoteTo(Tag(), hn::UpperHalf(half, values.v)));
 #endif
@@ -30,7 +30,7 @@ class DoubleSum {
   HWY_INLINE double total() const { return hn::GetLane(hn::SumOfLanes(Tag(), hn::Add(low_, high_))); }
 
  private:
-  using Tag = hn::Rebind<double, hn::Half<FloatTag>>;
+  using Tag = hn::Rebind<double, hn::Half<RealTag>>;
   hn::Vec<Tag> low_, high_;
 };
 
@@ -38,13 +38,13 @@ class DoubleSum {
 HWY_INLINE SymmetricBlock<Lanes> load_block(const float* from) {
   const std::size_t n = lane_count();
   const auto load = [&](std::size_t i)
-                        MSSIM_INLINE_LAMBDA { return Lanes(hn::Load(FloatTag(), from + i * n)); };
+                        MSSIM_INLINE_LAMBDA { return Lanes(hn::Load(RealTag(), from + i * n)); };
   return {load(0), load(1), load(2), load(3), load(4), load(5)};
 }
 template <class Free>
 HWY_INLINE void store_block(float* to, Free free, const SymmetricBlock<Lanes>& block) {
   for (const Lanes& number : {block.xx, block.xy, block.xz, block.yy, block.yz, block.zz}) {
-    hn::Store(keep(free, number).v, FloatTag(), to);
+    hn::Store(keep(free, number).v, RealTag(), to);
     to += lane_count();
   }
 }
@@ -107,8 +107,8 @@ HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, IndexRange chun
   const float *const e = equation.e.data(), *const inverse = equation.inverse.data();
   DoubleSum sum;
   for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
-    hn::Store(hn::Zero(FloatTag()), FloatTag(), s + i);
-    hn::Store(hn::Zero(FloatTag()), FloatTag(), p + i);
+    hn::Store(hn::Zero(RealTag()), RealTag(), s + i);
+    hn::Store(hn::Zero(RealTag()), RealTag(), p + i);
   });
   for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
     const Lanes3 here = vector.load(e),
@@ -123,7 +123,7 @@ HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, IndexRange chun
 template <class Nodes>
 HWY_NOINLINE void combine_chunk(const Nodes& nodes, IndexRange chunk, float* result, float factor,
                                 const float* a, const float* b) {
-  const FloatTag d;
+  const RealTag d;
   const auto f = hn::Set(d, factor);
   for_each_float(nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
     hn::Store(hn::MulAdd(f, hn::Load(d, a + i), hn::Load(d, b + i)), d, result + i);

@@ -46,11 +46,11 @@ struct RowSprings {
   HWY_INLINE void store_slope(float* field, const SlopeLanes& spring) const {
     if constexpr (i % 2 == 0) {
       store3(field + slope, spring.n, pitch);
-      hn::Store(spring.across.v, FloatTag(), field + slope + 3 * pitch);
+      hn::Store(spring.across.v, RealTag(), field + slope + 3 * pitch);
     }
   }
   HWY_INLINE SlopeLanes load_slope(const float* field) const {
-    return {load_components(field + slope, pitch), Lanes(hn::LoadU(FloatTag(), field + slope + 3 * pitch))};
+    return {load_components(field + slope, pitch), Lanes(hn::LoadU(RealTag(), field + slope + 3 * pitch))};
   }
 };
 
@@ -123,7 +123,7 @@ struct RowWalk {
     const EdgeVector place{static_cast<std::uint32_t>(row),
                            hn::Iota(IndexTag(), static_cast<std::uint32_t>(column)),
                            static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(columns)};
-    return vector<true>(row, column, place, hn::Ne(hn::Load(FloatTag(), free), hn::Zero(FloatTag())));
+    return vector<true>(row, column, place, hn::Ne(hn::Load(RealTag(), free), hn::Zero(RealTag())));
   }
 };
 
@@ -151,7 +151,7 @@ HWY_INLINE void for_each_whole_vector(const NodeRows& nodes, IndexRange chunk, A
       act(walk.inner_vector(row, column));
 }
 
-constexpr std::size_t slice_lanes = hn::MaxLanes(FloatTag());
+constexpr std::size_t slice_lanes = hn::MaxLanes(RealTag());
 
 #if HWY_TARGET == HWY_SCALAR
 
@@ -162,7 +162,7 @@ HWY_INLINE Lanes3 gather_records(Record record) {
 }
 HWY_INLINE Lanes3 load_slice(const float* from) { return {Lanes(from[0]), Lanes(from[1]), Lanes(from[2])}; }
 HWY_INLINE void store_slice(float* to, const Lanes3& value) {
-  const FloatTag d;
+  const RealTag d;
   hn::Store(value.x.v, d, to);
   hn::Store(value.y.v, d, to + 1);
   hn::Store(value.z.v, d, to + 2);
@@ -173,8 +173,8 @@ HWY_INLINE void store_slice(float* to, const Lanes3& value) {
 /// Loads the records of four floats at record(lane) of each lane.
 template <class Record>
 HWY_INLINE Lanes3 gather_records(Record record) {
-  const FloatTag d;
-  using Vector = hn::Vec<FloatTag>;
+  const RealTag d;
+  using Vector = hn::Vec<RealTag>;
   const hn::CappedTag<float, 4> block;
   const auto load = [&](std::size_t i) MSSIM_INLINE_LAMBDA -> Vector {
     if constexpr (slice_lanes == 4) {
@@ -182,7 +182,7 @@ HWY_INLINE Lanes3 gather_records(Record record) {
     } else if constexpr (slice_lanes == 8) {
       return hn::Combine(d, hn::Load(block, record(i + 4)), hn::Load(block, record(i)));
     } else {
-      const hn::Half<FloatTag> half;
+      const hn::Half<RealTag> half;
       return hn::Combine(d,
                          hn::Combine(half, hn::Load(block, record(i + 12)), hn::Load(block, record(i + 8))),
                          hn::Combine(half, hn::Load(block, record(i + 4)), hn::Load(block, record(i))));
@@ -195,8 +195,8 @@ HWY_INLINE Lanes3 gather_records(Record record) {
 
 /// Loads the records of a slice, which begin at `from`.
 HWY_INLINE Lanes3 load_slice(const float* from) {
-  const FloatTag d;
-  using Vector = hn::Vec<FloatTag>;
+  const RealTag d;
+  using Vector = hn::Vec<RealTag>;
   Vector component[4];
   transpose_blocks<Vector>(hn::Load(d, from), hn::Load(d, from + slice_lanes),
                            hn::Load(d, from + 2 * slice_lanes), hn::Load(d, from + 3 * slice_lanes),
@@ -205,8 +205,8 @@ HWY_INLINE Lanes3 load_slice(const float* from) {
 }
 
 HWY_INLINE void store_slice(float* to, const Lanes3& value) {
-  const FloatTag d;
-  using Vector = hn::Vec<FloatTag>;
+  const RealTag d;
+  using Vector = hn::Vec<RealTag>;
   Vector records[4];
   transpose_blocks<Vector>(value.x.v, value.y.v, value.z.v, hn::Zero(d), records);
   for (std::size_t i = 0; i < 4; ++i) hn::Store(records[i], d, to + i * slice_lanes);
@@ -224,16 +224,16 @@ struct SliceSprings {
   /// A field at the neighbours.
   HWY_INLINE Lanes3 load(const float* field) const {
     return gather_records([&](std::size_t i) MSSIM_INLINE_LAMBDA {
-      return field + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * slice_offset_floats;
+      return field + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * slice_offset_unit<float>;
     });
   }
 
   HWY_INLINE void store_slope(float* field, const SlopeLanes& spring) const {
     store3(field + slope, spring.n);
-    hn::Store(spring.across.v, FloatTag(), field + slope + 3 * slice_lanes);
+    hn::Store(spring.across.v, RealTag(), field + slope + 3 * slice_lanes);
   }
   HWY_INLINE SlopeLanes load_slope(const float* field) const {
-    return {load3(field + slope), Lanes(hn::Load(FloatTag(), field + slope + 3 * slice_lanes))};
+    return {load3(field + slope), Lanes(hn::Load(RealTag(), field + slope + 3 * slice_lanes))};
   }
 };
 
@@ -247,7 +247,7 @@ struct SliceVector {
   std::size_t number;                  ///< of the slice
 
   HWY_INLINE Lanes constant(NodeSlices::Constant which) const {
-    return hn::Load(FloatTag(), constants + which * slice_lanes);
+    return hn::Load(RealTag(), constants + which * slice_lanes);
   }
   HWY_INLINE Lanes3 load(const float* field) const { return load_slice(field + offset); }
   HWY_INLINE void store(float* field, const Lanes3& value) const { store_slice(field + offset, value); }
@@ -262,8 +262,8 @@ struct SliceVector {
     constexpr std::ptrdiff_t slope_floats = 4 * slice_lanes;
     std::ptrdiff_t slope = slopes;
     for (const float* e = entries; e < entries_end; e += 2 * slice_lanes, slope += slope_floats) {
-      spring.stiffness_rest = hn::Load(FloatTag(), e + slice_lanes);
-      act(SliceSprings{spring, hn::Ge(spring.stiffness_rest.v, hn::Zero(FloatTag())), e, slope});
+      spring.stiffness_rest = hn::Load(RealTag(), e + slice_lanes);
+      act(SliceSprings{spring, hn::Ge(spring.stiffness_rest.v, hn::Zero(RealTag())), e, slope});
     }
   }
 };
@@ -276,10 +276,10 @@ HWY_INLINE void for_each_vector(const NodeSlices& nodes, IndexRange chunk, Act&&
   constexpr std::size_t entry_floats = 2 * slice_lanes;
   for (std::size_t slice = chunk.begin; slice < chunk.end; ++slice) {
     const float* const constants = all_constants + slice * NodeSlices::constant_count * slice_lanes;
-    const Lanes free = hn::Load(FloatTag(), constants + NodeSlices::free * slice_lanes);
+    const Lanes free = hn::Load(RealTag(), constants + NodeSlices::free * slice_lanes);
     act(SliceVector{entries + first_entry[slice] * entry_floats,
                     entries + first_entry[slice + 1] * entry_floats, constants,
-                    hn::Ne(free.v, hn::Zero(FloatTag())),
+                    hn::Ne(free.v, hn::Zero(RealTag())),
                     static_cast<std::ptrdiff_t>(slice * slice_lanes * NodeSlices::record_floats),
                     static_cast<std::ptrdiff_t>(std::size_t{first_entry[slice]} * 4 * slice_lanes), slice});
   }
