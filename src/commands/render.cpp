@@ -103,17 +103,25 @@ double natural_fps(const TraceContent& content, const std::vector<std::size_t>& 
 std::string drawn_file(const RenderOptions& options, const PictureOptions& picture,
                        const TraceReader& trace) {
   const TraceContent& content = trace.content();
+  if (picture.colour == ColourBy::strain && !has_strain(content))
+    throw UsageError("{} has no rest lengths of its springs, and so no strain: leave --colour out",
+                     printable(options.trace));
+  StopRequest stop;  // a temporary trace must not stay
   Painter painter(content, trace.positions(0), picture);
   const std::vector<std::size_t> frames = drawn_frames(options, content, painter.has_legend());
   const auto sheet = sheet_size(options);
   const bool legend_apart = painter.has_legend() && sheet && sheet->first * sheet->second > 1;
-  for (const std::size_t frame : frames) painter.make_room_for(trace.positions(frame));
+  for (const std::size_t frame : frames) {
+    stop.throw_if_requested();
+    painter.make_room_for(trace.positions(frame));
+  }
   ProgressLine progress({1}, ProgressLine::Log::nothing);
   progress.begin_scene(stem_of(options));
   std::optional<Movie> movie;
   if (options.movie) movie.emplace(options.run.fps.value_or(natural_fps(content, frames)));
   std::vector<CaptionedPicture> pictures;
   for (std::size_t i = 0; i < frames.size(); ++i) {
+    stop.throw_if_requested();
     Picture drawn = painter.picture_of(trace.positions(frames[i]), !legend_apart);
     progress.update_often(fmt::format("picture {} of {}", i + 1, frames.size()),
                           static_cast<double>(i + 1) / static_cast<double>(frames.size()));

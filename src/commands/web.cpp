@@ -1,5 +1,7 @@
 #include "web/web.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -7,6 +9,7 @@
 #include "application/bench/suites.h"
 #include "application/outputs.h"
 #include "commands/command.h"
+#include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
 #include "platform/files.h"
 #include "text/error.h"
@@ -23,13 +26,35 @@ struct WebOptions {
   int port = 0;
 };
 
-/// Writes what a page has sent into a folder of its own, named by its start, and says which.
+/// The name of a run's folder: its start. Throws UsageError if that is no time.
+std::string folder_name(std::string name) {
+  constexpr std::string_view form = "0000-00-00T00:00:00Z";
+  const auto fits = [](char c, char of_form) { return of_form == '0' ? c >= '0' && c <= '9' : c == of_form; };
+  if (!std::ranges::equal(name, form, fits))
+    throw UsageError(
+        "the page's results: /provenance/started_utc is \"{}\": give a time such as "
+        "2026-01-31T12:00:00Z",
+        printable(name));
+  std::ranges::replace(name, ':', '-');
+  return name;
+}
+
+/// Whether the folder has the results of another device.
+bool is_of_another_device(const fs::path& folder, const Provenance& provenance) {
+  if (!fs::exists(folder / "provenance.json")) return false;
+  const Provenance there = read_provenance(folder / "provenance.json");
+  return there.machine.cpu_model != provenance.machine.cpu_model ||
+         there.machine.kernel != provenance.machine.kernel;
+}
+
+/// Writes what a page has sent into a folder of its own, named by its start, and says which. Results that a
+/// device sends again replace its earlier ones.
 std::string keep(const fs::path& results, const std::string& text) {
   const MeasuredRun run = parse_web_results("the page's results", text);
-  std::string name = run.provenance.started_utc;
-  std::ranges::replace_if(
-      name, [](char c) { return std::string_view("0123456789-TZ").find(c) == std::string_view::npos; }, '-');
-  const fs::path folder = results / name;
+  const std::string name = folder_name(run.provenance.started_utc);
+  fs::path folder = results / name;
+  for (int i = 2; is_of_another_device(folder, run.provenance); ++i)
+    folder = results / fmt::format("{}-{}", name, i);
   ResultFolder written(folder, run.provenance, comparison_of_suite("tables").tables());
   written.replace_results();
   written.write(run.rows);
@@ -50,8 +75,14 @@ int web(const WebOptions& options) {
     return exit_ok;
   }
   AtomicFile(make_folder(options.results) / ".probe").remove();  // before a phone has measured
+  const auto served_page = [] {
+    std::string page = web_page();
+    constexpr std::string_view begin = "<html ";
+    return page.insert(page.find(begin) + begin.size(),
+                       "data-served ");  // so that it offers to send its results
+  };
   serve_page(
-      web_page, options.port, options.once,
+      served_page, options.port, options.once,
       [&](const std::string& text) { return keep(options.results, text); },
       [](const std::string& address) { std::cout << address << std::endl; });
   return exit_ok;

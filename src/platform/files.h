@@ -100,7 +100,7 @@ struct FolderFile {
   std::string name, text;
 };
 
-/// Writes all files into a folder, and replaces none before all are on the disk under temporary names. Throws
+/// Writes all files into a folder, and replaces none before all are written under temporary names. Throws
 /// WriteError.
 void write_files_atomically(const std::filesystem::path& folder, std::span<const FolderFile> files);
 

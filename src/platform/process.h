@@ -74,7 +74,7 @@ struct ChildProcess {
 ChildResult run(const ChildProcess& child);
 
 /// Runs several programs at the same time, until all have ended; results in the same order. Throws like
-/// run(const ChildProcess&); if one cannot be started, the others are killed first.
+/// run(const ChildProcess&); if a program cannot be executed, only after the others have ended.
 std::vector<ChildResult> run_together(std::span<const ChildProcess> children);
 
 /// Runs `work` in a forked copy of this process and returns whether it finished. A library that crashes, or

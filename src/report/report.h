@@ -85,7 +85,8 @@ std::vector<std::filesystem::path> result_folders(const std::filesystem::path& f
 /// Reads what a folder has. Throws LaterFormatError for a folder that a later mssim wrote.
 ReportFolder read_report_folder(const std::filesystem::path& path);
 
-/// Parses an energy curve, which may begin with comment lines; none if the text is not one.
+/// Parses an energy curve, which may begin with comment lines; none if the text is another table. Throws
+/// CsvError if it is damaged.
 std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_view text);
 
 /// Kind of a scene; scenes of the same kind are on one line of a chart.

@@ -132,8 +132,13 @@ void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
                         folder.problems);
     if (!text) continue;
     if (!is_picture) {
-      if (auto curve = energy_curve_in(file.stem().string(), *text))
-        folder.curves.push_back(std::move(*curve));
+      try {
+        if (auto curve = energy_curve_in(file.stem().string(), *text))
+          folder.curves.push_back(std::move(*curve));
+      } catch (const CsvError& error) {
+        folder.problems.push_back(
+            fmt::format("{}: {}; this curve is not shown", file.string(), error.what()));
+      }
     } else if (text->starts_with("\x89PNG\r\n\x1a\n")) {
       folder.pictures.push_back({file.filename().string(), std::move(*text)});
     } else {
@@ -239,17 +244,13 @@ std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_v
   while (text.starts_with('#')) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   if (!text.starts_with("time_s,kinetic_j,")) return std::nullopt;
   FoundCurve curve{name, {}, {}};
-  try {
-    const CsvTable table(name, text);
-    const auto total = std::ranges::find(table.header(), "total_j");
-    if (total == table.header().end()) return std::nullopt;
-    const auto column = static_cast<std::size_t>(total - table.header().begin());
-    for (std::size_t record = 0; record < table.size(); ++record) {
-      curve.time_s.push_back(table.number(record, 0));
-      curve.total_j.push_back(table.number(record, column));
-    }
-  } catch (const CsvError&) {
-    return std::nullopt;
+  const CsvTable table(name, text);
+  const auto total = std::ranges::find(table.header(), "total_j");
+  if (total == table.header().end()) return std::nullopt;
+  const auto column = static_cast<std::size_t>(total - table.header().begin());
+  for (std::size_t record = 0; record < table.size(); ++record) {
+    curve.time_s.push_back(table.number(record, 0));
+    curve.total_j.push_back(table.number(record, column));
   }
   return curve;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "platform/process.h"
@@ -56,18 +57,23 @@ struct Request {
 
 /// Reads a request; an empty line if it is none, or too large.
 Request read_request(int socket) {
+  // A client that sends little by little must not keep the others waiting.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   std::string text;
   std::size_t end = std::string::npos, length = 0;
   std::array<char, 65536> bytes;
   while (end == std::string::npos || text.size() < end + 4 + length) {
+    if (std::chrono::steady_clock::now() > deadline) return {};
     const ssize_t count = ::recv(socket, bytes.data(), bytes.size(), 0);
     if (count <= 0 || text.size() > largest_request_bytes) return {};
     text.append(bytes.data(), static_cast<std::size_t>(count));
     if (end != std::string::npos || (end = text.find("\r\n\r\n")) == std::string::npos) continue;
     const std::string_view head = std::string_view(text).substr(0, end + 2);
-    // A page of another host, whose name may lead here, must not post results.
-    if (!header(head, "Host").starts_with("localhost:") && !header(head, "Host").starts_with("127.0.0.1:"))
-      return {};
+    // A page of another host must not post results: neither under a name of its own that leads here, nor from
+    // its own origin.
+    const std::string host = header(head, "Host"), origin = header(head, "Origin");
+    if (!host.starts_with("localhost:") && !host.starts_with("127.0.0.1:")) return {};
+    if (!origin.empty() && origin != "http://" + host) return {};
     length = number_in<std::size_t>(header(head, "Content-Length")).value_or(0);
     if (length > largest_request_bytes) return {};
   }
@@ -102,9 +108,10 @@ void serve_page(const std::function<std::string()>& make_page, int port, bool on
   for (;;) {
     const Descriptor connection(::accept4(socket.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!connection.is_open()) continue;
-    // A browser may connect long before it asks, or never ask.
+    // A browser may connect long before it asks, or never ask, or never read the answer.
     const timeval patience{.tv_sec = 2, .tv_usec = 0};
-    ::setsockopt(connection.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    for (const int wait : {SO_RCVTIMEO, SO_SNDTIMEO})
+      ::setsockopt(connection.get(), SOL_SOCKET, wait, &patience, sizeof patience);
     Request request = read_request(connection.get());
     const bool only_head = request.line.starts_with("HEAD ");
     if (only_head) request.line.replace(0, 4, "GET");

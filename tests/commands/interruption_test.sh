@@ -21,6 +21,14 @@ whole() {
   done
 }
 
+# render --scene leaves no trace behind, also if it is ended while it draws.
+mkdir temporary
+TMPDIR=$work/temporary begins render --scene cloth2500 --duration 0.1 --fps 1000 --size 2048x2048 --movie drawn.webp
+soon 60 bash -c 'test -e temporary/mssim-*/scene.xdmf' || fail "render makes no trace: $(cat err)"
+sleep 1
+is_ended 143 TERM
+[ -z "$(ls temporary)" ] || fail "render leaves $(find temporary)"
+
 # SIGINT: what is measured stands in whole files and on stdout, and the exit status says it.
 begins "${bench[@]}" --out int
 soon 60 test -e int/timings.csv || fail "nothing is measured"

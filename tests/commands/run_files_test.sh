@@ -58,6 +58,11 @@ kept=$(frames full.h5.part)
 [ "$kept" -ge 1 ] && [ "$(grep -c '^[0-9]' full.csv.part)" -ge "$kept" ] || fail "$kept frames, energies: $(cat full.csv.part)"
 [ ! -e full.h5 ] && [ ! -e full.csv ] || fail "a full disk leaves files under their names"
 
+# An XDMF that cannot be written is noticed before the simulation.
+ln -s elsewhere blocked.xdmf.part
+expect 4 'blocked.xdmf.part is a link' "${fall[@]}" --duration 1000 --trace blocked.h5
+[ ! -e blocked.h5 ] && [ ! -e blocked.h5.part ] || fail "a refused run leaves a trace"
+
 # Double precision is stored as such; springs stand with what a strain is computed from.
 "$mssim" "${fall[@]}" --backend serial --precision double --duration 0.01 --fps 200 --trace double.h5 >out
 h5dump -H -d /particles/cloth/position/value double.h5 | grep H5T_IEEE_F64LE >/dev/null || fail "double is stored as single"

@@ -127,13 +127,21 @@ def check_accidents(browser, page):
     expect(any("lost the GPU" in row["status"] + row["note"] for row in rows if row["backend"] == "webgpu"),
            f"nothing says that the device was lost: {rows}")
     expect(len(rows) >= 6 and all(is_timed(row) for row in rows if row["backend"] != "webgpu"), f"rows are gone: {rows}")
+    # A row fails after it has samples.
+    third = mutated(page, "  async sample(row, system) {", "  async sample(row, system) { if (row.backend === 'wasm' && row.samples.length > 1) throw new Error('failed: ended');")
+    browser.open(third, query_of("cloth2500", rounds=4))
+    failed = browser.results()
+    rows = {row["backend"]: row for row in rows_of(failed)}
+    ended = rows.pop("wasm")
+    expect(ended["status"] == "failed: ended" and ended["rounds"] == "2" and not ended["ms_per_step"], f"not failed after two samples: {ended}")
+    expect(all(map(is_timed, rows.values())), f"not right: {rows}")
     browser.open(page.replace("if (bytes > device.limits[limit])", "if (bytes > 100000)"), query_of("cloth2500,cloth4900"))
     rows = {(row["scene"], row["backend"]): row for row in rows_of(browser.results())}
     large = rows.pop(("cloth4900", "webgpu"))
     expect(large["status"].startswith("unsupported") and "maxStorageBufferBindingSize" in large["status"] and not large["ms_per_step"],
            f"no limit is named: {large}")
     expect(all(map(is_timed, rows.values())), f"not right: {rows}")
-    return {"lost": lost}
+    return {"lost": lost, "failed": failed}
 
 
 def check_person(browser, page):
@@ -185,6 +193,8 @@ def check_without(browser, page):
     expect("WebGPU" in browser.value("element('notes').textContent"), "the page does not say that there is no WebGPU")
     browser.open(page, query_of("cloth2500,nosuch", rounds=0))
     browser.until("element('state').textContent.includes('auto nosuch, rounds 0 (1 to 100)')")
+    browser.open(page, query_of("cloth2500", rounds=2.5, more="&integrator=rk4&webgpu=off"))
+    browser.until("element('state').textContent.includes('rounds 2.5 (1 to 100), integrator rk4, webgpu off')")
     browser.is_isolated = False
     browser.open(page, query_of("cloth2500"))
     rows = rows_of(browser.results())

@@ -59,7 +59,7 @@ python3 "$2/tests/commands/web.py" "$chromium" page.html . || fail "the page in 
   --maps environment,backend_programs,scenes_fnv1a_64 --wrong mssim_web_results=2 || fail "result.json by its schema"
 
 # What it saved, beside a folder.
-ends 0 report result.json lost.json without.json "$2/results/table1/zen5" --no-runs --out report.html
+ends 0 report result.json lost.json failed.json without.json "$2/results/table1/zen5" --no-runs --out report.html
 grep -q 'webgpu, ' report.html || fail "the report does not name the device"
 grep -q 'result.json' report.html || fail "the report does not name the file"
 grep -q '<td>wasm-threads<' report.html || fail "the report does not name the threads of the module"
@@ -85,6 +85,38 @@ damaged 'samples_csv' 'del d["samples_csv"]'
 damaged 'build' 'd["provenance"]["build"] = 1'
 head -c 1000 result.json >cut.json
 expect 2 cut.json report cut.json --no-runs --out damaged.html
+
+# Results are taken from the page alone, into a folder for each device; who is slow keeps nobody waiting.
+begins web --serve --results taken
+soon 300 test -s "$work/out" || fail "mssim does not serve the page"
+python3 - "$(grep -o '[0-9]*' "$work/out")" <<'PYTHON' || fail "results that were sent"
+import json, pathlib, socket, sys
+
+port = int(sys.argv[1])
+results = json.load(open("result.json"))
+
+def answer(text, origin):
+    with socket.create_connection(("localhost", port), timeout=60) as connection:
+        body = text.encode()
+        request = f"POST /results HTTP/1.1\r\nHost: localhost:{port}\r\n{origin}Content-Length: {len(body)}\r\n\r\n"
+        connection.sendall(request.encode() + body)
+        return b"".join(iter(lambda: connection.recv(1 << 16), b"")).decode()
+
+def sent(model, started, origin=f"Origin: http://localhost:{port}\r\n"):
+    results["provenance"]["cpu"]["model"], results["provenance"]["started_utc"] = model, started
+    return answer(json.dumps(results), origin)
+
+start = "2026-01-31T12:00:00Z"
+with socket.create_connection(("localhost", port)) as slow:
+    slow.sendall(b"GET / HTTP/1.1\r\n")
+    for model, folder in (("phone A", ""), ("phone B", "-2"), ("phone A", ""), ("phone B", "-2")):
+        assert "taken/2026-01-31T12-00-00Z" + folder == sent(model, start).split("\r\n\r\n")[1], model
+assert sent("phone C", start, "Origin: https://example.org\r\n") == ""
+for wrong in ("", "../..", "2026-01-31"):
+    assert "400" in (said := sent("phone C", wrong)) and "started_utc" in said, said
+assert sorted(path.name for path in pathlib.Path("taken").iterdir()) == ["2026-01-31T12-00-00Z", "2026-01-31T12-00-00Z-2"]
+PYTHON
+is_ended 143 TERM
 
 # The page sends its results to mssim.
 soon 300 test -s address || fail "mssim does not serve the page: $(<serve.log)"

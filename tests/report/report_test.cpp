@@ -142,6 +142,14 @@ TEST_F(ReportFolderTest, FindsPicturesAndEnergyCurves) {
   EXPECT_THAT(found.problems[0], HasSubstr("b.png is not a PNG"));
 }
 
+TEST_F(ReportFolderTest, NamesADamagedCurve) {
+  put("timings.csv", timings);
+  put("cloth2500.csv", "time_s,kinetic_j,total_j\n0,1,2\n0.1,1\n");
+  const ReportFolder found = read();
+  EXPECT_THAT(found.curves, IsEmpty());
+  EXPECT_THAT(found.problems, Contains(AllOf(HasSubstr("cloth2500.csv"), HasSubstr("line 3"))));
+}
+
 TEST_F(ReportFolderTest, TakesSubfoldersForAFolderWithoutTimings) {
   EXPECT_THAT(result_folders(folder()), IsEmpty());
   put("zen5/timings.csv", timings);
@@ -157,7 +165,7 @@ TEST(EnergyCurveIn, RefusesOtherTables) {
   EXPECT_FALSE(energy_curve_in("a", "# only a comment"));
   EXPECT_FALSE(energy_curve_in("a", "scene,nodes\n"));
   EXPECT_FALSE(energy_curve_in("a", "time_s,kinetic_j,elastic_j\n0,1,2\n"));
-  EXPECT_FALSE(energy_curve_in("a", "time_s,kinetic_j,total_j\n0,1,nan\n"));
+  EXPECT_THROW(energy_curve_in("a", "time_s,kinetic_j,total_j\n0,1,nan\n"), CsvError);
   EXPECT_TRUE(energy_curve_in("a", "time_s,kinetic_j,total_j\n"));
 }
 

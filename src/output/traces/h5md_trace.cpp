@@ -196,10 +196,10 @@ H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const Tra
   require_fitting_body(shape, body);
   mesh_ = xdmf_mesh_of(shape, system.nodes(), body, header.in_double);
   prepare_hdf5();
-  require_replaceable(xdmf_of(name()));
   if (xdmf_of(name()) == name())
     throw WriteError("cannot write " + name().string() +
                      ": its XDMF would have the same name; choose a name that ends in .h5");
+  AtomicFile(xdmf_of(name())).remove();  // finds what cannot be written before anything is simulated
   guard([&] { create(system, shape, header, body); });
 }
 

@@ -185,6 +185,7 @@ std::string particles_group(const TraceContent& content) {
 }
 
 std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions) {
+  if (!has_strain(content)) return std::vector(content.nodes, std::numeric_limits<double>::quiet_NaN());
   std::vector<double> strain(content.nodes);
   std::vector<std::uint32_t> springs(content.nodes);
   for (std::size_t i = 0; i < content.rest_length.size(); ++i) {

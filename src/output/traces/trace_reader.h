@@ -45,8 +45,13 @@ TraceContent trace_content_of(const System& system, const TraceHeader& header, c
 /// The group of the particles of a trace, for example /particles/cloth.
 std::string particles_group(const TraceContent& content);
 
+/// Whether the trace has the rest lengths of its springs; those of other programs may not.
+inline bool has_strain(const TraceContent& content) {
+  return content.rest_length.size() == content.springs.size();
+}
+
 /// [nodes] The mean strain of the springs at each node for these positions ([nodes] m); 0 for nodes without
-/// springs. `content` must have rest lengths.
+/// springs, NaN for all without has_strain().
 std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions);
 
 /// Thrown for a trace that cannot be read. what() is one sentence with the file, the error and the remedy.

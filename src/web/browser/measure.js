@@ -327,9 +327,10 @@ class Session {
 
   summarise(row) {
     if (row.status === 'ok' && row.verified && !row.samples.length) row.status = 'not timed: the measurement ended before';
+    row.rounds = row.samples.length;
     if (row.status !== 'ok' || !row.samples.length) return;
     const {median: middle, low, high} = medianInterval(row.samples);
-    Object.assign(row, {rounds: row.samples.length, ms_per_step: middle, ms_per_step_low: low, ms_per_step_high: high,
+    Object.assign(row, {ms_per_step: middle, ms_per_step_low: low, ms_per_step_high: high,
                         ms_per_step_min: Math.min(...row.samples)});
     // A device that becomes hot slows down from round to round.
     const third = Math.floor(row.samples.length / 3);

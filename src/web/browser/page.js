@@ -221,17 +221,20 @@ element('save').addEventListener('click', async () => {
   setTimeout(() => URL.revokeObjectURL(url), 60000);
 });
 element('send').addEventListener('click', send);
-// mssim web --serve is on the loopback address; results go nowhere else.
-const isServed = ['localhost', '127.0.0.1'].includes(location.hostname);
+// mssim web --serve marks the page; results go nowhere else.
+const isServed = 'served' in document.documentElement.dataset;
 element('send').hidden = !isServed;
 
 /** Why the settings in the address cannot be measured; empty if they can. */
 function wrongSetting() {
   const unknown = (name, known) => listIn(name).filter(value => !known.some(one => one.name === value)).map(value => `${name} ${value}`);
   const numbers = {rounds: [1, 100], threads: [2, 99], seconds: [0.001, 10]};
-  const beyond = Object.entries(numbers).filter(([name, [least, most]]) => address.has(name) && !(address.get(name) >= least && address.get(name) <= most))
+  const fits = (name, [least, most]) => address.get(name) >= least && address.get(name) <= most && (name === 'seconds' || Number.isInteger(Number(address.get(name))));
+  const beyond = Object.entries(numbers).filter(([name, range]) => address.has(name) && !fits(name, range))
     .map(([name, [least, most]]) => `${name} ${address.get(name)} (${least} to ${most})`);
-  const all = [...unknown('auto', data.scenes), ...unknown('integrators', data.integrators), ...beyond];
+  const names = ['auto', 'integrators', 'webgpu', 'lose', ...Object.keys(numbers)];
+  const other = [...address].filter(([name, value]) => !names.includes(name) || (name === 'webgpu' && value !== 'no')).map(pair => pair.join(' '));
+  const all = [...unknown('auto', data.scenes), ...unknown('integrators', data.integrators), ...beyond, ...other];
   return all.length ? `The address has settings that this page does not know: ${all.join(', ')}. Change them, and load the page again.` : '';
 }
 

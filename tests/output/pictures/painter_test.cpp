@@ -131,6 +131,14 @@ TEST(NodeStrain, IsTheMeanOfTheNodesSprings) {
     EXPECT_NEAR(strain[node], expected, 1e-12) << node;
 }
 
+TEST(NodeStrain, IsUnknownWithoutRestLengths) {
+  TraceContent content;
+  content.nodes = 2;
+  content.springs = {{0, 1}};
+  EXPECT_FALSE(has_strain(content));
+  EXPECT_THAT(node_strain(content, {{0, 0, 0}, {1, 0, 0}}), testing::Each(testing::IsNan()));
+}
+
 const PictureOptions small{{35, 18}, 160, 120, ColourBy::object, 2};
 
 class PicturesOfARun : public TemporaryFolderTest {
