@@ -34,7 +34,7 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts,
 
 /// The middle of the leg on the point's side, or of the trunk if that is nearer.
 Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
-  if (profile.has_legs()) {
+  if (profile.has_legs() && profile.legs_are_apart(point.y)) {
     const PlanPoint leg = profile.leg_middle(point.y);
     if (std::abs(point.x) > leg.x / 2) return {point.x < 0 ? -leg.x : leg.x, point.y, leg.z};
   }

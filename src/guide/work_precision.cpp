@@ -69,7 +69,7 @@ class MotionOfNodes {
 
 /// The system's start with every free node moved by up to `distance`.
 State neighbour_of(const System& system, double distance_m) {
-  std::mt19937 random(19630301);  // any fixed seed: the same neighbour each time
+  std::mt19937 random(19630301);  // any fixed seed: the same neighbour each time, with one standard library
   std::uniform_real_distribution<double> component(-distance_m, distance_m);
   State state = system.start;
   for (Vec3d& x : state.position) x += Vec3d{component(random), component(random), component(random)};

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 #include <unordered_map>
+#include <utility>
 
 #include "geometry/geometry.h"
 #include "mesh/meshing.h"
@@ -179,8 +180,9 @@ class Lattice {
     const int reach = static_cast<int>(length(space_.half_size) / cell) + 2;
     std::vector<LatticePoint> found;
     for (int i = -reach; i <= reach; ++i)
-      for (int j = -reach; j <= reach; ++j)
-        for (int k = -reach; k <= reach; ++k)
+      for (int j = -reach; j <= reach; ++j) {
+        const auto [first, last] = cells_of_line(i, j, reach, cell);
+        for (int k = first; k <= last; ++k)
           for (const double centre : {0.0, 0.5}) {
             const Vec3d at = 0.5 * offset_ + Vec3d{i + centre, j + centre, k + centre};
             const Vec3d position =
@@ -188,10 +190,35 @@ class Lattice {
             const double depth = space_.depth(position);
             if (depth > 0 && depth >= smallest_depth) found.push_back({depth, position});
           }
+      }
     return found;
   }
 
  private:
+  /// The cells k of a line of cells (i, j), from -reach to reach, that may hold points of the box around the
+  /// body: all others of a slender body would be many more. The last is less than the first if there are
+  /// none.
+  std::pair<int, int> cells_of_line(int i, int j, int reach, double cell) const {
+    const Vec3d begin = (cell * (0.5 * offset_.x + i)) * axes_[0] +
+                        (cell * (0.5 * offset_.y + j)) * axes_[1] + (cell * 0.5 * offset_.z) * axes_[2];
+    double low = -reach, high = reach;
+    const auto cut = [&](double start, double step, double half_size) {
+      const double within = half_size + cell;  // both points of a cell are within one cell of its corner
+      if (std::abs(step) < 1e-9 * cell) {
+        if (std::abs(start) > within) high = low - 1;
+        return;
+      }
+      const double a = (-within - start) / step, b = (within - start) / step;
+      low = std::max(low, std::min(a, b));
+      high = std::min(high, std::max(a, b));
+    };
+    cut(begin.x, cell * axes_[2].x, space_.half_size.x);
+    cut(begin.y, cell * axes_[2].y, space_.half_size.y);
+    cut(begin.z, cell * axes_[2].z, space_.half_size.z);
+    if (high < low) return {0, -1};
+    return {static_cast<int>(std::floor(low)), static_cast<int>(std::ceil(high))};
+  }
+
   const InteriorSpace& space_;
   Vec3d offset_;
   std::array<Vec3d, 3> axes_;

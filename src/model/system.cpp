@@ -46,7 +46,7 @@ class PowerIteration {
  public:
   PowerIteration(const System& system, const std::vector<LinearisedSpring>& springs)
       : system_(system), springs_(springs), x_(system.nodes()), force_(system.nodes()) {
-    std::mt19937 random(19580101);  // any fixed seed: the same vector each time
+    std::mt19937 random(19580101);  // any fixed seed: the same vector each time, with one standard library
     std::uniform_real_distribution<double> component(-1, 1);
     for (Vec3d& x : x_) x = {component(random), component(random), component(random)};
     for (const std::uint32_t node : system.pins) x_[node] = {};

@@ -41,7 +41,9 @@ std::vector<SceneCounts> counts_of_bodies(const SceneSpec& scene) {
 void require_same_meshes(const Session& session, const std::vector<SceneCounts>& bodies) {
   std::string own;
   for (const SceneCounts& body : bodies) own += fmt::format("{} {} ", body.nodes, body.springs_unique);
+  session.wait_at_most(longest_meshing_s);
   const std::vector<std::string> all = session.gather(own);
+  session.wait_at_most(longest_silence_s);
   for (int rank = 1; rank < session.ranks(); ++rank)
     if (all[static_cast<std::size_t>(rank)] != all.front())
       throw Unavailable("{} meshes these bodies differently from {}: install the same TetGen on both",

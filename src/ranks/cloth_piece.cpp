@@ -99,8 +99,10 @@ class ClothPiece final : public Piece {
                             cloth.spacing_m};
     const std::size_t found = steps_per_pass_for(BandLayout(on_host, kernel_.lanes), integrator,
                                                  ranks_on_host * static_cast<std::size_t>(job.threads));
-    const std::size_t usual = std::stoul(session.share(std::to_string(found)));
     const std::size_t narrowest = columns_ / static_cast<std::size_t>(ranks_);
+    const std::size_t usual =
+        ranks_ > 1 ? steps_within(std::stoul(session.share(std::to_string(found))), integrator, narrowest)
+                   : found;
     // In a larger piece, messages cost little and the trial takes long.
     constexpr std::size_t largest_tried = 1'000'000;  // nodes
     const bool tries = ranks_ > 1 && narrowest * cloth.rows <= largest_tried && !session.shares_processors();

@@ -163,11 +163,11 @@ void Session::wait(std::span<MPI_Request> requests, std::span<const int> peers) 
     }
     const Clock::time_point now = Clock::now();
     if (!begin) begin = now;
-    if (now - *begin < std::chrono::duration<double>(longest_silence_s)) continue;
+    if (now - *begin < std::chrono::duration<double>(longest_wait_s_)) continue;
     std::vector<std::string> silent;
     for (const int peer : peers) add_once(silent, name_of(peer));
     throw RankFailure(fmt::format("it has received nothing for {} from {}",
-                                  pluralize(static_cast<std::uint64_t>(longest_silence_s), "second"),
+                                  pluralize(static_cast<std::uint64_t>(longest_wait_s_), "second"),
                                   listed(silent, "or")));
   }
 }

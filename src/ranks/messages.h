@@ -38,8 +38,9 @@ class SecondsAdded {
 };
 
 /// Longest wait for a message of another rank, s. All ranks do the same work at the same time, so a rank that
-/// is silent for so long has ended, or its host has.
-inline constexpr double longest_silence_s = 20;
+/// is silent for so long has ended, or its host has. Only meshes may take longer: a host may have them
+/// already, and TetGen has a limit of its own.
+inline constexpr double longest_silence_s = 20, longest_meshing_s = 400;
 
 /// An MPI session: the rank of this process, and waiting for other ranks. One thread at a time may call it.
 /// Every wait has a time limit: a rank that does not answer causes a RankFailure.
@@ -71,6 +72,8 @@ class Session {
   /// Waits for a request that only the next request from mssim completes: sleeps meanwhile, without a time
   /// limit.
   static void wait_idle(MPI_Request& request);
+  /// Sets the longest wait from now on.
+  void wait_at_most(double seconds) const { longest_wait_s_ = seconds; }
   /// Barrier of all ranks.
   void meet() const;
   /// The text of rank 0, on all ranks.
@@ -84,6 +87,7 @@ class Session {
   int rank_ = 0;
   std::vector<std::string> hosts_;
   int rank_on_host_ = 0, ranks_on_host_ = 1;
+  mutable double longest_wait_s_ = longest_silence_s;
   bool shares_ = false;
 };
 

@@ -38,7 +38,8 @@ struct Wish {
 std::string job_text(const std::map<std::string, std::string>& introduction, int ranks, bool copies) {
   const std::filesystem::path file = variable("MSSIM_SCENE_FILE");
   const int processors = number_in<int>(introduction.at("threads")).value_or(1);
-  return nlohmann::json{{"file", file.string()},
+  const std::string path = file.string();  // of any bytes, which a text in JSON may not have
+  return nlohmann::json{{"file", std::vector<int>(path.begin(), path.end())},
                         {"scene", load_scene(file).source},
                         {"integrator", introduction.at("integrator")},
                         {"dt", introduction.at("dt")},
@@ -51,7 +52,8 @@ std::string job_text(const std::map<std::string, std::string>& introduction, int
 RankJob job_of(const std::string& text) {
   const nlohmann::json json = nlohmann::json::parse(text);
   RankJob job;
-  job.scene = parse_scene(json.at("file").get<std::string>(), json.at("scene").get<std::string>());
+  const auto path = json.at("file").get<std::vector<int>>();
+  job.scene = parse_scene(std::string(path.begin(), path.end()), json.at("scene").get<std::string>());
   const auto name = json.at("integrator").get<std::string>();
   job.integrator = find_integrator(name);
   if (!job.integrator) throw Unsupported("it has no " + name);

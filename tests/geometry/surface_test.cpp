@@ -123,6 +123,19 @@ TEST(InteriorPoints, ExactlySoManyLieInsideAndAwayFromTheSurface) {
     }
 }
 
+// A lattice over the whole cube around it would have two hundred million cells, thirty times.
+TEST(InteriorPoints, LieInARod) {
+  const BoxShape rod{{2, 0.002, 0.002}, {500, 1, 1}};
+  const std::vector<Vec3d> points = points_of(rod, {400, 1, 0.1, 0.6}).interior;
+  ASSERT_EQ(points.size(), 400U);
+  std::set<int> tenths;
+  for (const Vec3d& point : points) {
+    EXPECT_GT(depth_in(rod, point), 0);
+    tenths.insert(static_cast<int>(std::floor(5 * (point.x + 1))));
+  }
+  EXPECT_EQ(tenths.size(), 10U) << "all along the rod";
+}
+
 TEST(InteriorPoints, FollowFromTheSeedAlone) {
   const BoxShape box{{1, 1, 1}, {3, 3, 3}};
   const auto points = [&](std::uint32_t seed) { return points_of(box, {50, seed, 0.2, 0.6}).interior; };

@@ -176,6 +176,17 @@ TEST(EnergyBound, IsWhatTheSystemHasAndGravityGives) {
   EXPECT_NEAR(energy_bound(system, 10), 64 + 0.01 * (4 + 60), 1e-12);
 }
 
+TEST(EnergyBound, LeavesRoomForTheRoundingsOfASceneAtRest) {
+  System system = build_system(sheet_spec(10, 10, 0.5));
+  system.gravity = 0;
+  const Integrator& euler = *find_integrator("semi-euler");
+  const auto openmp = make_backend(*find_backend("openmp"), system, euler, 5e-5, {.threads = 1});
+  EXPECT_TRUE(stays_below(*openmp, system, 2000, energy_bound(system, 0.1)));
+  // Still so small that a step that is too large is found.
+  const auto wild = make_backend(*find_backend("openmp"), system, euler, 2e-3, {.threads = 1});
+  EXPECT_FALSE(stays_below(*wild, system, 2000, energy_bound(system, 4)));
+}
+
 bool never() { return false; }
 
 TEST(IndependentSolver, FollowsAnOscillator) {

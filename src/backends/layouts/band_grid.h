@@ -131,6 +131,13 @@ inline std::size_t ghost_columns(const Integrator& integrator, std::size_t steps
   return BandLayout::halo * integrator.stage_count * steps_per_pass;
 }
 
+/// The most steps per pass, at most `steps`, of which the narrowest piece of a cloth has the ghosts: a piece
+/// receives them from the adjacent pieces only.
+inline std::size_t steps_within(std::size_t steps, const Integrator& integrator, std::size_t narrowest) {
+  while (steps > 1 && ghost_columns(integrator, steps) > narrowest) --steps;
+  return steps;
+}
+
 /// How a banded cloth is divided, if not by its size.
 struct BandCut {
   std::optional<std::size_t> steps_per_pass{};  ///< the total of their stages is at most stages_under_way

@@ -288,10 +288,19 @@ double BodyProfile::crotch_length(double y) const {
 
 double BodyProfile::leg_girth(double y, int side) const { return hull_perimeter(leg_section(y, side)); }
 
+double BodyProfile::within_legs(double y) const {
+  constexpr double from_their_ends = 0.005;
+  return std::clamp(y, lowest() + from_their_ends, crotch_height() - from_their_ends);
+}
+
+bool BodyProfile::legs_are_apart(double y) const {
+  const double height = within_legs(y);
+  return std::ranges::none_of(
+      middle_, [&](const Interval& joined) { return height >= joined.low && height <= joined.high; });
+}
+
 PlanPoint BodyProfile::leg_middle(double y) const {
-  constexpr double from_its_ends = 0.005;
-  const std::vector<PlanPoint> points =
-      leg_section(std::clamp(y, lowest() + from_its_ends, crotch_height() - from_its_ends), 1);
+  const std::vector<PlanPoint> points = leg_section(within_legs(y), 1);
   const auto [inner, outer] = std::ranges::minmax_element(points, {}, &PlanPoint::x);
   const auto [behind, before] = std::ranges::minmax_element(points, {}, &PlanPoint::z);
   return {(inner->x + outer->x) / 2, (behind->z + before->z) / 2};

@@ -58,8 +58,11 @@ class BodyProfile {
   /// legs and up to the back at the same height; it bridges hollows. Throws InputError for a body without
   /// legs, and for a height below the crotch.
   double crotch_length(double y) const;
+  /// Whether the legs do not touch at x = 0 where leg_middle(y) cuts them.
+  bool legs_are_apart(double y) const;
   /// The middle of the leg at x > 0, half way between the outermost points of its section. For heights above
-  /// the crotch or below the body, it is that of the nearest section of the leg.
+  /// the crotch or below the body, it is that of the nearest section of the leg. Throws InputError unless
+  /// legs_are_apart().
   PlanPoint leg_middle(double y) const;
   /// The largest z of the section, m.
   double front(double y) const;
@@ -78,6 +81,8 @@ class BodyProfile {
   /// Its part on one side of x = 0.
   std::vector<PlanPoint> leg_section(double y, int side) const;
   /// The union of `intervals`, in pieces, bottom up.
+  /// The nearest height at which there are legs, m.
+  double within_legs(double y) const;
   static std::vector<Interval> merged(std::vector<Interval> intervals);
   std::vector<Interval> heights_in_the_middle() const;
   std::optional<double> find_crotch() const;

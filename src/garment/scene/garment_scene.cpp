@@ -350,9 +350,8 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
        "other. For each layer, the maps of the body lie further out by the thickness."},
       Presence::optional, [&](FieldVisitor& section) {
         ClothClothSettings& layers = garment.layers.emplace();
-        visit_length(section,
-                     {"thickness_m", "Distance that layers keep, m; more than they approach per step."},
-                     layers.thickness);
+        section.number({"thickness_m", "Distance that layers keep, m; more than they approach per step."},
+                       layers.thickness, from(1e-6, largest_length_m));
         section.number({"friction", "Coulomb's coefficient of friction between layers."}, layers.friction,
                        from(0, 100));
         section.number(

@@ -93,7 +93,7 @@ PatternPanel panel_of(const PieceSpec& piece, const PanelMaterial& cloth) {
 }  // namespace
 
 void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth) {
-  fields.number({"areal_density_kg_per_m2", "Mass per area, kg/m^2."}, cloth.area_density, above(0, 1e6));
+  fields.number({"areal_density_kg_per_m2", "Mass per area, kg/m^2."}, cloth.area_density, from(1e-6, 1e6));
   fields.number(
       {"structural_n_per_m", "Stiffness of the springs between neighbours in a row or column, N/m."},
       cloth.structural.stiffness, above(0, largest_stiffness));

@@ -47,6 +47,15 @@ TEST(BandCut, FoldsAClothWhoseBandsAreLow) {
   }
 }
 
+TEST(BandCut, TakesNoMoreStepsThanAPieceHasGhosts) {
+  const Integrator &euler = *find_integrator("semi-euler"), &midpoint = *find_integrator("midpoint");
+  // Two columns a stage on each side.
+  EXPECT_EQ(steps_within(4, euler, 8), 4U);
+  EXPECT_EQ(steps_within(4, euler, 7), 3U);
+  EXPECT_EQ(steps_within(4, euler, 2), 1U);
+  EXPECT_EQ(steps_within(2, midpoint, 7), 1U);
+}
+
 TEST(BandCut, TakesDoublesForTwiceTheBytes) {
   const Integrator& euler = *find_integrator("semi-euler");
   const auto layout = [](std::uint32_t rows, std::uint32_t columns, std::size_t bytes) {

@@ -118,6 +118,9 @@ TEST(BodyProfile, TheCrotchIsWhereTheSectionFallsApart) {
   EXPECT_THAT(complaint([&] { statue.leg_girth(0.01, 1); }),
               StartsWith("statue: its legs are not apart at x = 0 at the height 0.01 m"));
   EXPECT_THAT(complaint([&] { statue.leg_girth(0.85, 1); }), HasSubstr("give a height outside 0.8 to 1.4 m"));
+  // Above the crotch it is that of the legs below.
+  for (const auto& [y, apart] : {std::pair{0.01, false}, {0.5, true}, {1.2, true}})
+    EXPECT_EQ(statue.legs_are_apart(y), apart) << y;
 }
 
 TEST(BodyProfile, WhatIsNotThereIsNamed) {
