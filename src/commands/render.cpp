@@ -99,14 +99,14 @@ double natural_fps(const TraceContent& content, const std::vector<std::size_t>& 
                          : movie_fps;
 }
 
-/// Draws the chosen frames of a trace. Returns the bytes of the file, and a description of its content.
-std::string drawn_file(const RenderOptions& options, const PictureOptions& picture,
-                       const TraceReader& trace) {
+/// Draws the chosen frames of a trace. Throws Interrupted. Returns the bytes of the file, and a description
+/// of its content.
+std::string drawn_file(const RenderOptions& options, const PictureOptions& picture, const TraceReader& trace,
+                       StopRequest& stop) {
   const TraceContent& content = trace.content();
   if (picture.colour == ColourBy::strain && !has_strain(content))
     throw UsageError("{} has no rest lengths of its springs, and so no strain: leave --colour out",
                      printable(options.trace));
-  StopRequest stop;  // a temporary trace must not stay
   Painter painter(content, trace.positions(0), picture);
   const std::vector<std::size_t> frames = drawn_frames(options, content, painter.has_legend());
   const auto sheet = sheet_size(options);
@@ -188,8 +188,9 @@ int render(const RenderOptions& options) {
   } else {
     require_distinct({{"--out", out}}, {{"the trace", trace}, {"the XDMF beside the trace", xdmf_of(trace)}});
   }
+  StopRequest stop;  // a temporary trace must not stay
   const TraceReader reader(trace);
-  write_file_atomically(out, drawn_file(options, picture, reader));
+  write_file_atomically(out, drawn_file(options, picture, reader, stop));
   std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
   return code;
 }

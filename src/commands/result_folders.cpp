@@ -64,8 +64,12 @@ std::vector<FoundCurve> reference_curves() {
   std::error_code error;
   for (fs::directory_iterator entry(data_folder() / "reference", error), end; !error && entry != end;
        entry.increment(error))
-    if (auto curve = energy_curve_in(entry->path().stem().string(), read_file(entry->path())))
-      curves.push_back(std::move(*curve));
+    try {
+      if (auto curve = energy_curve_in(entry->path().stem().string(), read_file(entry->path())))
+        curves.push_back(std::move(*curve));
+    } catch (const CsvError& problem) {
+      throw CsvError(fmt::format("{}: {}; install mssim again", entry->path().string(), problem.what()));
+    }
   return curves;
 }
 

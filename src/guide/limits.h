@@ -56,9 +56,10 @@ inline constexpr double allowed_energy_growth = 0.01;
 
 /// The largest total energy, J, that a stable run of `system` may have: that of its start, plus
 /// allowed_energy_growth of its kinetic and elastic energy and of the energy that gravity can still add (down
-/// to the floor, or along the free fall of `span_s`, whichever is less). Springs, gravity, resting pins and
-/// the floor do not increase the total of kinetic, elastic and gravitational energy; damping decreases it. So
-/// any increase is an error of the integrator.
+/// to the floor, or along the free fall of `span_s`, whichever is less), but at least what roundings of a
+/// scene at rest give (energy_in_motion). Springs, gravity, resting pins and the floor do not increase the
+/// total of kinetic, elastic and gravitational energy; damping decreases it. So any larger increase is an
+/// error of the integrator.
 double energy_bound(const System& system, double span_s);
 
 /// Takes `steps` steps from the system's start, and checks the state about thirty times: all numbers must be

@@ -52,7 +52,7 @@ std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const 
   const StepLimit* limit = limit_of(guide, point.integrator);
   const bool is_limited = !steps && cost.at_longest_step && limit != nullptr &&
                           limit->measured.unstable_s > 0 && limit->measured.finished &&
-                          point.dt_s > limit->measured.stable_s / 2;  // else the horizon is short
+                          guide.trusted.horizon_s > limit->measured.stable_s;  // else that limits it
   std::string text =
       fmt::format("Take {} with a step of {} s{}, which is {} per frame at {} frames per second.",
                   named(point), two_digits(point.dt_s), is_limited ? ", the longest that is stable" : "",

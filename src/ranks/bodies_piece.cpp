@@ -41,9 +41,7 @@ std::vector<SceneCounts> counts_of_bodies(const SceneSpec& scene) {
 void require_same_meshes(const Session& session, const std::vector<SceneCounts>& bodies) {
   std::string own;
   for (const SceneCounts& body : bodies) own += fmt::format("{} {} ", body.nodes, body.springs_unique);
-  session.wait_at_most(longest_meshing_s);
   const std::vector<std::string> all = session.gather(own);
-  session.wait_at_most(longest_silence_s);
   for (int rank = 1; rank < session.ranks(); ++rank)
     if (all[static_cast<std::size_t>(rank)] != all.front())
       throw Unavailable("{} meshes these bodies differently from {}: install the same TetGen on both",
@@ -161,6 +159,7 @@ class BodiesPiece final : public Piece {
  public:
   BodiesPiece(const Session& session, const RankJob& job)
       : kernel_(common_kernel(session, step_kernels<SlicedBodies>(*job.integrator), job.roots)) {
+    session.wait_at_most(longest_meshing_s);
     const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
     require_same_meshes(session, counts);
     const std::vector<std::size_t> nodes = nodes_of(counts);
@@ -176,6 +175,7 @@ class BodiesPiece final : public Piece {
     const System system = build_system(with_bodies(job.scene, specs));
     const std::vector<BodyHere> here = bodies_here(system, numbers, nodes);
     const std::vector<std::vector<int>> rank_of = ranks_of_nodes(session, here, shares_, nodes);
+    session.wait_at_most(longest_silence_s);
     runs_ = runs_of_ranks(session.ranks(), shares_, rank_of, nodes);
     for (std::size_t rank = 0; rank < runs_.size() && session.rank() != 0; ++rank)
       if (static_cast<int>(rank) != session.rank()) runs_[rank] = {};

@@ -39,8 +39,8 @@ class SecondsAdded {
 
 /// Longest wait for a message of another rank, s. All ranks do the same work at the same time, so a rank that
 /// is silent for so long has ended, or its host has. Only meshes may take longer: a host may have them
-/// already, and TetGen has a limit of its own.
-inline constexpr double longest_silence_s = 20, longest_meshing_s = 400;
+/// already, and TetGen has limits of its own.
+inline constexpr double longest_silence_s = 20, longest_meshing_s = 3600;
 
 /// An MPI session: the rank of this process, and waiting for other ranks. One thread at a time may call it.
 /// Every wait has a time limit: a rank that does not answer causes a RankFailure.

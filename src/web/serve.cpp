@@ -55,10 +55,14 @@ struct Request {
   std::string line, body;  ///< the first line, for example "GET / HTTP/1.1"
 };
 
+/// When a client that sends or reads little by little is given up: others wait meanwhile.
+std::chrono::steady_clock::time_point deadline_of_client() {
+  return std::chrono::steady_clock::now() + std::chrono::seconds(10);
+}
+
 /// Reads a request; an empty line if it is none, or too large.
 Request read_request(int socket) {
-  // A client that sends little by little must not keep the others waiting.
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto deadline = deadline_of_client();
   std::string text;
   std::size_t end = std::string::npos, length = 0;
   std::array<char, 65536> bytes;
@@ -89,7 +93,9 @@ void answer(int socket, std::string_view status, std::string_view type, std::str
       "Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\r\n",
       status, type, body.size());
   if (!only_head) text += body;
+  const auto deadline = deadline_of_client();
   for (std::string_view rest = text; !rest.empty();) {
+    if (std::chrono::steady_clock::now() > deadline) return;
     const ssize_t count = ::send(socket, rest.data(), rest.size(), MSG_NOSIGNAL);
     if (count <= 0) return;
     rest.remove_prefix(static_cast<std::size_t>(count));

@@ -90,13 +90,13 @@ expect 2 cut.json report cut.json --no-runs --out damaged.html
 begins web --serve --results taken
 soon 300 test -s "$work/out" || fail "mssim does not serve the page"
 python3 - "$(grep -o '[0-9]*' "$work/out")" <<'PYTHON' || fail "results that were sent"
-import json, pathlib, socket, sys
+import json, pathlib, socket, sys, threading, time
 
 port = int(sys.argv[1])
 results = json.load(open("result.json"))
 
 def answer(text, origin):
-    with socket.create_connection(("localhost", port), timeout=60) as connection:
+    with socket.create_connection(("localhost", port), timeout=40) as connection:
         body = text.encode()
         request = f"POST /results HTTP/1.1\r\nHost: localhost:{port}\r\n{origin}Content-Length: {len(body)}\r\n\r\n"
         connection.sendall(request.encode() + body)
@@ -108,7 +108,15 @@ def sent(model, started, origin=f"Origin: http://localhost:{port}\r\n"):
 
 start = "2026-01-31T12:00:00Z"
 with socket.create_connection(("localhost", port)) as slow:
-    slow.sendall(b"GET / HTTP/1.1\r\n")
+    def drip():
+        try:
+            for byte in b"GET / HTTP/1.1\r\nX: " + 60 * b"x":
+                slow.sendall(bytes([byte]))
+                time.sleep(1)
+        except OSError:
+            pass  # given up, as it should be
+    threading.Thread(target=drip, daemon=True).start()
+    time.sleep(1)
     for model, folder in (("phone A", ""), ("phone B", "-2"), ("phone A", ""), ("phone B", "-2")):
         assert "taken/2026-01-31T12-00-00Z" + folder == sent(model, start).split("\r\n\r\n")[1], model
 assert sent("phone C", start, "Origin: https://example.org\r\n") == ""

@@ -123,7 +123,7 @@ TEST(InteriorPoints, ExactlySoManyLieInsideAndAwayFromTheSurface) {
     }
 }
 
-// A lattice over the whole cube around it would have two hundred million cells, thirty times.
+// A lattice over the whole cube around it would have billions of cells.
 TEST(InteriorPoints, LieInARod) {
   const BoxShape rod{{2, 0.002, 0.002}, {500, 1, 1}};
   const std::vector<Vec3d> points = points_of(rod, {400, 1, 0.1, 0.6}).interior;

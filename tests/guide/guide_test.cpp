@@ -183,14 +183,15 @@ TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
   EXPECT_THAT(chosen.sentences[2], EndsWith("errors of 1e-06 to below 0.00015."));
 }
 
-TEST(Recommendation, CallsAStepTheLongestStableOneOnlyNearTheLimit) {
-  for (const auto& [stable_s, is_longest] : {std::pair{1.1e-4, true}, {1e-3, false}}) {
+TEST(Recommendation, CallsAStepTheLongestStableOneUnlessTheHorizonLimitsIt) {
+  for (const auto& [horizon_s, is_longest] : {std::pair{1e-2, true}, {1e-4, false}}) {
     SceneGuide guide = guide_of({made_point("verlet", 1e-4, 1, 5e-4)});
     guide.wish = {60, 1e-3};
-    add_limit(guide, "verlet", stable_s);
+    guide.trusted.horizon_s = horizon_s;
+    add_limit(guide, "verlet", 1.1e-4);
     EXPECT_EQ(recommend(guide).sentences.at(0).find("longest that is stable") != std::string::npos,
               is_longest)
-        << stable_s;
+        << horizon_s;
   }
 }
 

@@ -80,9 +80,9 @@ class BodyProfile {
   std::vector<PlanPoint> section(double y) const;
   /// Its part on one side of x = 0.
   std::vector<PlanPoint> leg_section(double y, int side) const;
-  /// The union of `intervals`, in pieces, bottom up.
   /// The nearest height at which there are legs, m.
   double within_legs(double y) const;
+  /// The union of `intervals`, in pieces, bottom up.
   static std::vector<Interval> merged(std::vector<Interval> intervals);
   std::vector<Interval> heights_in_the_middle() const;
   std::optional<double> find_crotch() const;

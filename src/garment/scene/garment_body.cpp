@@ -67,8 +67,7 @@ void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
   fields.optional_number(
       {"close_holes_m",
        "Largest size of openings of the surface that are closed, m: the largest distance between two of "
-       "their "
-       "points (a bound for more than 3,000). Without this field, the surface must be closed."},
+       "their points (a bound for more than 3,000). Without this field, the surface must be closed."},
       close_holes_m, above(0, largest_length_m));
 }
 
