@@ -423,29 +423,14 @@ void check(const SceneSpec& spec) {
       refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
 }
 
-/// The files of a shape of its own.
-std::vector<std::string> files_of_shape(const BodyShape& shape) {
-  if (const auto* surface = std::get_if<SurfaceFile>(&shape)) return {surface->file};
-  if (const auto* mesh = std::get_if<MeshFiles>(&shape)) return {mesh->node_file, mesh->ele_file};
-  return {};
-}
-
 std::vector<std::string> files(const SceneSpec& spec) {
   std::vector<std::string> names;
-  const auto append = [&](const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
-  };
   for (const BodySpec& body : bodies_of(spec).list) {
-    append(files_of_shape(body.shape));
-    const auto* shape = std::get_if<ShapeOfScene>(&body.shape);
-    if (shape == nullptr || !is_path_of_scene(shape->name)) continue;
-    names.push_back(shape->name);
-    try {
-      const OwnShape own = own_shape(body.shape, spec.file.parent_path());
-      for (const std::string& file : files_of_shape(own.shape))
-        names.push_back(std::filesystem::absolute(own.folder / file).string());
-    } catch (const SceneError&) {  // whoever reads the scene is told
-    }
+    if (const auto* surface = std::get_if<SurfaceFile>(&body.shape)) names.push_back(surface->file);
+    if (const auto* mesh = std::get_if<MeshFiles>(&body.shape))
+      names.insert(names.end(), {mesh->node_file, mesh->ele_file});
+    if (const auto* shape = std::get_if<ShapeOfScene>(&body.shape); shape && is_path_of_scene(shape->name))
+      names.push_back(shape->name);
   }
   return names;
 }

@@ -323,17 +323,6 @@ TEST_F(BodiesFile, WithoutAListIsRefused) {
   EXPECT_THAT(error_of(scene(text)), HasSubstr("/bodies/list is 7: give a list"));
 }
 
-TEST_F(BodiesFile, HasTheFilesOfTheSceneWhoseShapeItTakes) {
-  put("other.json", good_);
-  const auto file = scene(with_shape("scene", R"({"name": "./other.json"})"));
-  const auto own = folder() / ".";
-  EXPECT_THAT(files_of(load_scene(file)),
-              ElementsAre(file, own / "other.json", own / "one.node", own / "one.ele"));
-  // Itself has no shape of its own.
-  put("other.json", with_shape("scene", R"({"name": "./other.json"})"));
-  EXPECT_THAT(files_of(load_scene(file)), ElementsAre(file, own / "other.json"));
-}
-
 TEST_F(BodiesFile, CannotTakeTheShapeOfAnythingElse) {
   const auto with_name = [&](const std::string& name) {
     return scene(with_shape("scene", R"({"name": ")" + name + "\"}"));
