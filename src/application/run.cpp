@@ -172,17 +172,18 @@ namespace {
 /// Throws UsageError if the backend is to step in double precision and does not do so here.
 void require_precision(const RunOptions& options, const BackendInfo& info, const System& system,
                        const Integrator& integrator) {
-  const std::string_view what = is_garment(system)        ? "a garment"
-                                : is_implicit(integrator) ? "an implicit integrator"
-                                                          : "a run";
-  const auto steps = what == "a run"
-                         ? +[](const BackendInfo& row) { return row.make_in_double != nullptr; }
-                         : [](const BackendInfo& row) { return row.role == BackendRole::baseline; };
+  const bool garment = is_garment(system), only_reference = garment || is_implicit(integrator);
+  const auto steps = only_reference
+                         ? +[](const BackendInfo& row) { return row.role == BackendRole::baseline; }
+                         : [](const BackendInfo& row) { return row.make_in_double != nullptr; };
   if (info.in_double && !steps(info))
     throw UsageError(
         "{} in double precision needs --precision double with --backend {}, not \"{}\"; a program chooses "
         "its precision itself",
-        what, names_of(steps, "or"), options.backend);
+        garment          ? "a garment"
+        : only_reference ? "an implicit integrator"
+                         : "a run",
+        names_of(steps, "or"), options.backend);
 }
 
 /// Makes the chosen backend with make(row, system, integrator, dt_s, execution).

@@ -76,16 +76,9 @@ int web(const WebOptions& options) {
     return exit_ok;
   }
   AtomicFile(make_folder(options.results) / ".probe").remove();  // before a phone has measured
-  const auto served_page = [] {
-    std::string page = web_page();
-    constexpr std::string_view begin = "<html ";
-    return page.insert(page.find(begin) + begin.size(),
-                       "data-served ");  // so that it offers to send its results
-  };
-  serve_page(
-      served_page, options.port, options.once,
-      [&](const std::string& text) { return keep(options.results, text); },
-      [](const std::string& address) { std::cout << address << std::endl; });
+  serve_page([] { return web_page(true); }, options.port, options.once,
+             [&](const std::string& text) { return keep(options.results, text); },
+             [](const std::string& address) { std::cout << address << std::endl; });
   return exit_ok;
 }
 

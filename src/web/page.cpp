@@ -253,14 +253,16 @@ void replace(std::string& text, std::string_view mark, std::string_view by) {
 
 }  // namespace
 
-std::string web_page() {
+std::string web_page(bool served) {
   const std::filesystem::path folder = data_folder() / "browser";
   std::string page = read_file(folder / "page.html");
   for (const char* file : {"style.css", "simulate.js", "measure.js", "page.js"})
     replace(page, fmt::format("/* {} */", file), read_file(folder / file));
   // Nothing may end the element; in JSON a "<" stands in texts alone.
   std::string data;
-  for (const char character : page_data().dump()) character == '<' ? data += "\\u003c" : data += character;
+  json values = page_data();
+  values["served"] = served;
+  for (const char character : values.dump()) character == '<' ? data += "\\u003c" : data += character;
   replace(page, "/* data */", data);
   return page;
 }

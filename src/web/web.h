@@ -13,8 +13,8 @@ namespace mssim {
 /// (src/web/browser/). mssim puts in the laws of kernels/, the table of integrators, the scenes of Tables 1
 /// and 3 of Hong et al. with their published times, and the numbers of verifications: tolerances, and the
 /// reference's end on a small scene (SecondStretch). The page derives its WGSL and its JavaScript from them.
-/// Throws like prepare_scene.
-std::string web_page();
+/// `served`: it offers to send its results to the server that it comes from. Throws like prepare_scene.
+std::string web_page(bool served = false);
 
 /// Whether the path is that of a file that the page may have saved: a JSON file, no folder and none
 /// of a result folder.

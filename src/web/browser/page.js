@@ -221,8 +221,8 @@ element('save').addEventListener('click', async () => {
   setTimeout(() => URL.revokeObjectURL(url), 60000);
 });
 element('send').addEventListener('click', send);
-// mssim web --serve marks the page; results go nowhere else.
-const isServed = 'served' in document.documentElement.dataset;
+// By mssim web --serve; results go nowhere else.
+const isServed = data.served;
 element('send').hidden = !isServed;
 
 /** Why the settings in the address cannot be measured; empty if they can. */
