@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0, "to": 1.1})",
                   "/garment/pieces/seams/0/first/to", "is 1.1", "from 0 to 1"},
         BadPieces{R"("thickness_m": 0.004)", R"("thickness_m": 0)", "/garment/layers/thickness_m", "is 0",
-                  "above 0"},
+                  "from 1e-06 to 10"},
         // What cutting, sewing and placing see.
         BadPieces{R"("name": "seat")", R"("name": "apron")", "/garment/pieces/panels/1",
                   "two panels have this name", "rename one of them"},
