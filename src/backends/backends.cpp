@@ -58,13 +58,13 @@ constexpr MemoryUse doubled(MemoryUse single) {
 constexpr auto table = std::to_array<BackendInfo>({
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
      false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, BackendRole::baseline,
-     dress_serially, make_serial_implicit, serial_implicit_memory, false, make_serial_in_double},
+     dress_serially, make_serial_implicit, serial_implicit_memory, false, make_serial_in_double, true},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, ThreadStack::usual,
      make_threads_mutex, spring_list_memory, spring_list_memory, 1.2},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
      ThreadStack::openmp, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, dress_by_openmp,
-     make_openmp_implicit, openmp_implicit_memory, true, make_openmp_in_double},
+     make_openmp_implicit, openmp_implicit_memory, true, make_openmp_in_double, true},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
      device_slices, 0.12, BackendRole::contender, dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
@@ -164,6 +164,13 @@ std::string unsupported_reason(const BackendInfo& backend, const Integrator& int
          names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; });
 }
 
+std::string unsupported_reason(const BackendInfo& backend, const Garment& garment) {
+  if (!dresses(backend)) return "garments are dressed by " + names_of(dresses);
+  if (!garment.touching || backend.collides_layers) return {};
+  return "garments whose layers touch each other are dressed by " +
+         names_of([](const BackendInfo& row) { return row.collides_layers; });
+}
+
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& asked) {
@@ -206,7 +213,8 @@ std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, c
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,
                                                        const Integrator& integrator, double dt_s,
                                                        const ExecutionOptions& asked) {
-  if (!dresses(backend)) throw Unsupported("garments are dressed by " + names_of(dresses));
+  const std::string reason = unsupported_reason(backend, std::get<Garment>(system.topology));
+  if (!reason.empty()) throw Unsupported(reason);
   const ExecutionOptions options = execution_of(backend, asked);
   require_threads(backend, options);
   return backend.make_dressing(system, integrator, dt_s, options);

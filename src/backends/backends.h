@@ -57,6 +57,7 @@ struct BackendInfo {
   /// Makes `make`'s counterpart that steps in double precision; null if it has none.
   std::unique_ptr<Backend> (*make_in_double)(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options) = nullptr;
+  bool collides_layers = false;  ///< `make_dressing` also dresses garments whose layers touch
   /// The program that takes its steps. It must outlive the row.
   const BackendProgram* program = nullptr;
   int threads = 0;  ///< fixed by the row; 0: the number requested
@@ -109,6 +110,9 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
 
 /// Why the row steps neither cloths nor bodies with this integrator; empty if it may.
 std::string unsupported_reason(const BackendInfo& backend, const Integrator& integrator);
+
+/// Why the row does not dress this garment; empty if it may.
+std::string unsupported_reason(const BackendInfo& backend, const Garment& garment);
 
 /// Makes the backend for any system. `system` must outlive it. Throws Unavailable, Unsupported or
 /// BackendFailure.

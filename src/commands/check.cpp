@@ -52,8 +52,9 @@ Table scene_table(const PreparedScene& scene) {
   return table;
 }
 
-bool can_step(const SceneSize& size, const Integrator& integrator, const BackendInfo& backend) {
-  if (size.garment) return dresses(integrator) && dresses(backend);
+bool can_step(const System& system, const Integrator& integrator, const BackendInfo& backend) {
+  if (const auto* garment = std::get_if<Garment>(&system.topology))
+    return dresses(integrator) && unsupported_reason(backend, *garment).empty();
   return unsupported_reason(backend, integrator).empty();
 }
 
@@ -68,7 +69,7 @@ Table combination_table(const PreparedScene& scene, const SceneSize& size, const
   for (const Integrator* integrator : all_integrators) {
     const double largest_dt_s = largest_stable_dt(*integrator, modes);
     for (const BackendInfo* backend : all) {
-      if (!can_step(size, *integrator, *backend)) continue;
+      if (!can_step(scene.system, *integrator, *backend)) continue;
       const BenchSettings settings = usual_settings({backend}, {integrator});
       table.add({{"integrator", integrator->name},
                  {"largest_stable_dt_s", std::isinf(largest_dt_s) ? Cell() : Cell(largest_dt_s)},

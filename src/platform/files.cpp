@@ -265,9 +265,13 @@ void AtomicFile::append(std::string_view text) {
   }
 }
 
+void AtomicFile::sync() {
+  if (::fsync(part_.get()) != 0) fail(name_, "syncing " + temporary_of(name_).string());
+}
+
 void AtomicFile::move_into_place() {
+  sync();
   const fs::path temporary = temporary_of(name_);
-  if (::fsync(part_.get()) != 0) fail(name_, "syncing " + temporary.string());
   if (::rename(temporary.c_str(), name_.c_str()) != 0)
     fail(name_, fmt::format("renaming {} to it", temporary.string()));
   const bool closed = part_.close();
@@ -285,6 +289,7 @@ void write_files_atomically(const fs::path& folder, std::span<const FolderFile> 
   std::vector<AtomicFile> written;
   written.reserve(files.size());
   for (const FolderFile& file : files) written.emplace_back(folder / file.name).append(file.text);
+  for (AtomicFile& file : written) file.sync();
   for (AtomicFile& file : written) file.move_into_place();
 }
 

@@ -77,6 +77,8 @@ class AtomicFile {
 
   /// Appends to FILE.part. Throws WriteError; FILE.part then ends where it did before.
   void append(std::string_view text);
+  /// Syncs FILE.part, which is when some file systems notice that it cannot be written. Throws WriteError.
+  void sync();
   /// Ends the writing: syncs FILE.part, renames it to FILE and syncs the folder. On WriteError, FILE.part is
   /// unchanged and still locked.
   void move_into_place();
@@ -100,8 +102,8 @@ struct FolderFile {
   std::string name, text;
 };
 
-/// Writes all files into a folder, and replaces none before all are written under temporary names. Throws
-/// WriteError.
+/// Writes all files into a folder, and replaces none before all are written and synced under temporary names.
+/// Throws WriteError.
 void write_files_atomically(const std::filesystem::path& folder, std::span<const FolderFile> files);
 
 /// Reserves `bytes` after the end of an open file without changing its size, for writers whose files do not

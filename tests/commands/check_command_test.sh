@@ -46,6 +46,9 @@ ends 1 run --scene "$work/cloth-2.json" --duration 0.1 --backend serial
 check 0 jeans1k --format csv
 [ "$(column_of "$work/out" backend)" = "$(backends_for garment)" ] || fail "backends of a garment: $(cat "$work/out")"
 [ "$(grep -c '^jeans1k,garment,1054,.*,semi-euler,' "$work/out")" -eq "$(backends_for garment | wc -l)" ] || fail "combinations of a garment"
+# Only some of them let its layers touch each other.
+check 0 outfit --format csv
+[ "$(column_of "$work/out" backend)" = $'serial\nopenmp' ] || fail "backends of touching layers: $(cat "$work/out")"
 
 # Its "auto" is half of its own limit, not of that of methods that cannot dress it.
 sed 's/"dt_s": [^,]*/"dt_s": "auto"/' "$source/scenes/jeans1k.json" >"$work/jeans-auto.json"

@@ -61,8 +61,8 @@ struct DressingShape {
 
 /// Algorithm 1 on an OpenCL device (kernels/dressing_step.cl). All steps are queued at once: the host learns
 /// at the end of step() whether seams have closed. Throws Unsupported for an integrator other than
-/// semi-euler, for layers that touch each other and if the device's memory is too small; Unavailable if its
-/// driver fails.
+/// semi-euler and if the device's memory is too small; Unavailable if its driver fails. It lets layers pass
+/// through each other.
 std::unique_ptr<DressingBackend> make_opencl_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, const OpenclDevice& device,
                                                       DeviceMemory memory, const DressingShape& shape);

@@ -75,12 +75,10 @@ std::vector<std::size_t> levels_of(const std::vector<GarmentGrid::Joint>& joints
 
 /// The constant part of a garment in the layout of the kernels (kernels/parameters.h).
 struct OpenclPanels {
-  /// Throws Unsupported as GarmentGrid does, if layers touch each other and if the kernels' 32-bit offsets
-  /// are too small; std::invalid_argument if the springs are not those of the panels.
+  /// Throws Unsupported as GarmentGrid does and if the kernels' 32-bit offsets are too small;
+  /// std::invalid_argument if the springs are not those of the panels.
   OpenclPanels(const System& system, double dt_s) {
     const auto& garment = std::get<Garment>(system.topology);
-    if (garment.touching)
-      throw Unsupported("opencl does not have collisions between layers; use serial or openmp");
     const GarmentGrid grid(system);
     const std::size_t plane = grid.inverse_mass.size();
     if (plane * panel_stencil.size() > std::numeric_limits<cl_int>::max())

@@ -321,10 +321,6 @@ template <class Vector, bool parallel>
 std::unique_ptr<DressingBackend> make(const System& system, const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& options) {
   require_semi_euler(integrator);
-  if (std::get<Garment>(system.topology).touching)
-    throw Unsupported(
-        "these rows omit collisions between layers, as Vassilev's Figure 6 does: dress the scene with "
-        "serial or openmp");
   return std::make_unique<PublishedLoops<Vector, parallel>>(system, dt_s, options.threads);
 }
 

@@ -52,8 +52,8 @@ inline constexpr auto published_dressings = std::to_array<PublishedDressing>({
     {"algorithm1-threads-simd", "algorithm1-threads with SIMD instructions", true, true},
 });
 
-/// Makes the loops of a row. Throws Unsupported for an integrator other than semi-euler, and for layers that
-/// touch each other.
+/// Makes the loops of a row. Throws Unsupported for an integrator other than semi-euler. Layers that
+/// touch are left out, as in Vassilev's Figure 6.
 using MakePublishedDressing = std::unique_ptr<DressingBackend> (*)(const System& system,
                                                                    const Integrator& integrator, double dt_s,
                                                                    const ExecutionOptions& options);

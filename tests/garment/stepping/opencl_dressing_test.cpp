@@ -195,7 +195,8 @@ TEST(OpenclDressing, RefusesWhatItCannotDo) {
   EXPECT_THROW(make_opencl_dressing(system, semi_euler, dressing_dt_s, small, DeviceMemory::shared, {}),
                Unsupported);
   garment_in(system).touching.emplace();
-  EXPECT_THROW(make(system, {}), Unsupported);
+  EXPECT_THROW(make_backend(*find_backend("opencl"), system, semi_euler, dressing_dt_s, {.threads = 1}),
+               Unsupported);
 }
 
 }  // namespace
