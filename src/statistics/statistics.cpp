@@ -41,34 +41,40 @@ RatioEstimate estimate_of(const ShiftEstimate& shift, const RankTest& test) {
   return {std::exp(shift.shift), std::exp(shift.low), std::exp(shift.high), shift.covers, test.p_two_sided()};
 }
 
-/// A division of a part of a series, and how much its sides differ: m n / (m + n) times the energy distance
-/// of m and n values.
+/// A place that divides a range of a series, and how much its sides differ: m n / (m + n) times the energy
+/// distance of their m and n values.
 struct Division {
   std::size_t first = 0;  ///< of the second side
   double divergence = 0;
 };
 
-/// The division with the largest divergence; each side needs two values.
+/// The division with the largest divergence. The first side begins with the values; the second one may end
+/// before they do, so that a later change does not hide this one. Each side needs two values.
 Division best_division(std::span<const double> values) {
   const std::size_t size = values.size();
-  // Sums of the distances of all pairs on the left side, on the right side, and across. At first all are
-  // right.
-  double left = 0, right = 0, across = 0;
+  // Sums of distances: of all pairs among the first values, by their number; and of each value to all values
+  // of the first side.
+  std::vector<double> within(size + 1), to_first_side(size);
   for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j < i; ++j) right += std::abs(values[i] - values[j]);
+    for (std::size_t j = i + 1; j < size; ++j) within[j + 1] += std::abs(values[j] - values[i]);
+  std::partial_sum(within.begin(), within.end(), within.begin());
+  std::vector<double> inverse(size + 1);  // of 1, 2, ..., because divisions would take most of the time
+  for (std::size_t i = 1; i <= size; ++i) inverse[i] = 1 / static_cast<double>(i);
   Division best;
-  for (std::size_t moved = 0; moved + 2 < size; ++moved) {
-    double to_left = 0, to_right = 0;
-    for (std::size_t i = 0; i < moved; ++i) to_left += std::abs(values[moved] - values[i]);
-    for (std::size_t i = moved + 1; i < size; ++i) to_right += std::abs(values[moved] - values[i]);
-    left += to_left;
-    right -= to_right;
-    across += to_right - to_left;
-    const auto m = static_cast<double>(moved + 1), n = static_cast<double>(size - moved - 1);
-    if (moved == 0) continue;
-    const double divergence =
-        m * n / (m + n) * (2 * across / (m * n) - 2 * left / (m * (m - 1)) - 2 * right / (n * (n - 1)));
-    if (divergence > best.divergence) best = {moved + 1, divergence};
+  for (std::size_t first = 1; first < size; ++first) {
+    const auto m = static_cast<double>(first);
+    double across = 0;
+    for (std::size_t last = first; last < size; ++last) {
+      to_first_side[last] += std::abs(values[last] - values[first - 1]);
+      across += to_first_side[last];
+      if (first == 1 || last == first) continue;
+      const auto n = static_cast<double>(last + 1 - first);
+      const double right = within[last + 1] - within[first] - across;
+      const double divergence =
+          2 * inverse[last + 1] *
+          (across - within[first] * n * inverse[first - 1] - right * m * inverse[last - first]);
+      if (divergence > best.divergence) best = {first, divergence};
+    }
   }
   return best;
 }

@@ -117,15 +117,16 @@ struct ChangePoint {
 inline constexpr double change_error = 0.01;
 
 /// The changes of a series of times, in its order: E-divisive means, on logarithms. The place that divides a
-/// part of the series best, by the energy distance of its two sides, is a change if at most `change_error` of
+/// part of the series best, by the energy distance of what is before it and of what follows up to some later
+/// place, is a change if at most `change_error` of
 /// random orders have a place that divides them as well. All parts are searched again until none has one. A
 /// random order shuffles each part between known changes, so the test needs no distribution of the times. It
 /// needs that all orders are equally likely without a change: a trend counts as changes. The same series
 /// gives the same changes.
 ///
 /// Sources: D. S. Matteson, N. A. James, A nonparametric approach for multiple change point analysis of
-/// multivariate data, Journal of the American Statistical Association 109 (2014), 334-345, with exponent 1,
-/// and without the search for the end of the second side; D. Daly et al., The use of change point detection
+/// multivariate data, Journal of the American Statistical Association 109 (2014), 334-345, with exponent 1;
+/// D. Daly et al., The use of change point detection
 /// to identify software performance regressions in a continuous integration system, ICPE 2020, 67-75, do so
 /// with the times of commits. Throws std::invalid_argument for a time that is not finite and positive.
 std::vector<ChangePoint> change_points(std::span<const double> times);

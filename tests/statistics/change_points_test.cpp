@@ -37,6 +37,19 @@ TEST(ChangePoints, AreWhereTheLevelsMeet) {
   }
 }
 
+TEST(ChangePoints, AreFoundThoughALaterOneTakesThemBack) {
+  const std::vector<double> repaired = joined(joined(level(2, 20), level(2.6, 15)), level(2, 20));
+  const std::vector<ChangePoint> both = change_points(repaired);
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(both[0].first, 20U);
+  EXPECT_EQ(both[1].first, 35U);
+  // Nor do they hide a new one.
+  const std::vector<ChangePoint> three = change_points(joined(repaired, level(2.2, 5)));
+  ASSERT_EQ(three.size(), 3U);
+  EXPECT_EQ(three[2].first, 55U);
+  EXPECT_NEAR(three[2].ratio.ratio, 1.1, 0.01);
+}
+
 TEST(ChangePoints, AreTheSameForTheSameSeriesAndForOtherUnits) {
   const std::vector<double> times = joined(level(3, 14), level(3.2, 8));
   std::vector<double> seconds = times;
@@ -78,13 +91,15 @@ class ChangePointRates : public testing::Test {
   }
 
   /// Times of that many commits: of a random row, each the median of as many samples as the row has, drawn
-  /// with replacement. From `before` on they are longer by `change`.
-  std::vector<double> series(const std::vector<ResultRow>& rows, std::size_t commits, double change) {
+  /// with replacement. From `before` on they are longer by `change`, for `changed` commits.
+  std::vector<double> series(const std::vector<ResultRow>& rows, std::size_t commits, double change,
+                             std::size_t changed) {
     const std::vector<double>& samples = rows[random() % rows.size()].samples_ms;
     std::vector<double> times, drawn(samples.size());
     for (std::size_t commit = 0; commit < commits; ++commit) {
       for (double& sample : drawn) sample = samples[random() % samples.size()];
-      times.push_back(median(drawn) * (commit < before ? 1 : 1 + change));
+      const bool is_changed = commit >= before && commit < before + changed;
+      times.push_back(median(drawn) * (is_changed ? 1 + change : 1));
     }
     return times;
   }
@@ -92,9 +107,9 @@ class ChangePointRates : public testing::Test {
   /// How many of `count` series are wanted.
   template <class Wanted>
   int count_of(int count, const std::vector<ResultRow>& rows, std::size_t commits, double change,
-               Wanted wanted) {
+               Wanted wanted, std::size_t changed = 1000) {
     int found = 0;
-    for (int i = 0; i < count; ++i) found += wanted(series(rows, commits, change)) ? 1 : 0;
+    for (int i = 0; i < count; ++i) found += wanted(series(rows, commits, change, changed)) ? 1 : 0;
     return found;
   }
 
@@ -143,6 +158,15 @@ TEST_F(ChangePointRates, AreAtMostTheStatedErrorWithoutAChangeAndThoseOfTheDocum
             fmt::format(" {} |", percent(count_of(planted, rows, before + after, change, finds_it), planted));
       table += '\n';
     }
+  for (const std::size_t changed : {5UL, 10UL}) {
+    table += fmt::format("| 10 % for {} commits, then as before | {} |", changed, changed + 10);
+    for (const std::vector<ResultRow>& rows : recorded) {
+      const std::size_t commits = before + changed + 10;
+      table +=
+          fmt::format(" {} |", percent(count_of(planted, rows, commits, 0.1, finds_it, changed), planted));
+    }
+    table += '\n';
+  }
   std::cout << table;
   EXPECT_THAT(text_of(source_file("docs/ci.md")), HasSubstr(table));
 }
