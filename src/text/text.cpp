@@ -96,8 +96,10 @@ std::string decimal(double value) {
 std::string fixed_decimal(double value, int digits) { return fmt::format("{:.{}f}", value, digits); }
 
 std::string three_digits(double value) {
-  const int before_point = value > 0 ? static_cast<int>(std::floor(std::log10(value))) + 1 : 1;
-  return fixed_decimal(value, std::max(0, 3 - before_point));
+  // Rounding may carry into one more digit: 9.996 is 10.0.
+  const double rounded = std::abs(number_in<double>(fmt::format("{:.2e}", value)).value_or(0));
+  const int exponent = rounded > 0 ? static_cast<int>(std::floor(std::log10(rounded))) : 0;
+  return fixed_decimal(value, std::max(0, 2 - exponent));
 }
 
 std::string two_digits(double value) { return fmt::format("{:.2g}", value); }

@@ -68,6 +68,10 @@ TEST(ThreeDigits, AreSignificantOnes) {
   EXPECT_EQ(three_digits(0.0123456), "0.0123");
   EXPECT_EQ(three_digits(123456), "123456");
   EXPECT_EQ(three_digits(0), "0.00");
+  EXPECT_EQ(three_digits(-0.0123456), "-0.0123");
+  // Rounding carries into one more digit.
+  EXPECT_EQ(three_digits(0.9996), "1.00");
+  EXPECT_EQ(three_digits(99.96), "100");
 }
 
 TEST(TwoDigits, HaveAnExponentWhereTheNumberIsSmallOrLarge) {
