@@ -11,8 +11,10 @@
 #include <variant>
 #include <vector>
 
+#include "bench/verification/verification.h"
 #include "garment/contact/solid.h"
 #include "garment/stepping/dressing_backend.h"
+#include "integrators/stability.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
@@ -64,11 +66,6 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
 PreparedScene prepare_scene(SceneSpec spec) {
   const SceneParts parts = read_parts(spec);
   return prepare_scene(std::move(spec), parts);
-}
-
-ModeBound mode_bound(const System& system) {
-  const StiffnessBound bound = stiffness_bound(system);
-  return {bound.stiffness, bound.damping, system.viscous_damping};
 }
 
 void warn_of_note(const PreparedScene& scene) {

@@ -8,7 +8,6 @@
 #include "bench/results/result.h"
 #include "garment/body/body_profile.h"
 #include "garment/fitting/fitting.h"
-#include "integrators/stability.h"
 #include "model/system.h"
 #include "scene/spec/scene_spec.h"
 
@@ -31,9 +30,6 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts);
 
 /// Prepares a scene, reading its parts. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(SceneSpec spec);
-
-/// Bound of the scene's modes, for the stability limits of its integrators.
-ModeBound mode_bound(const System& system);
 
 /// Prints the scene's note, if any, to stderr.
 void warn_of_note(const PreparedScene& scene);

@@ -13,6 +13,7 @@
 #include "application/run.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
+#include "bench/verification/verification.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "garment/fitting/fitting.h"

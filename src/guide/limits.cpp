@@ -146,11 +146,14 @@ StableStep largest_stable_step(const System& system, const StepMaker& make, cons
 
 StepTheory step_theory(const Integrator& integrator, const System& system, const Spectrum& start,
                        const Spectrum& reached) {
-  const StiffnessBound bound = stiffness_bound(system);
-  const double air = system.viscous_damping;
-  return {largest_stable_dt(integrator, {start.stiffness, start.damping, air}),
-          largest_stable_dt(integrator, {reached.stiffness, reached.damping, air}),
-          largest_stable_dt(integrator, {bound.stiffness, bound.damping, air})};
+  ModeBound modes = mode_bound(system);
+  const double bound_s = largest_stable_dt(integrator, modes);
+  const auto limit_of = [&](const Spectrum& spectrum) {
+    modes.stiffness = spectrum.stiffness;
+    modes.damping = spectrum.damping;
+    return largest_stable_dt(integrator, modes);
+  };
+  return {limit_of(start), limit_of(reached), bound_s};
 }
 
 bool is_shorter_than_theory(const StableStep& measured, const StepTheory& theory) {

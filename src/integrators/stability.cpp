@@ -36,6 +36,35 @@ double spectral_radius(const Linear& first, const Linear& second) {
   return discriminant < 0 ? std::sqrt(determinant) : std::abs(half_trace) + std::sqrt(discriminant);
 }
 
+/// Least and most damping of a mode that has this fraction of the bound's stiffness.
+std::array<double, 2> dampings_of(const ModeBound& bound, double fraction) {
+  const double viscous = bound.viscous_damping;
+  if (bound.parts.empty()) {
+    const double damping = viscous + fraction * (bound.damping - viscous);
+    return {damping, damping};
+  }
+  std::vector<ModeBound::Part> parts = bound.parts;
+  std::ranges::sort(parts, [](const ModeBound::Part& a, const ModeBound::Part& b) {
+    return a.damping * b.stiffness < b.damping * a.stiffness;
+  });
+  // The damping of a mode that stretches the first springs most.
+  const auto in_this_order = [&] {
+    double damping = viscous, left = fraction * bound.stiffness;
+    for (const ModeBound::Part& part : parts) {
+      const double taken = std::min(left, part.stiffness);
+      if (taken > 0) damping += part.damping * taken / part.stiffness;
+      left -= taken;
+    }
+    return std::min(damping, bound.damping);
+  };
+  const double least = in_this_order();
+  std::ranges::reverse(parts);
+  double most = in_this_order();
+  for (const ModeBound::Part& part : parts)
+    if (part.stiffness == 0) most = std::min(most + part.damping, bound.damping);
+  return {least, most};
+}
+
 bool is_stable(const Integrator& integrator, double dt_s, const ModeBound& bound) {
   return largest_amplification(integrator, dt_s, bound) <= 1 + tolerated_growth;
 }
@@ -66,12 +95,12 @@ double largest_amplification(const Integrator& integrator, double dt_s, const Mo
   // flight.
   constexpr int modes = 63;
   double largest = 0, fraction = 1;
-  for (int mode = 0; mode < modes; ++mode, fraction *= 0.8) {
-    const double damping = bound.viscous_damping + fraction * (bound.damping - bound.viscous_damping);
-    const double factor = amplification(integrator, dt_s, fraction * bound.stiffness, damping);
-    if (std::isnan(factor)) return std::numeric_limits<double>::infinity();
-    largest = std::max(largest, factor);
-  }
+  for (int mode = 0; mode < modes; ++mode, fraction *= 0.8)
+    for (const double damping : dampings_of(bound, fraction)) {
+      const double factor = amplification(integrator, dt_s, fraction * bound.stiffness, damping);
+      if (std::isnan(factor)) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, factor);
+    }
   return largest;
 }
 

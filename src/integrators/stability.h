@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "integrators/integrator.h"
 
@@ -8,11 +9,20 @@ namespace mssim {
 
 /// Model of a system's modes for its stability limit: oscillators x'' = -k x - c(k) x' for every k up to
 /// `stiffness`. The damping c grows linearly with k, from `viscous_damping` for a mode that stretches no
-/// spring to `damping` for the stiffest, because springs damp what they resist.
+/// spring to `damping` for the stiffest, because springs damp what they resist. If springs damp in different
+/// proportions to their stiffness (`parts`), a mode has the least damping if it stretches those that damp
+/// least as far as these reach, and then the next ones; and the most in the opposite order. Both are modes of
+/// the model.
 struct ModeBound {
-  double stiffness = 0;        ///< 1/s^2, at least the largest eigenvalue of K/m
-  double damping = 0;          ///< 1/s, at least the largest eigenvalue of C/m, viscous damping included
-  double viscous_damping = 0;  ///< 1/s, its part that acts on every mode
+  /// Springs that damp in one proportion to their stiffness.
+  struct Part {
+    double stiffness = 0;  ///< 1/s^2, at least the largest eigenvalue of their part of K/m
+    double damping = 0;    ///< 1/s, at least the largest eigenvalue of their part of C/m
+  };
+  double stiffness = 0;          ///< 1/s^2, at least the largest eigenvalue of K/m
+  double damping = 0;            ///< 1/s, at least the largest eigenvalue of C/m, viscous damping included
+  double viscous_damping = 0;    ///< 1/s, its part that acts on every mode
+  std::vector<Part> parts = {};  ///< empty: all damp in the same proportion
 };
 
 /// Growth per step that still counts as stable. Zero would exclude the midpoint rule for every undamped mode,

@@ -181,12 +181,17 @@ void round_start_to_single(System& system) {
   round_to_single(system.floor.height);
 }
 
-StiffnessBound stiffness_bound(const System& system) {
+namespace {
+
+/// Of the springs for which `counts` is true.
+template <class Counts>
+StiffnessBound bound_of_springs(const System& system, Counts counts) {
   struct Sum {
     double stiffness = 0, damping = 0;
   };
   std::vector<Sum> node(system.nodes());
   for (const Spring& spring : system.springs) {
+    if (!counts(spring)) continue;
     const auto law = linear_spring(system.materials[spring.kind], static_cast<double>(spring.rest_length));
     for (const std::uint32_t end : {spring.first, spring.second}) {
       node[end].stiffness += spring_along(law);
@@ -198,7 +203,25 @@ StiffnessBound stiffness_bound(const System& system) {
     bound.stiffness = std::max(bound.stiffness, 2 * node[i].stiffness / system.node_mass[i]);
     bound.damping = std::max(bound.damping, 2 * node[i].damping / system.node_mass[i]);
   }
+  return bound;
+}
+
+}  // namespace
+
+StiffnessBound stiffness_bound(const System& system) {
+  StiffnessBound bound = bound_of_springs(system, [](const Spring& /*spring*/) { return true; });
   bound.damping += system.viscous_damping;
+  constexpr double rounding = 1e-9;
+  const auto damps_as_all = [&](const SpringMaterial& a) {
+    return std::ranges::all_of(system.materials, [&](const SpringMaterial& b) {
+      const double one = a.damping * b.stiffness, other = b.damping * a.stiffness;
+      return std::abs(one - other) <= rounding * std::max(one, other);
+    });
+  };
+  if (std::ranges::all_of(system.materials, damps_as_all)) return bound;
+  for (std::size_t kind = 0; kind < system.materials.size(); ++kind)
+    bound.materials.push_back(
+        bound_of_springs(system, [&](const Spring& spring) { return spring.kind == kind; }));
   return bound;
 }
 

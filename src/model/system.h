@@ -197,6 +197,9 @@ void round_start_to_single(System& system);
 struct StiffnessBound {
   double stiffness = 0;  ///< 1/s^2, at least the largest eigenvalue of K/m
   double damping = 0;    ///< 1/s, at least the largest eigenvalue of C/m, viscous damping included
+  /// Those of the springs of each material alone, without viscous damping, if materials damp in different
+  /// proportions to their stiffness.
+  std::vector<StiffnessBound> materials = {};
 };
 
 /// Gershgorin's bound: all springs of a node aligned, all neighbours moving against it.

@@ -7,7 +7,7 @@ namespace mssim {
 namespace {
 
 constexpr double omega = 1e4;  // 1/s
-constexpr ModeBound undamped{omega * omega, 0, 0};
+const ModeBound undamped{omega * omega, 0, 0};
 
 double limit(const char* name, const ModeBound& bound) {
   const Integrator* integrator = find_integrator(name);
@@ -79,6 +79,21 @@ TEST(LargestStableDt, SeparatesDecayFromGrowthForEveryIntegrator) {
     }
     EXPECT_TRUE(grows) << integrator.name;
   }
+}
+
+TEST(LargestStableDt, IsThatOfUndampedSpringsBesideDampedOnes) {
+  // The stiffest springs alone bound an undamped mode; the others only add damping to stiffer ones.
+  const double k = omega * omega;
+  const ModeBound parts{1.1 * k, 0.4 * omega, 0, {{0.1 * k, 0.4 * omega}, {k, 0}}};
+  EXPECT_NEAR(limit("midpoint", parts), limit("midpoint", undamped), 0.01 * limit("midpoint", undamped));
+  EXPECT_LT(limit("midpoint", parts), limit("midpoint", {1.1 * k, 0.4 * omega, 0}) / 2);
+  // A method that damping holds back meets the most damped mode, not the mean.
+  EXPECT_LT(limit("semi-euler", parts), limit("semi-euler", {1.1 * k, 0, 0}));
+  // In equal proportions, parts are as good as one.
+  const ModeBound alike{
+      k, 0.4 * omega, 1, {{0.6 * k, 0.6 * (0.4 * omega - 1)}, {0.4 * k, 0.4 * (0.4 * omega - 1)}}};
+  for (const char* name : {"semi-euler", "midpoint", "rk4"})
+    EXPECT_NEAR(limit(name, alike) / limit(name, {k, 0.4 * omega, 1}), 1, 1e-6) << name;
 }
 
 TEST(LargestStableDt, IsInfiniteWhereNothingActs) {

@@ -57,6 +57,13 @@ TEST(StiffnessBound, IsGershgorinsOfTheNodeWithMost) {
   const StiffnessBound bound = stiffness_bound(three_nodes());
   EXPECT_DOUBLE_EQ(bound.stiffness, 640);
   EXPECT_DOUBLE_EQ(bound.damping, 16.25);
+  // 3 / 100 and 1 / 60 are different proportions: 2 100 / 0.5 and 2 60 / 0.5, 2 3 / 0.5 and 2 1 / 0.5.
+  ASSERT_EQ(bound.materials.size(), 2U);
+  EXPECT_DOUBLE_EQ(bound.materials[0].stiffness, 400);
+  EXPECT_DOUBLE_EQ(bound.materials[1].stiffness, 240);
+  EXPECT_DOUBLE_EQ(bound.materials[0].damping, 12);
+  EXPECT_DOUBLE_EQ(bound.materials[1].damping, 4);
+  EXPECT_TRUE(stiffness_bound(cloth_system(4, 4)).materials.empty()) << "of its springs all damp alike";
 }
 
 TEST(Energy, IsTheSumOfEachNodesAndSprings) {

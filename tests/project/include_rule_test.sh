@@ -80,7 +80,7 @@ application/bench     text platform integrators scene/spec scene backends/interf
 web                   text platform integrators model scene/spec scene bench/machine bench/results bench/verification bench/job output/tables output/folders application application/bench
 web/module            kernels laws integrators
 commands/arguments    text
-commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices backends/described garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench output/tables output/folders output/traces output/pictures output/exports report application application/bench web commands/arguments
+commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices backends/described garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench/verification bench output/tables output/folders output/traces output/pictures output/exports report application application/bench web commands/arguments
 main.cpp              platform commands
 ask_opencl.cpp        backends/devices
 supervise.cpp         platform

@@ -11,6 +11,7 @@
 #include "application/bench/suites.h"
 #include "application/outputs.h"
 #include "bench/job/job.h"
+#include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
 #include "integrators/stability.h"
 #include "output/tables/suite_tables.h"
