@@ -67,6 +67,15 @@ std::string subject_of(const ResultRow& row) {
                      row.springs_unique, row.dt_s, row.device, pluralize(row.threads, "thread"));
 }
 
+/// Ends a combination that is not measured further.
+void drop(Combination& combination, const std::string& status) {
+  combination.row.status = status;
+  end(combination);
+  combination.backend.reset();
+  combination.dressing = nullptr;
+  combination.windows = nullptr;
+}
+
 void find_sample_steps(Combination& combination, const SceneJob& job) {
   static const double resolution_s = clock_resolution_s();
   const auto time_steps = [&](int steps) { return time_sample(combination, steps).wall_s; };
@@ -85,6 +94,10 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
     }
     steps = std::min(fit, 10 * steps);
   }
+  if (steps > combination.most_steps)
+    return drop(combination, fmt::format("not timed: {}, the most that can be compared with the reference, "
+                                         "take less time than the clock can measure; use a larger scene",
+                                         pluralize(combination.most_steps, "step")));
   if (job.verified) {
     combination.steps = steps;
     return;
@@ -97,15 +110,6 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
   combination.step_seconds = median(trials) / trial_steps;
   combination.steps =
       sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
-}
-
-/// Ends a combination that is not measured further.
-void drop(Combination& combination, const std::string& status) {
-  combination.row.status = status;
-  end(combination);
-  combination.backend.reset();
-  combination.dressing = nullptr;
-  combination.windows = nullptr;
 }
 
 /// Time of reading a new state, s: the longest of three, since a busy machine delays single readings.

@@ -143,7 +143,8 @@ Reference recall_reference(const ReferenceCache& cache, const System& system, co
     std::error_code ignored;
     fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
     found->energy = energy_of(system, found->state);
-    found->tolerance = position_tolerance(system, integrator, found->steps);
+    found->integrator = &integrator;
+    found->tolerance = comparison_tolerance(system, integrator, dt_s, found->steps);
     found->recalled = true;
     return *std::move(found);
   }

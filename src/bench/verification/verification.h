@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
+#include "integrators/stability.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -69,6 +70,7 @@ double position_deviation(const System& system, const State& reference, const St
 
 /// Result of the double-precision reference, with which every backend of a scene and integrator is compared.
 struct Reference {
+  const Integrator* integrator = nullptr;  ///< whose steps they are
   int steps = 0;  ///< since the start; before any node touches the floor, and comparable (comparable_steps)
   State state;
   Energy energy;
@@ -81,8 +83,8 @@ struct Reference {
 /// Steps of a verification run: enough for a wrong force to show, few enough that rounding does not.
 inline constexpr int verification_steps = 100;
 
-/// Steps that a reference takes between two checks of the floor and of signals; so does a backend that steps
-/// meanwhile.
+/// Steps that a reference takes between two checks of signals, and of the floor while that is far; so does a
+/// backend that steps meanwhile.
 inline constexpr int steps_between_looks = 10;
 
 /// Largest allowed difference of total energy, as a fraction of the energy in motion (energy_in_motion).
@@ -90,6 +92,9 @@ inline constexpr double energy_tolerance = 0.01;
 
 /// Number of stages of a step that write, and so round, the new position.
 int position_roundings(const Integrator& integrator);
+
+/// Bound of the system's modes, for the stability limits of its integrators.
+ModeBound mode_bound(const System& system);
 
 /// Steps from the start until a rounding error may have doubled, at least 1 and at most `most`; beyond them a
 /// tolerance for roundings is meaningless. Derived from the factors by which the integrator multiplies the
@@ -112,13 +117,20 @@ int steps_before_drift(const System& system, const Integrator& integrator, doubl
 /// 1 % too stiff, exceeds the tolerance.
 double position_tolerance(const System& system, const Integrator& integrator, int steps);
 
+/// The tolerance on the position error of a comparison after `steps` steps from the start, in mean rest
+/// lengths: position_tolerance, and what roundings of velocities add in xpbd's small steps.
+double comparison_tolerance(const System& system, const Integrator& integrator, double dt_s, int steps);
+
+/// Largest such tolerance, in mean rest lengths. With a larger one a comparison would not show much.
+inline constexpr double largest_tolerance = 0.1;
+
 /// Reason for a missing reference if a node touches the floor within the first steps.
 std::string touches_at_once(int steps);
 
-/// Runs the reference. Its state is that at a multiple of ten steps, or at the last of comparable_steps,
-/// before any node touches the floor. After a bounce, results differ by the motion within one step, and a
-/// tolerance would be meaningless. Throws Interrupted if an ending signal is noted (platform/process.h),
-/// because a large system takes minutes.
+/// Runs the reference. Its state is that after verification_steps, or at the last of comparable_steps, or at
+/// the last look before any node touches the floor: after a bounce, results differ by the motion within one
+/// step, and a tolerance would be meaningless. Throws Interrupted if an ending signal is noted
+/// (platform/process.h), because a large system takes minutes.
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s);
 
 /// Comparison of a backend with the reference.
@@ -131,7 +143,11 @@ struct Verification {
   std::optional<std::string> failure;       ///< empty: verified
 };
 
-/// Compares the backend with the reference. First steps it from the start, unless it already is
+/// Compares the backend with the reference. If it is further away than independent roundings explain, a
+/// second reference, rounded to single precision after every step, shows what they do to this scene, in
+/// scenes of up to a million nodes: where steps move nodes by few units in their last place, roundings have
+/// one sign for many steps. Then four times its deviation per rounding of a step is allowed, but no more than
+/// largest_tolerance. First steps the backend from the start, unless it already is
 /// reference.steps steps from there: `steps_taken` is its number. Leaves the backend in any state.
 Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s,
                     int steps_taken = 0);
@@ -202,7 +218,8 @@ SampleEnd sample_end(const System& system, const State& state, int steps, std::s
 /// to 2,000 steps). If that is more, four times the second reference's deviation per rounding is allowed, in
 /// scenes of up to a million nodes. It takes one and a half times as long as the first, and only runs if an
 /// end exceeds the tolerance otherwise. After a node has met the floor, the way of the fastest node in four
-/// steps is added, because a rounding may delay a landing by a step.
+/// steps is added, or that of the node whose landings are fastest in sum, because a rounding may delay each
+/// landing by a step; to the energy, what gravity does meanwhile to all nodes that land.
 std::vector<std::string> check_samples(const System& system, const Integrator& integrator, double dt_s,
                                        const State& start, std::size_t first,
                                        std::span<const SampleEnd> ends);
@@ -225,8 +242,9 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
 /// of the state's with some integrators (step_ahead); what move_back() puts on the floor counts as bounce. A
 /// backend with a wrong force, floor or integrator violates the balance. A correct backend in single
 /// precision keeps it over ten to twenty thousand steps, relative to the largest change of the kinetic
-/// energy: to 1e-4 for cloths and for bodies on a floor at height 0, and to about 1e-3 on a floor so high
-/// that the steps of nodes at rest on it are of the size of a rounding.
+/// energy: to 1e-4 with semi-implicit Euler, for cloths and for bodies, and to about 1e-3 with rk4, on a
+/// floor at height 0. It cannot keep it on a floor so high that the steps of nodes at rest on it are of the
+/// size of a rounding: there the balance only shows roundings.
 ///
 /// `integration` includes the error of the trapezoidal rule. In a second with bounces, relative to the
 /// kinetic energy of the fall, the small bodies of the paper lose or gain 0.001 by it with semi-implicit

@@ -1,6 +1,7 @@
 // A check that could not fail would be none: backends that are wrong on purpose must be found.
 #include "bench/verification/verification.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,6 +68,55 @@ TEST(Verification, PassesARightBackend) {
   EXPECT_GT(verification.position_error, 0) << "single precision cannot be exact";
   EXPECT_LT(verification.position_error, reference.tolerance);
   EXPECT_EQ(verification.state_hash, state_hash(backend->state()));
+}
+
+TEST(Verification, PassesRightBackendsWhereRoundingsAddUp) {
+  // Far up, and with short steps, a step moves a node by few units in its last place: roundings have one
+  // sign.
+  for (const auto& [height_m, step_s] : {std::pair{1., 5e-5}, {10., 5e-5}, {100., 5e-5}, {0.2, 1e-6}}) {
+    SceneSpec spec = cloth_spec(20, 25);
+    std::get<ClothSpec>(spec.content).ceiling_height_m = height_m;
+    const System system = build_system(spec);
+    double furthest = 0;  // in tolerances of independent roundings
+    for (const char* name : {"semi-euler", "midpoint", "rk4"}) {
+      const Integrator& integrator = *find_integrator(name);
+      const Reference reference = run_reference(system, integrator, step_s);
+      for (const auto& make : {make_serial, make_openmp}) {
+        const Verification found =
+            verify(*make(system, integrator, step_s, {2, ""}), system, reference, step_s);
+        EXPECT_EQ(found.failure, std::nullopt) << name << " at " << height_m << " m";
+        furthest = std::max(furthest, found.position_error.value() / reference.tolerance);
+      }
+      if (height_m > 1 || step_s < 1e-5) continue;
+      System wrong = system;
+      wrong.gravity *= 1.5;
+      EXPECT_TRUE(verify(*make_serial(wrong, integrator, step_s, {}), system, reference, step_s).failure)
+          << name;
+    }
+    EXPECT_GT(furthest, 1) << height_m << " m: independent roundings explain this, so it tests nothing";
+  }
+}
+
+TEST(Verification, RefusesScenesSoFarAwayThatItWouldShowNothing) {
+  SceneSpec spec = cloth_spec(20, 25);
+  std::get<ClothSpec>(spec.content).ceiling_height_m = 1e4;
+  const Reference reference = run_reference(build_system(spec), integrators[0], backend_dt_s);
+  ASSERT_TRUE(reference.failure);
+  for (const char* part : {"nothing can be verified", "100 steps", "nearer to the origin"})
+    EXPECT_NE(reference.failure->find(part), std::string::npos) << *reference.failure;
+}
+
+TEST(Verification, AllowsXpbdTheDriftOfItsSmallSteps) {
+  SceneSpec spec = cloth_spec(5, 5);
+  spec.solver.substeps = 1000;
+  const System system = build_system(spec);
+  const Integrator& xpbd = *find_integrator("xpbd");
+  const Reference reference = run_reference(system, xpbd, 1e-3);
+  const auto backend = make_backend(baseline_backend(), system, xpbd, 1e-3, {});
+  const Verification found = verify(*backend, system, reference, 1e-3);
+  EXPECT_EQ(found.failure, std::nullopt);
+  EXPECT_GT(found.position_error.value(), position_tolerance(system, xpbd, reference.steps))
+      << "it drifts less, so this tests nothing";
 }
 
 /// Expects a right backend to pass and each mistake to be found, with every integrator.
@@ -339,6 +389,53 @@ TEST(Verification, StopsBeforeTheFloor) {
   EXPECT_GT(reference.steps, 0);
   EXPECT_LT(reference.steps, verification_steps);
   for (const Vec3d& x : reference.state.position) EXPECT_GT(x.y, system.floor.height);
+}
+
+/// A flat sheet without springs' work that reaches the floor, up to rounding, in step `landing` and bounces
+/// off.
+System bouncing_sheet(int landing, double step_s) {
+  SceneSpec spec = sheet_spec(3, 3, 10 * step_s * step_s * landing * (landing + 1) / 2);
+  spec.gravity_m_per_s2 = 10;
+  spec.viscous_damping_per_s = 0;
+  spec.floor = {0, 1, 0};
+  return build_system(spec);
+}
+
+TEST(Verification, StopsBeforeTheFloorThoughNodesBounceOffBetweenTwoLooks) {
+  constexpr double step_s = 1e-4;
+  for (const int landing : {23, 25, 31, 35, 37}) {
+    const System system = bouncing_sheet(landing, step_s);
+    const Reference reference = run_reference(system, integrators[0], step_s);
+    EXPECT_FALSE(reference.failure) << *reference.failure;
+    EXPECT_GE(reference.steps, landing - 1);
+    EXPECT_LE(reference.steps, landing);
+    for (const auto& make : {make_serial, make_openmp})
+      EXPECT_EQ(verify(*make(system, integrators[0], step_s, {2, ""}), system, reference, step_s).failure,
+                std::nullopt)
+          << landing;
+  }
+}
+
+TEST(SampleCheck, AllowsLandingsAtOtherTimes) {
+  constexpr double step_s = 1e-4;
+  constexpr int steps = 2000;
+  SceneSpec spec = cloth_spec(2, 2);
+  auto& cloth = std::get<ClothSpec>(spec.content);
+  cloth.pins.reset();
+  cloth.ceiling_height_m = 0.01;
+  spec.floor = {0, 1, 0};
+  const System system = build_system(spec);
+  for (std::uint32_t number = 1; number <= 8; ++number) {
+    const State start = sample_start(system, number);
+    for (const auto& make : {make_serial, make_openmp}) {
+      const auto backend = make(system, integrators[0], step_s, {1, ""});
+      backend->set_state(start);
+      backend->step(steps);
+      const std::vector<SampleEnd> ends{sample_end(system, backend->state(), steps, 0)};
+      EXPECT_THAT(check_samples(system, integrators[0], step_s, start, 0, ends), testing::ElementsAre(""))
+          << number;
+    }
+  }
 }
 
 TEST(BlowUp, IsFoundAtTheFirstBadStepAndNode) {

@@ -197,7 +197,12 @@ TEST(ClothContactSearch, TakesABorderForARimOnTheRightSideAndForNothingOnTheWron
   EXPECT_NEAR(above[0].gap, 0.05, 1e-6);
   EXPECT_NEAR(above[0].normal.x, 0.6, 1e-6);
   EXPECT_NEAR(above[0].normal.y, 0.8, 1e-6);
-  EXPECT_EQ(contacts_of(level_and_node({2.03, -0.04, -0.5})).size(), 0U);
+  for (const Vec3d& beyond : {Vec3d{2.03, 0, -0.5}, {-0.03, 0, -0.5}, {0.5, 0, 0.03}, {0.5, 0, -2.03}}) {
+    EXPECT_EQ(contacts_of(level_and_node(beyond + Vec3d{0, 0.04, 0})).size(), 1U)
+        << beyond.x << ' ' << beyond.z;
+    EXPECT_EQ(contacts_of(level_and_node(beyond - Vec3d{0, 0.04, 0})).size(), 0U)
+        << beyond.x << ' ' << beyond.z;
+  }
   EXPECT_EQ(contacts_of(level_and_node({1.97, -0.04, -0.5})).size(), 1U);
 }
 
