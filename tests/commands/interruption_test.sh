@@ -159,3 +159,11 @@ is_ended 130 INT
 h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"
 frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)
 [ "$frames" -ge 1 ] && [ "$(grep -c '^[0-9]' dress.csv)" -eq "$frames" ] || fail "$frames frames, energies: $(cat dress.csv)"
+
+# A second signal ends it at once, also one of another kind and within a frame, which takes half a minute here.
+begins run --scene cloth40k --backend serial --duration 100 --fps 1 --trace twice.h5
+soon 60 test -e twice.h5.part || fail "no trace is begun"
+kill -INT "$process"
+soon 10 grep -q 'a second signal stops at once' err || fail "SIGINT: $(cat err)"
+is_ended 143 TERM
+[ "$(grep -c 'a second signal stops at once' err)" -eq 1 ] || fail "a second signal is only noted: $(cat err)"
