@@ -51,6 +51,13 @@ ends 0 bench --scene cloth350k --backend serial --integrator rk4 --rounds 1 --dr
 diff "$work/without" "$work/out" || fail "--dry-run forecasts frames that are not timed"
 ends 0 bench --suite table2 --dry-run
 [ ! -e "$work/never" ] || fail "--dry-run has made a folder"
+ends 0 bench --scene cloth2500 --dry-run --format csv
+[ "$(cut -d, -f1 "$work/out" | xargs)" = 'scene cloth2500' ] || fail "--dry-run --format csv: $(cat "$work/out")"
+expect 2 'github is of times, which --dry-run does not measure' bench --scene cloth2500 --dry-run --format github
+for format in csv json; do
+  expect 2 'of one table, .*: ask for --suite table2 alone' bench --suite table2 --scene cloth2500 --format $format --out "$work/never"
+  [ ! -e "$work/never" ] || fail "a folder is made for what is refused"
+done
 expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite table1 --time-budget 5
 expect 2 'time-budget' bench --scene cloth2500 --time-budget nan
 
