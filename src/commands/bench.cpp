@@ -306,7 +306,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
   arguments.add_number(
       "--time-budget SECONDS", options->time_budget_s,
       "Time limit for the measurement, which takes as many rounds as fit; traces take extra time",
-      positive_number());
+      time_budget());
   arguments.add_number("--fps N", options->fps,
                        fmt::format("Also time {} single frames of 1/N s for each combination, after its "
                                    "samples (columns frame_...), which takes extra time",

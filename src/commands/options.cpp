@@ -202,6 +202,8 @@ void require_free(const std::filesystem::path& file, std::string_view option, bo
                      printable(file.string(), 1000), option);
 }
 
+ValueRule time_budget() { return number_between(0.001, 1e8); }
+
 std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& options,
                                         std::vector<int>* threads, std::vector<std::string>* sets) {
   std::vector<Argument> of_backends;

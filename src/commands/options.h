@@ -101,6 +101,9 @@ void refuse_options(std::string_view command, std::initializer_list<std::pair<st
 /// Throws UsageError if there is such a file, unless it is to be replaced. `option` names it, or its folder.
 void require_free(const std::filesystem::path& file, std::string_view option, bool overwrite);
 
+/// Accepts the value of --time-budget, s: at most three years, which the nanoseconds of a clock can count.
+ValueRule time_budget();
+
 /// Declares --threads, --ranks, --launcher, --device, --memory, --roots and --instruction-set. If `threads`
 /// is given, --threads takes several numbers into it; if `sets` is given, --instruction-set takes several
 /// names into it. All must outlive the parsing. Returns the options of backends: all but --threads, by which
