@@ -180,7 +180,7 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
   std::cerr << "mssim: ";
   if (!stopped)
     std::cerr << "results are in " << folder;
-  else if (results.rows().empty() && plan.output.overwrite)
+  else if (results.rows().empty() && results.are_in_folder())
     std::cerr << "nothing was measured yet; earlier results are still in " << folder;
   else if (results.rows().empty())
     std::cerr << "nothing was measured yet; --resume continues";

@@ -85,6 +85,10 @@ for signal in INT:130 KILL:137; do
   [ "$signal" = KILL:137 ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
   diff -r before int || fail "--overwrite that is ended by SIG$signal before it has a row changes what is there"
 done
+begins bench --scene cloth350k --backend serial --out new --overwrite
+soon 60 grep -q 'cloth350k (1 of 1)' err || fail "no scene is begun"
+is_ended 130 INT
+grep -q 'nothing was measured yet; --resume continues' err || fail "--overwrite of a new folder: $(cat err)"
 ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite
 [ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"
 [ "$(wc -l <int/samples.csv)" -eq 2 ] || fail "--overwrite left samples"

@@ -61,6 +61,8 @@ class BenchResults {
 
   const std::vector<ResultRow>& rows() const { return rows_.all(); }
   std::vector<ResultRow> of_scene(const std::string& name) const { return rows_.of_scene(name); }
+  /// Whether there is a folder with results, also those of an earlier run that stay for now.
+  bool are_in_folder() const { return folder_ && folder_->has_results(); }
   /// The names of the files of the scene's rows (file_stems), unique among those of all scenes.
   std::vector<std::string> stems_of_scene(const std::string& name) const;
 
