@@ -15,6 +15,7 @@
 #include "garment/stepping/dressing_backend.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
+#include "text/error.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -64,6 +65,15 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
 PreparedScene prepare_scene(SceneSpec spec) {
   const SceneParts parts = read_parts(spec);
   return prepare_scene(std::move(spec), parts);
+}
+
+void require_distinct_names(const std::vector<SceneSpec>& scenes) {
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene)
+    for (auto other = scenes.begin(); other != scene; ++other)
+      if (other->name == scene->name)
+        throw UsageError("there are two scenes called {}, {} and {}; name one of them, or rename a file",
+                         printable(scene->name), printable(other->file.string()),
+                         printable(scene->file.string()));
 }
 
 ModeBound mode_bound(const System& system) {
