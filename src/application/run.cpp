@@ -137,6 +137,9 @@ void RunRecorder::finish_after(const std::function<void()>& simulation) {
     } catch (const Interrupted&) {
       finish();
       throw;
+    } catch (const BackendFailure&) {
+      finish();
+      throw;
     }
     finish();
   } catch (const WriteError& error) {
@@ -145,6 +148,7 @@ void RunRecorder::finish_after(const std::function<void()>& simulation) {
 }
 
 void RunRecorder::finish() {
+  if (energies_.empty()) return;  // files without a frame are removed
   wait_for_frame();
   if (curve_) curve_->close();
   if (trace_) trace_->close();

@@ -93,8 +93,8 @@ class RunRecorder {
   const std::vector<EnergySample>& energies() const { return energies_; }
 
   /// Runs `simulation`, which records frames, and finishes the files. It finishes them even if the simulation
-  /// blows up or is interrupted, because the earlier frames are good. Prints the names of the written files
-  /// to stderr. If a file cannot be written, the files keep their temporary names and all frames recorded
+  /// blows up, is interrupted or its program fails, because the earlier frames are good. Prints the names of
+  /// the written files to stderr. If a file cannot be written, the files keep their temporary names and all frames recorded
   /// before, and the WriteError says so. Rethrows the exceptions of `simulation`.
   void finish_after(const std::function<void()>& simulation);
 

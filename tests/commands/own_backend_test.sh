@@ -157,3 +157,10 @@ ends 0 run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fal
 grep -q ' spring_list ' "$work/out" || fail "run says: $(cat "$work/out")"
 expect 1 'exits ended with exit code 3 before it answered' run --scene cloth2500 --backend exits --backend-folder backends
 nothing_left "run"
+# The frames before a failure are kept: the start and those of two requests.
+ends 1 run --scene cloth2500 --backend exits --backend-folder backends --duration 0.02 --fps 1000 --trace cut.h5 --energy-curve cut.csv
+warns 'exits ended with exit code 3 before it answered "step '
+warns 'wrote cut.h5 and cut.xdmf'
+[ -s cut.h5 ] && [ ! -e cut.h5.part ] && [ "$(grep -c '^[0-9]' cut.csv)" -eq 3 ] || fail "a failure costs frames: $(ls cut*; cat cut.csv)"
+ends 1 run --scene cloth2500 --backend fails-early --backend-folder backends --trace early.h5
+[ -z "$(find . -name 'early*')" ] || fail "without a frame there is $(ls early*)"
