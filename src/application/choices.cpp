@@ -415,6 +415,10 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
     const BackendProgram* program = info->program;
     if (!program || info->threads > 0) continue;  // the row with the requested number has the program
     BackendProgramRecord record{.name = program->name, .command = program->command};
+    for (const std::string& variable : program->environment) {
+      const std::size_t equals = variable.find('=');
+      record.environment.emplace_back(variable.substr(0, equals), variable.substr(equals + 1));
+    }
     if (program->in_ranks) {
       const RankCount count = ranks_of(*program, execution);
       record.ranks = count.ranks;

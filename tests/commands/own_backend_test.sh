@@ -75,12 +75,15 @@ row huge-costs 'failed: latency_us is not finite'
 [ "$(find wrong/programs -type f | wc -l)" -eq 2 ] || fail "wrong/programs holds $(ls wrong/programs)"
 
 # A finished folder is left as it is; another program under the same name is another result.
+describe floods '"environment": {"A": "1"}'
 ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again
+grep -A 1 '"environment": {' again/provenance.json | grep -q '"A": "1"' || fail "the provenance does not tell of a description's variables"
 cp again/timings.csv before
 ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 cmp -s before again/timings.csv || fail "--resume changes a finished folder"
-describe floods '"environment": {"A": "1"}'
-ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+describe floods '"environment": {"A": "2"}'
+expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+expect 2 'the program floods is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --verified again
 printf '{"command": ["%s"]}' "$work/spring_list" >backends/floods.json
 expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 mkdir again/programs/mine
@@ -162,5 +165,3 @@ ends 1 run --scene cloth2500 --backend exits --backend-folder backends --duratio
 warns 'exits ended with exit code 3 before it answered "step '
 warns 'wrote cut.h5 and cut.xdmf'
 [ -s cut.h5 ] && [ ! -e cut.h5.part ] && [ "$(grep -c '^[0-9]' cut.csv)" -eq 3 ] || fail "a failure costs frames: $(ls cut*; cat cut.csv)"
-ends 1 run --scene cloth2500 --backend fails-early --backend-folder backends --trace early.h5
-[ -z "$(find . -name 'early*')" ] || fail "without a frame there is $(ls early*)"
