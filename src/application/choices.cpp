@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <system_error>
 #include <utility>
@@ -41,15 +40,6 @@ constexpr std::string_view each_word = each_suffix.substr(1);
 
 /// What follows the colon in serial:double and openmp:double.
 constexpr std::string_view double_word = "double";
-
-/// The folder of the user's own descriptions; none if the user has no home folder.
-std::optional<fs::path> user_folder() {
-  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
-    return fs::path(folder) / "mssim" / "backends";
-  if (const char* home = std::getenv("HOME"); home && *home)
-    return fs::path(home) / ".config" / "mssim" / "backends";
-  return std::nullopt;
-}
 
 /// The folder of the descriptions that come with mssim.
 fs::path shipped_folder() { return data_folder() / "backends"; }
@@ -211,7 +201,8 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
       throw UsageError("--backend-folder {} is not a folder", escaped(folder));
     folders_.emplace_back(folder);
   }
-  if (const auto folder = user_folder()) folders_.push_back(*folder);
+  if (const fs::path folder = xdg_folder("XDG_CONFIG_HOME", ".config"); !folder.empty())
+    folders_.push_back(folder / "mssim" / "backends");
   for (const std::string& scene : scenes) {
     const fs::path folder = fs::path(scene).parent_path();
     if (is_path_of_scene(scene)) scene_folders_.push_back(folder.empty() ? fs::path(".") : folder);

@@ -133,6 +133,8 @@ describe here '"description": "a list of springs", "scenes": ["bodies"], "integr
 cp backends/here.json config/mssim/backends/mine.json
 ends 0 list backends --backend-folder backends --format csv
 grep -q '^here,bodies,,true,,a list of springs$' "$work/out" && grep -q '^mine,bodies,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
+XDG_CONFIG_HOME=config HOME=$work ends 0 list backends --format csv
+! grep '^mine,' "$work/out" || fail "a relative XDG_CONFIG_HOME counts"
 ends 3 "${bench[@]}" --backend mine
 warns 'mine, semi-euler: unsupported: it does not step cloths$'
 cp "$2/scenes/cloth2500.json" small.json
