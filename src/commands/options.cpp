@@ -147,16 +147,17 @@ std::vector<std::string> names_and_files_in(std::string_view argument) {
 
 std::vector<std::string> scene_names() { return mapped<std::string>(shipped_scenes(), &SceneSpec::name); }
 
-std::vector<const BackendInfo*> every_backend(BackendChoice& choice) {
+std::vector<const BackendInfo*> every_backend(BackendChoice& choice, std::vector<std::string>& broken) {
   std::vector<const BackendInfo*> all = with_garment_backends(table_backends());
-  std::ranges::copy(choice.shipped(), std::back_inserter(all));
-  std::ranges::copy(choice.described(), std::back_inserter(all));
+  std::ranges::copy(choice.shipped(&broken), std::back_inserter(all));
+  std::ranges::copy(choice.described(&broken), std::back_inserter(all));
   return all;
 }
 
 std::vector<std::string> backend_names() {
   BackendChoice choice(with_garment_backends(table_backends()), {});
-  return mapped<std::string>(every_backend(choice), &BackendInfo::name);
+  std::vector<std::string> broken;  // have no names
+  return mapped<std::string>(every_backend(choice, broken), &BackendInfo::name);
 }
 
 std::vector<std::string> integrator_names() {

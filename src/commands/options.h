@@ -76,8 +76,8 @@ std::vector<std::string> names_and_files_in(std::string_view argument);
 std::vector<std::string> scene_names();
 
 /// Every backend that a command may use: the rows of `choice`'s tables, those that come with mssim, and those
-/// that the user has described. Throws like BackendChoice::require.
-std::vector<const BackendInfo*> every_backend(BackendChoice& choice);
+/// that the user has described. `broken` gets a sentence for each description that cannot be used.
+std::vector<const BackendInfo*> every_backend(BackendChoice& choice, std::vector<std::string>& broken);
 
 /// The names of every backend, and of every integrator.
 std::vector<std::string> backend_names();

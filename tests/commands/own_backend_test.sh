@@ -143,12 +143,27 @@ ends 0 bench --scene ./small.json --backend beside --integrator semi-euler --rou
 expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder backends
 expect 2 'there are two backends called here' "${bench[@]}" --backend here --backend-folder backends,twin
 expect 2 "has the same name as mssim's backend serial" "${bench[@]}" --backend serial --backend-folder twin
-mkdir -p odd
+mkdir odd
 for name in 'openmp:1' 'serial:double' 'x,y'; do
   printf '{"command": ["../spring_list"]}' >"odd/$name.json"
-  expect 2 "$name.json: in the name of a backend" list backends --backend-folder odd
-  rm "odd/$name.json"
+  expect 2 "$name.json: in the name of a backend" "${bench[@]}" --backend "./odd/$name.json"
 done
+# One that cannot be used costs no other its place in a list, nor in a message.
+cp wrong.json odd/broken.json
+cp backends/here.json odd
+ends 0 list backends --backend-folder odd
+says '^here '
+for reason in 'broken.json: /comand is not a known key' 'openmp:1.json: in the name of a backend' 'x,y.json: in the name of a backend'; do
+  warns "a backend is not shown: .*$reason"
+done
+expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder odd
+expect 2 'broken.json: /comand is not a known key' "${bench[@]}" --backend broken --backend-folder odd
+# One file in two spellings is one backend, and no other has the name of one of mssim's.
+ends 0 "${bench[@]}" --backend "./spring_list,$work/spring_list" --out spellings
+[ "$(column_of spellings/timings.csv backend | xargs)" = spring_list ] || fail "one file is two backends: $(cat spellings/timings.csv)"
+cp spring_list mpi
+expect 2 "has the same name as mssim's backend mpi; rename it" "${bench[@]}" --backend ./mpi
+expect 2 './spring_list:2 has a suffix, .*: give ./spring_list, .*--threads 1,2' "${bench[@]}" --backend ./spring_list:2
 expect 2 '/comand is not a known key' "${bench[@]}" --backend ./wrong.json
 expect 3 'there is no program ./nothing' "${bench[@]}" --backend ./nothing
 expect 3 'wrong.txt .*chmod +x' "${bench[@]}" --backend ./wrong.txt

@@ -80,6 +80,9 @@ done
 expect 2 '^mssim: --precision: unknown precision "half": known are single and double;' run --scene cloth2500 --precision half
 expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all
 expect 2 '^mssim: unknown integrator "euler" (did you mean .*semi-euler.*explicit-euler' bench --scene cloth2500 --integrator euler
+expect 2 '^mssim: serial:doubel: unknown suffix "doubel" (did you mean double?): known are each and double$' bench --scene cloth2500 --backend serial:doubel
+expect 2 'openmp:doubel: unknown suffix "doubel" (did you mean double?): known are each, double, .* and a number from 1 to 4096$' \
+  bench --scene cloth2500 --backend openmp:doubel
 expect 2 'unknown backend "gpu" (did you mean opencl?)' bench --scene cloth2500 --backend gpu
 touch mine.py
 expect 2 'unknown backend "mine.py": .*\./mine.py$' bench --scene cloth2500 --backend mine.py
