@@ -402,6 +402,9 @@ int run_scene(RunOptions options) {
   const Integrator& integrator = require_integrator(options.integrator);
   BackendChoice choice(with_garment_backends(table_backends()), options.own_backends, {options.scene});
   BackendInfo info = choice.require(options.backend);
+  if (info.in_double && options.precision == "single")
+    throw UsageError("--precision single cannot be used with --backend {}: leave one of them out",
+                     options.backend);
   info.in_double |= options.precision == "double";
   require_use_of_ranks(options.execution, {&info});
   require_device(options.execution, {&info});

@@ -223,7 +223,11 @@ std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& 
                            whole_number(1, most_ranks)));
   of_backends.push_back(
       arguments.add("--launcher COMMAND", options.launcher,
-                    "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)"));
+                    "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)",
+                    [](const std::string& text) -> std::string {
+                      if (text.find_first_not_of(" \t\r\n") != std::string::npos) return "";
+                      return fmt::format("\"{}\" names no program", printable(text));
+                    }));
   of_backends.push_back(
       arguments.add("--device N|NAME", options.device,
                     "OpenCL device: its number or a part of its name or platform (see mssim list devices)"));

@@ -25,6 +25,7 @@ expect 2 'serial or openmp, not "hybrid"' run --scene cloth2500 --backend hybrid
 expect 2 'garment .* --backend serial, not "openmp"' run --scene jeans1k --backend openmp --precision double
 expect 2 'implicit .* --backend serial, not "openmp:double"' run --scene cloth2500 --backend openmp:double --integrator newton-euler
 ends 0 run --scene cloth2500 --backend openmp --precision double --duration 0.01
+expect 2 'precision single cannot be used with --backend openmp:double' run --scene cloth2500 --backend openmp:double --precision single
 
 # Rows in double precision differ from the reference by their roundings only.
 ends 0 bench --scene cloth2500,torus-small --backend serial:double,openmp:double --integrator rk4 --threads 1,2 \

@@ -77,6 +77,7 @@ expect 2 '^mssim: WHAT: unknown word "scnes" (did you mean scenes?): known are '
 for command in bench guide; do
   expect 2 '^mssim: --time-budget: "1e10" is not a number from 0.001 to 1e+08;' $command --scene cloth2500 --time-budget 1e10
 done
+expect 2 '^mssim: --launcher: "  " names no program; see mssim bench --help$' bench --scene cloth2500 --backend mpi --launcher '  '
 expect 2 '^mssim: --precision: unknown precision "half": known are single and double;' run --scene cloth2500 --precision half
 expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all
 expect 2 '^mssim: unknown integrator "euler" (did you mean .*semi-euler.*explicit-euler' bench --scene cloth2500 --integrator euler
