@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <system_error>
 #include <utility>
@@ -42,21 +41,26 @@ constexpr std::string_view each_word = each_suffix.substr(1);
 /// What follows the colon in serial:double and openmp:double.
 constexpr std::string_view double_word = "double";
 
-/// The folder of the user's own descriptions; none if the user has no home folder.
-std::optional<fs::path> user_folder() {
-  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
-    return fs::path(folder) / "mssim" / "backends";
-  if (const char* home = std::getenv("HOME"); home && *home)
-    return fs::path(home) / ".config" / "mssim" / "backends";
-  return std::nullopt;
-}
-
 /// The folder of the descriptions that come with mssim.
 fs::path shipped_folder() { return data_folder() / "backends"; }
 
 bool is_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
+}
+
+/// Whether both are the same file or folder, however their paths are written.
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return a == b || fs::equivalent(a, b, error);
+}
+
+/// Whether both run the same program in the same way.
+bool is_same(const BackendProgram& a, const BackendProgram& b) {
+  const auto arguments = [](const BackendProgram& program) { return std::span(program.command).subspan(1); };
+  return (a.command == b.command ||
+          (is_same(a.program, b.program) && std::ranges::equal(arguments(a), arguments(b)))) &&
+         is_same(a.folder, b.folder) && a.environment == b.environment;
 }
 
 bool is_path(const std::string& name) { return name.find('/') != std::string::npos; }
@@ -75,6 +79,11 @@ BackendProgram described_by(const fs::path& file) {
 
 /// The program at a path from the command line.
 BackendProgram program_at(const std::string& path) {
+  if (const std::string file = path.substr(0, path.rfind(':')); !is_file(path) && is_file(file))
+    throw UsageError(
+        "{} has a suffix, which the path of a program does not take: give {}, and several numbers of threads "
+        "as --threads 1,2",
+        escaped(path), escaped(file));
   if (!is_file(path))
     throw MissingProgram("there is no program " + escaped(path) +
                          ": give the path of a program, or a name (see mssim list backends)");
@@ -94,6 +103,24 @@ std::optional<std::string_view> instruction_set_named(std::string_view name) {
   for (const std::string_view set : instruction_sets())
     if (name == set || name == instruction_set_name(set)) return set;
   return std::nullopt;
+}
+
+/// Whether a suffix of the row may be a number of threads.
+bool takes_number(const BackendInfo& row) { return row.makes_threads || row.uses_device; }
+
+/// Throws UsageError with the suffixes that the row takes, of which `how` is none.
+[[noreturn]] void refuse_suffix(const std::string& name, const std::string& how, const BackendInfo& row) {
+  const std::string number = fmt::format("a number from 1 to {}", most_threads);
+  std::vector<std::string_view> known;
+  if (!row.each_body && !row.in_double) known.push_back(each_word);
+  if (row.make_in_double != nullptr && !row.in_double) known.push_back(double_word);
+  for (const std::string_view set : row.has_vectors ? instruction_sets() : std::vector<std::string_view>())
+    known.push_back(instruction_set_name(set));
+  if (takes_number(row)) known.push_back(number);
+  if (known.empty())
+    throw UsageError("{} has a suffix, which {} does not take: leave \":{}\" out", printable(name), row.name,
+                     printable(how));
+  throw UsageError(printable(name) + ": " + unknown_name("suffix", how, known));
 }
 
 /// Throws UsageError for rows whose number of processes is not one of threads.
@@ -166,6 +193,10 @@ ExecutionOptions complete(ExecutionOptions options) {
   return options;
 }
 
+bool is_shipped(const std::string& name) {
+  return is_file(shipped_folder() / (name + std::string(description_extension)));
+}
+
 std::string row_name(const std::string& asked) {
   if (!is_path(asked)) return asked;
   const fs::path path = asked;
@@ -211,7 +242,8 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
       throw UsageError("--backend-folder {} is not a folder", escaped(folder));
     folders_.emplace_back(folder);
   }
-  if (const auto folder = user_folder()) folders_.push_back(*folder);
+  if (const fs::path folder = xdg_folder("XDG_CONFIG_HOME", ".config"); !folder.empty())
+    folders_.push_back(folder / "mssim" / "backends");
   for (const std::string& scene : scenes) {
     const fs::path folder = fs::path(scene).parent_path();
     if (is_path_of_scene(scene)) scene_folders_.push_back(folder.empty() ? fs::path(".") : folder);
@@ -229,10 +261,11 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;
   if (file) return add_file(*file);
+  std::vector<std::string> broken;  // not what was asked for
   std::vector<std::string_view> names;
   for (const BackendInfo* info : known_) names.push_back(info->name);
-  for (const BackendInfo* info : described()) names.push_back(info->name);
-  for (const BackendInfo* info : shipped()) names.push_back(info->name);
+  for (const BackendInfo* info : described(&broken)) names.push_back(info->name);
+  for (const BackendInfo* info : shipped(&broken)) names.push_back(info->name);
   if (is_file(name))
     throw UsageError("unknown backend \"{0}\": a program of your own is a path with a slash, ./{0}",
                      printable(name));
@@ -265,11 +298,12 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   if (row && row->make_in_double != nullptr && how == double_word) return &add_variant(*row, how);
   if (row && row->has_vectors && set) return &add_variant(*row, instruction_set_name(*set));
   BackendProgram program = file ? described_by(*file) : BackendProgram{};
-  if (row ? !row->makes_threads && !row->uses_device : !program.in_ranks)
-    throw UsageError("{} has a number of ranks or threads, which {} does not take: leave \":{}\" out",
-                     printable(name), its_name, printable(how));
-  const int most = row ? most_threads : most_ranks;
   const std::optional<int> number = number_in<int>(how);
+  if (row && !number) refuse_suffix(name, how, *row);
+  if (row ? !takes_number(*row) : !program.in_ranks)
+    throw UsageError("{} has a {}, which {} does not take: leave \":{}\" out", printable(name),
+                     number ? "number of ranks or threads" : "suffix", its_name, printable(how));
+  const int most = row ? most_threads : most_ranks;
   if (!number || *number < 1 || *number > most)
     throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4{}", printable(name),
                      row ? "threads" : "ranks", most, its_name,
@@ -342,9 +376,12 @@ std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std
   return rows;
 }
 
-std::vector<const BackendInfo*> BackendChoice::shipped() { return described_in({shipped_folder()}); }
+std::vector<const BackendInfo*> BackendChoice::shipped(std::vector<std::string>* broken) {
+  return described_in({shipped_folder()}, broken);
+}
 
-std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs::path>& folders) {
+std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs::path>& folders,
+                                                            std::vector<std::string>* broken) {
   std::vector<fs::path> files;
   for (const fs::path& folder : folders) {
     std::error_code error;
@@ -354,7 +391,15 @@ std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs
   }
   std::ranges::sort(files, {}, [](const fs::path& file) { return file.stem(); });
   std::vector<const BackendInfo*> infos;
-  for (const fs::path& file : files) infos.push_back(&require(file.stem().string()));
+  for (const fs::path& file : files) {
+    try {
+      infos.push_back(&require(file.stem().string()));
+    } catch (const Error& error) {
+      if (broken == nullptr) throw;
+      // Two of one name have one reason.
+      if (std::ranges::find(*broken, error.what()) == broken->end()) broken->emplace_back(error.what());
+    }
+  }
   return infos;
 }
 
@@ -394,14 +439,13 @@ const BackendInfo& BackendChoice::add(BackendProgram program) {
                      escaped(program.name));
   // Its name may be a row's, openmp:1.
   const std::string before_colon = program.name.substr(0, program.name.find(':'));
-  if (std::ranges::find(known_, before_colon, &BackendInfo::name) != known_.end())
+  if (std::ranges::find(known_, before_colon, &BackendInfo::name) != known_.end() ||
+      (is_shipped(before_colon) && !is_same(program.folder, shipped_folder())))
     throw UsageError("{} has the same name as mssim's backend {}; rename it", shown(program.program),
                      program.name);
   for (const std::unique_ptr<Row>& row : rows_) {
     if (row->program.name != program.name) continue;
-    if (row->program.program == program.program && row->program.command == program.command &&
-        row->program.folder == program.folder)
-      return row->info;
+    if (is_same(row->program, program)) return row->info;
     throw UsageError("there are two backends called {}, {} and {}; rename one of them", program.name,
                      shown(row->program.program), shown(program.program));
   }
@@ -415,6 +459,10 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
     const BackendProgram* program = info->program;
     if (!program || info->threads > 0) continue;  // the row with the requested number has the program
     BackendProgramRecord record{.name = program->name, .command = program->command};
+    for (const std::string& variable : program->environment) {
+      const std::size_t equals = variable.find('=');
+      record.environment.emplace_back(variable.substr(0, equals), variable.substr(equals + 1));
+    }
     if (program->in_ranks) {
       const RankCount count = ranks_of(*program, execution);
       record.ranks = count.ranks;

@@ -52,6 +52,9 @@ struct OwnBackendOptions {
   std::optional<double> limit_s;     ///< for every answer; none: as described, or 120 s
 };
 
+/// Whether the backend of that name is a program that comes with mssim.
+bool is_shipped(const std::string& name);
+
 /// The name of the row of a backend that was requested by this name or path.
 std::string row_name(const std::string& asked);
 
@@ -106,11 +109,14 @@ class BackendChoice {
   std::vector<const BackendInfo*> with_variants(const std::vector<const BackendInfo*>& rows,
                                                 std::span<const std::string_view> names);
 
-  /// All backends described in --backend-folder and the user's own folder. Throws like require().
-  std::vector<const BackendInfo*> described() { return described_in(folders_); }
+  /// All backends described in --backend-folder and the user's own folder. Throws like require(); if `broken`
+  /// is given, leaves those out for which it would throw, and adds the sentences to `broken`.
+  std::vector<const BackendInfo*> described(std::vector<std::string>* broken = nullptr) {
+    return described_in(folders_, broken);
+  }
 
-  /// Backends that come with mssim as separate programs. Throws like require().
-  std::vector<const BackendInfo*> shipped();
+  /// Backends that come with mssim as separate programs. Throws like described().
+  std::vector<const BackendInfo*> shipped(std::vector<std::string>* broken = nullptr);
 
   /// Requested backends that are not rows of the table.
   std::vector<const BackendInfo*> own() const;
@@ -124,7 +130,8 @@ class BackendChoice {
     BackendInfo info;
   };
 
-  std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders);
+  std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders,
+                                               std::vector<std::string>* broken);
   const BackendInfo& add(BackendProgram program);
   const BackendInfo& add_file(const std::filesystem::path& file);
   /// The row for a name with a colon; null if there is none. Throws UsageError.

@@ -33,6 +33,7 @@ constexpr std::string_view notice =
 
 void remember(int signal) {
   note_ending_signal(signal);
+  release_ending_signals(remember);  // a second one ends the process, of whichever kind it is
   static_cast<void>(!::write(STDERR_FILENO, notice.data(), notice.size()));
 }
 
@@ -123,7 +124,7 @@ void tell_of_opencl() {
   if (!offer.note.empty()) std::cerr << "mssim: " << offer.note << '\n';
 }
 
-StopRequest::StopRequest() : signals_(remember, static_cast<int>(SA_RESTART | SA_RESETHAND)) {}
+StopRequest::StopRequest() : signals_(remember, SA_RESTART) {}
 
 StopRequest::~StopRequest() {
   signals_.restore();

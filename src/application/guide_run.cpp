@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <system_error>
 
 #include "application/console.h"
 #include "application/outputs.h"
@@ -68,9 +70,13 @@ std::vector<SceneSpec> asked_scenes(const GuideOptions& options) {
     if (std::holds_alternative<GarmentSpec>(spec.content))
       throw UsageError(spec.name +
                        " is a garment, which mssim guide does not measure: name a cloth or bodies");
-    if (std::ranges::find(scenes, spec.name, &SceneSpec::name) == scenes.end())
-      scenes.push_back(std::move(spec));
+    const bool known = std::ranges::any_of(scenes, [&](const SceneSpec& other) {
+      std::error_code error;
+      return other.name == spec.name && std::filesystem::equivalent(other.file, spec.file, error);
+    });
+    if (!known) scenes.push_back(std::move(spec));
   }
+  require_distinct_names(scenes);
   if (scenes.empty()) throw UsageError("there is nothing to measure: name a --scene");
   return scenes;
 }

@@ -17,6 +17,7 @@
 #include "integrators/stability.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
+#include "text/error.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -66,6 +67,15 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
 PreparedScene prepare_scene(SceneSpec spec) {
   const SceneParts parts = read_parts(spec);
   return prepare_scene(std::move(spec), parts);
+}
+
+void require_distinct_names(const std::vector<SceneSpec>& scenes) {
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene)
+    for (auto other = scenes.begin(); other != scene; ++other)
+      if (other->name == scene->name)
+        throw UsageError("there are two scenes called {}, {} and {}; name one of them, or rename a file",
+                         printable(scene->name), printable(other->file.string()),
+                         printable(scene->file.string()));
 }
 
 void warn_of_note(const PreparedScene& scene) {

@@ -31,6 +31,9 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts);
 /// Prepares a scene, reading its parts. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(SceneSpec spec);
 
+/// Throws UsageError if two scenes have one name, by which rows and results are told apart.
+void require_distinct_names(const std::vector<SceneSpec>& scenes);
+
 /// Prints the scene's note, if any, to stderr.
 void warn_of_note(const PreparedScene& scene);
 

@@ -137,6 +137,9 @@ void RunRecorder::finish_after(const std::function<void()>& simulation) {
     } catch (const Interrupted&) {
       finish();
       throw;
+    } catch (const BackendFailure&) {
+      finish();
+      throw;
     }
     finish();
   } catch (const WriteError& error) {
@@ -145,6 +148,7 @@ void RunRecorder::finish_after(const std::function<void()>& simulation) {
 }
 
 void RunRecorder::finish() {
+  if (energies_.empty()) return;  // files without a frame are removed
   wait_for_frame();
   if (curve_) curve_->close();
   if (trace_) trace_->close();
@@ -398,6 +402,9 @@ int run_scene(RunOptions options) {
   const Integrator& integrator = require_integrator(options.integrator);
   BackendChoice choice(with_garment_backends(table_backends()), options.own_backends, {options.scene});
   BackendInfo info = choice.require(options.backend);
+  if (info.in_double && options.precision == "single")
+    throw UsageError("--precision single cannot be used with --backend {}: leave one of them out",
+                     options.backend);
   info.in_double |= options.precision == "double";
   require_use_of_ranks(options.execution, {&info});
   require_device(options.execution, {&info});

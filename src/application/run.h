@@ -93,9 +93,9 @@ class RunRecorder {
   const std::vector<EnergySample>& energies() const { return energies_; }
 
   /// Runs `simulation`, which records frames, and finishes the files. It finishes them even if the simulation
-  /// blows up or is interrupted, because the earlier frames are good. Prints the names of the written files
-  /// to stderr. If a file cannot be written, the files keep their temporary names and all frames recorded
-  /// before, and the WriteError says so. Rethrows the exceptions of `simulation`.
+  /// blows up, is interrupted or its program fails, because the earlier frames are good. Prints the names of
+  /// the written files to stderr. If a file cannot be written, the files keep their temporary names and all
+  /// frames recorded before, and the WriteError says so. Rethrows the exceptions of `simulation`.
   void finish_after(const std::function<void()>& simulation);
 
  private:
@@ -123,7 +123,7 @@ struct RunOptions {
   std::string backend = "openmp";
   OwnBackendOptions own_backends;
   std::string integrator = "semi-euler";
-  std::string precision = "single";
+  std::string precision;  ///< "single" or "double"; empty: that of the backend's row
   std::optional<double> dt_s;
   std::optional<double> duration_s;  ///< default_duration_s if not given
   std::optional<double> fps;         ///< frames per simulated second, 60 if not given

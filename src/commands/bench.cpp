@@ -37,11 +37,16 @@ struct BenchRequest : BenchOptions {
   SummaryFormat format = SummaryFormat::table;
 };
 
+/// The format of a listing of these rows; `github` has none.
+ListingFormat listing_format(SummaryFormat format) {
+  return format == SummaryFormat::csv    ? ListingFormat::csv
+         : format == SummaryFormat::json ? ListingFormat::json
+                                         : ListingFormat::table;
+}
+
 std::string text_of(const Table& table, SummaryFormat format) {
   if (table.rows.empty() || format == SummaryFormat::github) return "";
-  return to_text(table, format == SummaryFormat::csv    ? ListingFormat::csv
-                        : format == SummaryFormat::json ? ListingFormat::json
-                                                        : ListingFormat::table);
+  return to_text(table, listing_format(format));
 }
 
 /// "opencl, hybrid ran on DEVICE", for each OpenCL device.
@@ -92,8 +97,21 @@ std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
   return text_of(structure_rows(rows), format);
 }
 
+/// Throws UsageError for a plan of two tables in a format of one.
+void require_one_table(const BenchPlan& plan, SummaryFormat format) {
+  if (format != SummaryFormat::csv && format != SummaryFormat::json) return;
+  if (plan.described.empty() || plan.timed.empty()) return;
+  throw UsageError(
+      "--format csv and json are of one table, and sizes and times are two: ask for --suite {} alone, and "
+      "for "
+      "the others without it",
+      std::ranges::find(suites(), false, &Suite::timed)->name);
+}
+
 /// Prints the plan: what would be measured, and the expected time.
-void tell_plan(const BenchPlan& plan) {
+void tell_plan(const BenchPlan& plan, SummaryFormat format) {
+  if (format == SummaryFormat::github)
+    throw UsageError("--format github is of times, which --dry-run does not measure: leave one of them out");
   const ExpectedTime all = total(times_of(plan.timed));
   const double rounds = expected_rounds(plan);
   const auto seconds = [&](const ExpectedTime& time) { return std::lround(std::ceil(time.with(rounds))); };
@@ -105,6 +123,10 @@ void tell_plan(const BenchPlan& plan) {
                {"combinations", scene.backends.size() * plan.settings.integrators.size()},
                {"rounds", std::lround(rounds)},
                {"expected_s", seconds(scene.time)}});
+  if (format != SummaryFormat::table) {
+    std::cout << to_text(table, listing_format(format));
+    return;
+  }
   for (const UnbuiltScene& scene : plan.described)
     std::cout << scene.spec.name << ": not timed; its structure is shown\n";
   std::cout << to_text(table);
@@ -158,7 +180,7 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
   std::cerr << "mssim: ";
   if (!stopped)
     std::cerr << "results are in " << folder;
-  else if (results.rows().empty() && plan.output.overwrite)
+  else if (results.rows().empty() && results.are_in_folder())
     std::cerr << "nothing was measured yet; earlier results are still in " << folder;
   else if (results.rows().empty())
     std::cerr << "nothing was measured yet; --resume continues";
@@ -206,9 +228,10 @@ int run_guide_suite(const BenchRequest& options) {
 int run(const BenchRequest& options) {
   if (options.suite == guide_suite) return run_guide_suite(options);
   BenchPlan plan = plan_of(options);
+  require_one_table(plan, options.format);
   TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
   if (options.dry_run) {
-    tell_plan(plan);
+    tell_plan(plan, options.format);
     return exit_ok;
   }
   BenchResults results(plan);
@@ -283,7 +306,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
   arguments.add_number(
       "--time-budget SECONDS", options->time_budget_s,
       "Time limit for the measurement, which takes as many rounds as fit; traces take extra time",
-      positive_number());
+      time_budget());
   arguments.add_number("--fps N", options->fps,
                        fmt::format("Also time {} single frames of 1/N s for each combination, after its "
                                    "samples (columns frame_...), which takes extra time",
@@ -297,7 +320,8 @@ std::function<int()> declare_bench(Arguments& arguments) {
   arguments.add_flag("--new-references", options->new_references,
                      "Neither use double-precision references of earlier runs nor keep new ones");
   arguments.add_flag("--dry-run", options->dry_run,
-                     "Print what would be measured and about how long it would take, then exit");
+                     "Print what would be measured and about how long it would take, then exit; counts all "
+                     "rounds, also those that --resume would keep");
   arguments.add("--out FOLDER", options->output.folder,
                 "Folder for the results: tables, samples, provenance");
   const Argument resume =

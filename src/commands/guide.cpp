@@ -28,7 +28,7 @@ std::function<int()> declare_guide(Arguments& arguments) {
   arguments.add_number(
       "--time-budget SECONDS", options->time_budget_s,
       "Time for all scenes, about; too little for a recommendation: exit code 1 (default: 90 for each)",
-      positive_number());
+      time_budget());
   arguments.add("--out FOLDER", options->folder,
                 "Folder for the results: guide.md, tables as CSV, provenance");
   arguments.add_flag("--overwrite", options->overwrite, "Replace the results that the folder has");

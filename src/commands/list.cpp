@@ -78,7 +78,8 @@ std::string steps_of(const BackendInfo& backend) {
 Table list_backends(const ListOptions& options) {
   Table table;
   BackendChoice choice(with_garment_backends(table_backends()), options.own_backends);
-  for (const BackendInfo* backend : every_backend(choice)) {
+  std::vector<std::string> broken;
+  for (const BackendInfo* backend : every_backend(choice, broken)) {
     const std::string reason = unavailable_reason(*backend, options.execution);
     table.add({{"backend", backend->name},
                {"steps", steps_of(*backend)},
@@ -87,6 +88,7 @@ Table list_backends(const ListOptions& options) {
                {"reason", reason.empty() ? Cell() : Cell(reason)},
                {"description", backend->description}});
   }
+  for (const std::string& reason : broken) std::cerr << "mssim: a backend is not shown: " << reason << '\n';
   return table;
 }
 

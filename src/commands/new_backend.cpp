@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "application/choices.h"
 #include "backends/backends.h"
 #include "commands/command.h"
 #include "platform/files.h"
@@ -68,7 +69,7 @@ void require_usable(const std::string& name) {
     throw UsageError("\"" + printable(name) +
                      "\" cannot be a backend's name: give at most 64 letters, digits, _ and -, the first a "
                      "letter, without .py or .cpp");
-  if (find_backend(name) != nullptr)
+  if (find_backend(name) != nullptr || is_shipped(name))
     throw UsageError("mssim has a backend {} already (mssim list backends): give another name", name);
   if (std::ranges::find(needed_modules, name) != needed_modules.end())
     throw UsageError(name + " is the name of a module that backends need: give another name");

@@ -147,16 +147,17 @@ std::vector<std::string> names_and_files_in(std::string_view argument) {
 
 std::vector<std::string> scene_names() { return mapped<std::string>(shipped_scenes(), &SceneSpec::name); }
 
-std::vector<const BackendInfo*> every_backend(BackendChoice& choice) {
+std::vector<const BackendInfo*> every_backend(BackendChoice& choice, std::vector<std::string>& broken) {
   std::vector<const BackendInfo*> all = with_garment_backends(table_backends());
-  std::ranges::copy(choice.shipped(), std::back_inserter(all));
-  std::ranges::copy(choice.described(), std::back_inserter(all));
+  std::ranges::copy(choice.shipped(&broken), std::back_inserter(all));
+  std::ranges::copy(choice.described(&broken), std::back_inserter(all));
   return all;
 }
 
 std::vector<std::string> backend_names() {
   BackendChoice choice(with_garment_backends(table_backends()), {});
-  return mapped<std::string>(every_backend(choice), &BackendInfo::name);
+  std::vector<std::string> broken;  // have no names
+  return mapped<std::string>(every_backend(choice, broken), &BackendInfo::name);
 }
 
 std::vector<std::string> integrator_names() {
@@ -202,6 +203,8 @@ void require_free(const std::filesystem::path& file, std::string_view option, bo
                      printable(file.string(), 1000), option);
 }
 
+ValueRule time_budget() { return number_between(0.001, 1e8); }
+
 std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& options,
                                         std::vector<int>* threads, std::vector<std::string>* sets) {
   std::vector<Argument> of_backends;
@@ -220,7 +223,11 @@ std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& 
                            whole_number(1, most_ranks)));
   of_backends.push_back(
       arguments.add("--launcher COMMAND", options.launcher,
-                    "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)"));
+                    "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)",
+                    [](const std::string& text) -> std::string {
+                      if (text.find_first_not_of(" \t\r\n") != std::string::npos) return "";
+                      return fmt::format("\"{}\" names no program", printable(text));
+                    }));
   of_backends.push_back(
       arguments.add("--device N|NAME", options.device,
                     "OpenCL device: its number or a part of its name or platform (see mssim list devices)"));

@@ -76,8 +76,8 @@ std::vector<std::string> names_and_files_in(std::string_view argument);
 std::vector<std::string> scene_names();
 
 /// Every backend that a command may use: the rows of `choice`'s tables, those that come with mssim, and those
-/// that the user has described. Throws like BackendChoice::require.
-std::vector<const BackendInfo*> every_backend(BackendChoice& choice);
+/// that the user has described. `broken` gets a sentence for each description that cannot be used.
+std::vector<const BackendInfo*> every_backend(BackendChoice& choice, std::vector<std::string>& broken);
 
 /// The names of every backend, and of every integrator.
 std::vector<std::string> backend_names();
@@ -100,6 +100,9 @@ void refuse_options(std::string_view command, std::initializer_list<std::pair<st
 
 /// Throws UsageError if there is such a file, unless it is to be replaced. `option` names it, or its folder.
 void require_free(const std::filesystem::path& file, std::string_view option, bool overwrite);
+
+/// Accepts the value of --time-budget, s: at most three years, which the nanoseconds of a clock can count.
+ValueRule time_budget();
 
 /// Declares --threads, --ranks, --launcher, --device, --memory, --roots and --instruction-set. If `threads`
 /// is given, --threads takes several numbers into it; if `sets` is given, --instruction-set takes several

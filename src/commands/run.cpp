@@ -19,7 +19,8 @@ std::function<int()> declare_run(Arguments& arguments) {
       "Frames per simulated second of the trace, the energy curve and the pictures (default: 60)");
   arguments.add(
       "--precision WORD", options->precision,
-      "single, or double with --backend serial, or openmp and an explicit integrator (default: single)",
+      "single, or double with --backend serial, or openmp and an explicit integrator (default: that of "
+      "the backend, which is single unless it is called NAME:double)",
       one_of("precision", {"single", "double"}));
   arguments.add("--trace FILE", options->files.trace,
                 "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView next to it");

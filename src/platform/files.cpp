@@ -365,13 +365,17 @@ fs::path data_folder() {
   return folder;
 }
 
-fs::path cache_folder(std::string_view name) {
-  // The XDG base directory specification requires relative paths to be ignored.
-  const char* xdg = std::getenv("XDG_CACHE_HOME");
-  if (xdg && *xdg == '/') return fs::path(xdg) / "mssim" / name;
+fs::path xdg_folder(const char* variable, std::string_view in_home) {
+  const char* xdg = std::getenv(variable);
+  if (xdg && *xdg == '/') return xdg;
   const char* home = std::getenv("HOME");
-  if (home && *home == '/') return fs::path(home) / ".cache" / "mssim" / name;
+  if (home && *home == '/') return fs::path(home) / in_home;
   return {};
+}
+
+fs::path cache_folder(std::string_view name) {
+  const fs::path folder = xdg_folder("XDG_CACHE_HOME", ".cache");
+  return folder.empty() ? folder : folder / "mssim" / name;
 }
 
 fs::path helper_program(std::string_view name) { return own_prefix() / "libexec" / "mssim" / name; }

@@ -157,6 +157,10 @@ void remove_temporary_folder_of_process();
 /// std::runtime_error with one sentence if it is missing.
 std::filesystem::path data_folder();
 
+/// A folder of the user by the XDG base directory specification: the value of `variable`, or `in_home` in the
+/// home folder; empty if the user has neither. Relative paths are ignored, as the specification requires.
+std::filesystem::path xdg_folder(const char* variable, std::string_view in_home);
+
 /// The folder of that name in mssim's part of the user's cache folder, $XDG_CACHE_HOME or ~/.cache; empty if
 /// the user has neither.
 std::filesystem::path cache_folder(std::string_view name);

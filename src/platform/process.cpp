@@ -309,6 +309,15 @@ int noted_ending_signal() { return noted; }
 
 int take_ending_signal() { return noted.exchange(0); }
 
+void release_ending_signals(void (*handler)(int signal)) {
+  for (const int signal : ending_signals) {
+    struct sigaction action {};
+    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != handler) continue;
+    action.sa_handler = SIG_DFL;
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
 EndingSignals::EndingSignals(void (*handler)(int signal), int flags) {
   for (std::size_t i = 0; i < ending_signals.size(); ++i) {
     ::sigaction(ending_signals[i], nullptr, &before_[i]);

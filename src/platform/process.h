@@ -95,6 +95,9 @@ int noted_ending_signal();
 /// Takes the noted signal and clears the note; 0 if there is none.
 int take_ending_signal();
 
+/// Lets each ending signal that calls `handler` end this process again. Async-signal-safe.
+void release_ending_signals(void (*handler)(int signal));
+
 /// While it lives, the ending signals call a handler, except ignored ones (nohup), which stay ignored.
 class EndingSignals {
  public:

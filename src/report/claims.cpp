@@ -32,7 +32,7 @@ void visit_test(FieldVisitor& fields, ClaimTest& test) {
   fields.text({"fast", "The backend that is said to be faster."}, Presence::required, test.fast);
   fields.text({"slow", "The backend that it is compared with."}, Presence::required, test.slow);
   fields.texts({"integrators", "The integrators that decide (default: the paper's three)."},
-               Presence::optional, 1, 3, test.integrators);
+               Presence::optional, 1, 3, longest_text, test.integrators);
   fields.text({"slow_integrator", "Integrator of `slow` (default: that of `fast`)."}, Presence::optional,
               test.slow_integrator);
   fields.text(

@@ -1,11 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "application/console.h"
 #include "application/outputs.h"
-#include "tests/support/files_fixture.h"
+#include "tests/support/output_fixture.h"
 #include "text/error.h"
 #include "text/text.h"
 
@@ -40,6 +41,21 @@ TEST(ProgressText, NeverTakesTheLastColumn) {
 TEST(ProgressText, SaysNothingOfTimeWhileNobodyKnowsIt) {
   const Progress begun{"mine", 1, 1, "references", 0, {}};
   EXPECT_EQ(progress_text(begun, 40, true), "mine   0 %  references");
+}
+
+TEST(StopRequest, LetsASecondSignalOfAnotherKindEndTheProcess) {
+  const auto signals = [](int second) {
+    return status_in_child([second]() -> int {
+      std::signal(SIGHUP, SIG_IGN);
+      const StopRequest stop;
+      std::raise(SIGINT);
+      std::raise(second);
+      ::_exit(stop.requested() ? 7 : 8);
+    });
+  };
+  EXPECT_TRUE(WIFSIGNALED(signals(SIGTERM)));
+  EXPECT_EQ(WTERMSIG(signals(SIGTERM)), SIGTERM);
+  EXPECT_EQ(WEXITSTATUS(signals(SIGHUP)), 7) << "what was ignored stays ignored";
 }
 
 // No file that a command writes is another one that it writes or reads.

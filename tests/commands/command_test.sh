@@ -25,6 +25,7 @@ expect 2 'serial or openmp, not "hybrid"' run --scene cloth2500 --backend hybrid
 expect 2 'garment .* --backend serial, not "openmp"' run --scene jeans1k --backend openmp --precision double
 expect 2 'implicit .* --backend serial, not "openmp:double"' run --scene cloth2500 --backend openmp:double --integrator newton-euler
 ends 0 run --scene cloth2500 --backend openmp --precision double --duration 0.01
+expect 2 'precision single cannot be used with --backend openmp:double' run --scene cloth2500 --backend openmp:double --precision single
 
 # Rows in double precision differ from the reference by their roundings only.
 ends 0 bench --scene cloth2500,torus-small --backend serial:double,openmp:double --integrator rk4 --threads 1,2 \
@@ -51,6 +52,13 @@ ends 0 bench --scene cloth350k --backend serial --integrator rk4 --rounds 1 --dr
 diff "$work/without" "$work/out" || fail "--dry-run forecasts frames that are not timed"
 ends 0 bench --suite table2 --dry-run
 [ ! -e "$work/never" ] || fail "--dry-run has made a folder"
+ends 0 bench --scene cloth2500 --dry-run --format csv
+[ "$(cut -d, -f1 "$work/out" | xargs)" = 'scene cloth2500' ] || fail "--dry-run --format csv: $(cat "$work/out")"
+expect 2 'github is of times, which --dry-run does not measure' bench --scene cloth2500 --dry-run --format github
+for format in csv json; do
+  expect 2 'of one table, .*: ask for --suite table2 alone' bench --suite table2 --scene cloth2500 --format $format --out "$work/never"
+  [ ! -e "$work/never" ] || fail "a folder is made for what is refused"
+done
 expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite table1 --time-budget 5
 expect 2 'time-budget' bench --scene cloth2500 --time-budget nan
 

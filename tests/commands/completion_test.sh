@@ -7,6 +7,7 @@ completions=$2/src/completion
 export XDG_CONFIG_HOME=$work/config
 mkdir -p "$work/config/mssim/backends" "$work/pages" "$work/here/few" "$work/here/fewer-folders" "$work/here/two words"
 echo '{"command": ["true"], "description": "my own"}' >"$work/config/mssim/backends/mine.json"
+echo '{' >"$work/config/mssim/backends/broken.json" # costs the others nothing
 cd "$work/here"
 touch few.json fewer.json
 

@@ -75,6 +75,11 @@ grep -q '^Take \(semi-euler\|rk4\) on serial with a step of ' "$work/programs/gu
 
 expect 2 '^mssim: --scene NAME|FILE,... is missing: give .*list scenes.*; see mssim guide --help$' guide
 expect 2 'jeans1k is a garment' guide --scene jeans1k
+mkdir "$work/other"
+cp "$work/tiny.json" "$work/other/tiny.json"
+expect 2 "two scenes called tiny, $work/tiny.json and $work/other/tiny.json; name one of them" guide --scene "$work/tiny.json,$work/other/tiny.json"
+ends 0 bench --suite guide --scene "$work/tiny.json,$work/./tiny.json" --dry-run
+[ "$(grep -c '^tiny ' "$work/out")" -eq 1 ] || fail "one file is two scenes: $(cat "$work/out")"
 expect 2 '^mssim: --overwrite needs the folder of an earlier run' guide --scene cloth2500 --overwrite
 
 # The suite is the same for many scenes.

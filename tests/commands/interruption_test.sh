@@ -85,6 +85,10 @@ for signal in INT:130 KILL:137; do
   [ "$signal" = KILL:137 ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
   diff -r before int || fail "--overwrite that is ended by SIG$signal before it has a row changes what is there"
 done
+begins bench --scene cloth350k --backend serial --out new --overwrite
+soon 60 grep -q 'cloth350k (1 of 1)' err || fail "no scene is begun"
+is_ended 130 INT
+grep -q 'nothing was measured yet; --resume continues' err || fail "--overwrite of a new folder: $(cat err)"
 ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite
 [ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"
 [ "$(wc -l <int/samples.csv)" -eq 2 ] || fail "--overwrite left samples"
@@ -159,3 +163,11 @@ is_ended 130 INT
 h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"
 frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)
 [ "$frames" -ge 1 ] && [ "$(grep -c '^[0-9]' dress.csv)" -eq "$frames" ] || fail "$frames frames, energies: $(cat dress.csv)"
+
+# A second signal ends it at once, also one of another kind and within a frame, which takes half a minute here.
+begins run --scene cloth40k --backend serial --duration 100 --fps 1 --trace twice.h5
+soon 60 test -e twice.h5.part || fail "no trace is begun"
+kill -INT "$process"
+soon 10 grep -q 'a second signal stops at once' err || fail "SIGINT: $(cat err)"
+is_ended 143 TERM
+[ "$(grep -c 'a second signal stops at once' err)" -eq 1 ] || fail "a second signal is only noted: $(cat err)"

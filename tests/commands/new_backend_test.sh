@@ -46,7 +46,9 @@ expect 2 'NAME: "" is empty: give a value' new-backend --language python -- ''
 for name in mine.py a/b ../b 2fast 'two words' -x.y "$(printf 'a%.0s' {1..65})"; do
   expect 2 'cannot be a backend.s name: give at most 64 letters, ' new-backend --language python -- "$name"
 done
-expect 2 'mssim has a backend openmp already (mssim list backends): give another name' new-backend openmp --language c++
+for name in openmp mpi mpi-copies; do
+  expect 2 "mssim has a backend $name already (mssim list backends): give another name" new-backend $name --language c++
+done
 expect 2 'numpy is the name of a module that backends need' new-backend numpy --language python
 # Modules of Python's library, which the example imports, or what it imports does.
 for name in struct tempfile hashlib; do

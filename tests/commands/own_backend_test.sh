@@ -75,12 +75,15 @@ row huge-costs 'failed: latency_us is not finite'
 [ "$(find wrong/programs -type f | wc -l)" -eq 2 ] || fail "wrong/programs holds $(ls wrong/programs)"
 
 # A finished folder is left as it is; another program under the same name is another result.
+describe floods '"environment": {"A": "1"}'
 ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again
+grep -A 1 '"environment": {' again/provenance.json | grep -q '"A": "1"' || fail "the provenance does not tell of a description's variables"
 cp again/timings.csv before
 ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 cmp -s before again/timings.csv || fail "--resume changes a finished folder"
-describe floods '"environment": {"A": "1"}'
-ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+describe floods '"environment": {"A": "2"}'
+expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+expect 2 'the program floods is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --verified again
 printf '{"command": ["%s"]}' "$work/spring_list" >backends/floods.json
 expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 mkdir again/programs/mine
@@ -130,6 +133,8 @@ describe here '"description": "a list of springs", "scenes": ["bodies"], "integr
 cp backends/here.json config/mssim/backends/mine.json
 ends 0 list backends --backend-folder backends --format csv
 grep -q '^here,bodies,,true,,a list of springs$' "$work/out" && grep -q '^mine,bodies,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
+XDG_CONFIG_HOME=config HOME=$work ends 0 list backends --format csv
+! grep '^mine,' "$work/out" || fail "a relative XDG_CONFIG_HOME counts"
 ends 3 "${bench[@]}" --backend mine
 warns 'mine, semi-euler: unsupported: it does not step cloths$'
 cp "$2/scenes/cloth2500.json" small.json
@@ -138,12 +143,27 @@ ends 0 bench --scene ./small.json --backend beside --integrator semi-euler --rou
 expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder backends
 expect 2 'there are two backends called here' "${bench[@]}" --backend here --backend-folder backends,twin
 expect 2 "has the same name as mssim's backend serial" "${bench[@]}" --backend serial --backend-folder twin
-mkdir -p odd
+mkdir odd
 for name in 'openmp:1' 'serial:double' 'x,y'; do
   printf '{"command": ["../spring_list"]}' >"odd/$name.json"
-  expect 2 "$name.json: in the name of a backend" list backends --backend-folder odd
-  rm "odd/$name.json"
+  expect 2 "$name.json: in the name of a backend" "${bench[@]}" --backend "./odd/$name.json"
 done
+# One that cannot be used costs no other its place in a list, nor in a message.
+cp wrong.json odd/broken.json
+cp backends/here.json odd
+ends 0 list backends --backend-folder odd
+says '^here '
+for reason in 'broken.json: /comand is not a known key' 'openmp:1.json: in the name of a backend' 'x,y.json: in the name of a backend'; do
+  warns "a backend is not shown: .*$reason"
+done
+expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder odd
+expect 2 'broken.json: /comand is not a known key' "${bench[@]}" --backend broken --backend-folder odd
+# One file in two spellings is one backend, and no other has the name of one of mssim's.
+ends 0 "${bench[@]}" --backend "./spring_list,$work/spring_list" --out spellings
+[ "$(column_of spellings/timings.csv backend | xargs)" = spring_list ] || fail "one file is two backends: $(cat spellings/timings.csv)"
+cp spring_list mpi
+expect 2 "has the same name as mssim's backend mpi; rename it" "${bench[@]}" --backend ./mpi
+expect 2 './spring_list:2 has a suffix, .*: give ./spring_list, .*--threads 1,2' "${bench[@]}" --backend ./spring_list:2
 expect 2 '/comand is not a known key' "${bench[@]}" --backend ./wrong.json
 expect 3 'there is no program ./nothing' "${bench[@]}" --backend ./nothing
 expect 3 'wrong.txt .*chmod +x' "${bench[@]}" --backend ./wrong.txt
@@ -157,3 +177,8 @@ ends 0 run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fal
 grep -q ' spring_list ' "$work/out" || fail "run says: $(cat "$work/out")"
 expect 1 'exits ended with exit code 3 before it answered' run --scene cloth2500 --backend exits --backend-folder backends
 nothing_left "run"
+# The frames before a failure are kept: the start and those of two requests.
+ends 1 run --scene cloth2500 --backend exits --backend-folder backends --duration 0.02 --fps 1000 --trace cut.h5 --energy-curve cut.csv
+warns 'exits ended with exit code 3 before it answered "step '
+warns 'wrote cut.h5 and cut.xdmf'
+[ -s cut.h5 ] && [ ! -e cut.h5.part ] && [ "$(grep -c '^[0-9]' cut.csv)" -eq 3 ] || fail "a failure costs frames: $(ls cut*; cat cut.csv)"

@@ -74,9 +74,16 @@ expect 2 '^mssim: --threads: "1,2" is not a whole number from 1 to 4096;' run --
 expect 2 '^mssim: --threads 4000 is too many for the ' bench --scene cloth2500 --threads 1,4000
 expect 2 '^mssim: a list of --threads cannot be used with --suite guide' bench --suite guide --threads 1,2
 expect 2 '^mssim: WHAT: unknown word "scnes" (did you mean scenes?): known are ' list scnes
+for command in bench guide; do
+  expect 2 '^mssim: --time-budget: "1e10" is not a number from 0.001 to 1e+08;' $command --scene cloth2500 --time-budget 1e10
+done
+expect 2 '^mssim: --launcher: "  " names no program; see mssim bench --help$' bench --scene cloth2500 --backend mpi --launcher '  '
 expect 2 '^mssim: --precision: unknown precision "half": known are single and double;' run --scene cloth2500 --precision half
 expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all
 expect 2 '^mssim: unknown integrator "euler" (did you mean .*semi-euler.*explicit-euler' bench --scene cloth2500 --integrator euler
+expect 2 '^mssim: serial:doubel: unknown suffix "doubel" (did you mean double?): known are each and double$' bench --scene cloth2500 --backend serial:doubel
+expect 2 'openmp:doubel: unknown suffix "doubel" (did you mean double?): known are each, double, .* and a number from 1 to 4096$' \
+  bench --scene cloth2500 --backend openmp:doubel
 expect 2 'unknown backend "gpu" (did you mean opencl?)' bench --scene cloth2500 --backend gpu
 touch mine.py
 expect 2 'unknown backend "mine.py": .*\./mine.py$' bench --scene cloth2500 --backend mine.py

@@ -25,6 +25,17 @@ TEST_F(AtomicFileTest, ReplacesTheOldTextAndLeavesNothingElse) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
 }
 
+TEST(XdgFolder, IsThatOfTheVariableOrInTheHomeFolder) {
+  const KeptVariables kept{"HOME", "XDG_CONFIG_HOME"};
+  ::setenv("HOME", "/home/jane", 1);
+  ::setenv("XDG_CONFIG_HOME", "/etc/jane", 1);
+  EXPECT_EQ(xdg_folder("XDG_CONFIG_HOME", ".config"), "/etc/jane");
+  ::setenv("XDG_CONFIG_HOME", "relative", 1);
+  EXPECT_EQ(xdg_folder("XDG_CONFIG_HOME", ".config"), "/home/jane/.config");
+  ::setenv("HOME", "relative", 1);
+  EXPECT_EQ(xdg_folder("XDG_CONFIG_HOME", ".config"), "");
+}
+
 TEST_F(AtomicFileTest, WritesIntoTheWorkingFolderToo) {
   EXPECT_EQ(exit_of_child([&] {
               std::filesystem::current_path(folder());

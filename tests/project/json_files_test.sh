@@ -66,6 +66,8 @@ ends 0 measure jeans4k --format json
 valid listings#measure out
 ends 0 bench --suite table2 --format json
 valid listings#bench-structure out
+ends 0 "${bench[@]}" --dry-run --format json
+valid listings#bench-plan out
 
 # Descriptions of backends.
 optional=description,scenes,integrators,environment,time_limit_s,install,processes,states

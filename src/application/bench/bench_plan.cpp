@@ -164,16 +164,6 @@ BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comp
   return settings;
 }
 
-/// Rows and results are told apart by their scene's name.
-void require_distinct_names(const std::vector<SceneSpec>& scenes) {
-  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene)
-    for (auto other = scenes.begin(); other != scene; ++other)
-      if (other->name == scene->name)
-        throw UsageError("there are two scenes called {}, {} and {}; name one of them, or rename a file",
-                         printable(scene->name), printable(other->file.string()),
-                         printable(scene->file.string()));
-}
-
 void require_traceable(const SceneSpec& spec) {
   if (std::holds_alternative<GarmentSpec>(spec.content))
     throw UsageError("--trace cannot be used with " + spec.name +

@@ -31,6 +31,18 @@ void BenchRows::replace(const std::string& scene, std::vector<ResultRow> rows) {
               rows_.end());
 }
 
+namespace {
+
+/// Whether the row has the frames that are asked for, or says why it has none.
+bool has_frames(const BenchSettings& settings, const ResultRow& row) {
+  if (!settings.fps) return true;
+  const int steps = steps_of_frame(*settings.fps, row.dt_s);
+  return row.frame_steps == static_cast<std::uint64_t>(steps) ||
+         row.note.find(untimed_frames(steps)) != std::string::npos;
+}
+
+}  // namespace
+
 bool is_finished(const BenchSettings& settings, const std::string& scene,
                  const std::vector<ResultRow>& earlier) {
   if (earlier.empty()) return false;
@@ -42,8 +54,9 @@ bool is_finished(const BenchSettings& settings, const std::string& scene,
     throw UsageError("the folder has other backends or integrators of " + scene +
                      " than this command: --resume needs the same ones; choose another --out, "
                      "or --overwrite to measure again");
-  return std::ranges::all_of(
-      earlier, [&](const ResultRow& row) { return row.status != "ok" || row.rounds >= settings.rounds; });
+  return std::ranges::all_of(earlier, [&](const ResultRow& row) {
+    return row.status != "ok" || (row.rounds >= settings.rounds && has_frames(settings, row));
+  });
 }
 
 namespace {

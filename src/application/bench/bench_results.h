@@ -28,8 +28,9 @@ class BenchRows {
   std::vector<ResultRow> rows_;
 };
 
-/// Whether an earlier run completed every requested combination of the scene. Throws UsageError if it
-/// measured other combinations, because samples of different rows are compared round by round.
+/// Whether an earlier run completed every requested combination of the scene, frames included. Throws
+/// UsageError if it measured other combinations, because samples of different rows are compared round by
+/// round.
 bool is_finished(const BenchSettings& settings, const std::string& scene,
                  const std::vector<ResultRow>& earlier);
 
@@ -61,6 +62,8 @@ class BenchResults {
 
   const std::vector<ResultRow>& rows() const { return rows_.all(); }
   std::vector<ResultRow> of_scene(const std::string& name) const { return rows_.of_scene(name); }
+  /// Whether there is a folder with results, also those of an earlier run that stay for now.
+  bool are_in_folder() const { return folder_ && folder_->has_results(); }
   /// The names of the files of the scene's rows (file_stems), unique among those of all scenes.
   std::vector<std::string> stems_of_scene(const std::string& name) const;
 

@@ -191,7 +191,8 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
       std::vector<ResultRow> rows = results.of_scene(job.name);
       if (plan.output.trace && !stop.requested() &&
           write_bench_traces(job, scene, rows, results.stems_of_scene(job.name), plan.provenance,
-                             std::filesystem::path(plan.output.folder) / "traces", plan.output.resume, watch))
+                             std::filesystem::path(plan.output.folder) / traces_name, plan.output.resume,
+                             watch))
         results.keep(job.name, std::move(rows));
     } catch (const Interrupted& interrupted) {
       // An interrupted wait for a program; the completed rounds are kept.

@@ -22,6 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_words = 64;
+/// Longest word of a command and value of a variable, in characters: a path, or a list of them.
+constexpr std::size_t longest_word = 4096;
 constexpr std::string_view cloth = "cloth", bodies = "bodies";
 constexpr std::string_view ranks = "ranks";
 constexpr std::array<std::string_view, 2> process_words{"one", ranks};
@@ -43,14 +45,14 @@ struct Description {
 void visit(FieldVisitor& fields, Description& description) {
   fields.texts(
       {"command", "The program, in PATH or with a slash relative to this file's folder, and its arguments."},
-      Presence::required, 1, most_words, description.command);
+      Presence::required, 1, most_words, longest_word, description.command);
   fields.text({"description", "One line for mssim list backends."}, Presence::optional, description.text);
   fields.texts({"scenes", "Kinds of scenes that it steps: cloth, bodies (default: both)."},
-               Presence::optional, 1, 2, description.scenes);
+               Presence::optional, 1, 2, longest_text, description.scenes);
   fields.texts({"integrators", "Supported integrators (default: all explicit ones)."}, Presence::optional, 1,
-               all_integrators.size(), description.integrators);
+               all_integrators.size(), longest_text, description.integrators);
   fields.named_texts({"environment", "Environment variables in addition to mssim's."}, most_words,
-                     description.environment);
+                     longest_word, description.environment);
   fields.optional_number({"time_limit_s", "Time limit of an answer, s (default: 120)."},
                          description.time_limit_s, above(0, longest_time_limit_s));
   fields.text({"install", "What to do if the program is missing."}, Presence::optional, description.install);
@@ -115,7 +117,7 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   }
   program.integrators = std::move(description.integrators);
   for (const auto& [name, value] : description.environment) {
-    if (name.empty() || name.find_first_of("=\n") != std::string::npos)
+    if (name.empty() || name.find('=') != std::string::npos || escaped(name) != name)
       refuse(file, "/environment", "has the name \"" + printable(name) + "\": give a variable's name");
     program.environment.push_back(name + '=' + value);
   }

@@ -138,7 +138,8 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
   };
   std::vector<OpenclDevice> fitting;
   for (const OpenclDevice& device : devices)
-    if (has_it(device.name) || has_it(device.platform)) fitting.push_back(device);
+    if (has_it(device.name) || has_it(device_name(device.name)) || has_it(device.platform))
+      fitting.push_back(device);
   if (fitting.empty())
     throw Unavailable("no OpenCL device has \"{}\" in its name or its platform's; there are: {}", wanted,
                       listing(devices));

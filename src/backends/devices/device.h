@@ -41,8 +41,9 @@ struct OpenclDevice {
 /// "cpu", "gpu" or "other".
 std::string_view name_of(OpenclDeviceType type);
 
-/// The device that `wanted` names: empty for the first, its number, or a part of its name or its platform's
-/// in any case. Throws Unavailable if there is none or if several match; the sentence lists the devices.
+/// The device that `wanted` names: empty for the first, its number, or in any case a part of its name, its
+/// name in tables (device_name) or its platform's. Throws Unavailable if there is none or if several match;
+/// the sentence lists the devices.
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
 
 /// Nodes or springs per work-item that suit the device: wide vectors for a CPU, whose driver does not

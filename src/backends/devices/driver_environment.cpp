@@ -66,14 +66,6 @@ fs::path default_cache() {
   return "/tmp/pocl/kcache";
 }
 
-/// mssim's own folder in the user's cache folder, or nothing if the user has none.
-fs::path own_cache() {
-  if (const fs::path caches = value_of("XDG_CACHE_HOME"); caches.is_absolute())
-    return caches / "mssim" / "pocl";
-  if (const fs::path home = value_of("HOME"); home.is_absolute()) return home / ".cache" / "mssim" / "pocl";
-  return {};
-}
-
 }  // namespace
 
 std::vector<RegisteredDriver> registered_drivers() {
@@ -111,7 +103,7 @@ PoclCache provide_pocl_cache() {
     if (std::getenv(cache_variable) != nullptr) setenv(cache_variable, usual.c_str(), 1);
     return cache;
   }
-  if (const fs::path own = own_cache(); !own.empty() && obstacle_to_writing(own).empty()) {
+  if (const fs::path own = cache_folder("pocl"); !own.empty() && obstacle_to_writing(own).empty()) {
     setenv(cache_variable, own.c_str(), 1);
     return cache;
   }

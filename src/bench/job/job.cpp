@@ -7,7 +7,6 @@
 
 #include "backends/devices/drivers.h"
 #include "statistics/statistics.h"
-#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -310,8 +309,8 @@ void time_frames(Combination& combination, const SceneJob& job, const std::funct
   const int at_a_stretch = combination.most_steps / steps;
   if (at_a_stretch == 0)
     return append_sentence(combination.row.note,
-                           fmt::format("frames of {} are not timed: samples of this row end after {}",
-                                       pluralize(steps, "step"), pluralize(combination.most_steps, "step")));
+                           fmt::format("{}: samples of this row end after {}", untimed_frames(steps),
+                                       pluralize(combination.most_steps, "step")));
   std::vector<double> frames_ms;
   attempt(combination, [&] {
     while (frames_ms.size() < timed_frames) {

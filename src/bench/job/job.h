@@ -20,6 +20,7 @@
 #include "garment/fitting/fitting.h"
 #include "platform/counters.h"
 #include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -77,6 +78,11 @@ inline constexpr int timed_frames = 300;
 /// Steps of `dt_s` (s) in a frame of 1 / `fps` s of simulated time, rounded; at least 1.
 inline int steps_of_frame(double fps, double dt_s) {
   return static_cast<int>(std::clamp(std::round(1 / (fps * dt_s)), 1.0, 1e9));
+}
+
+/// Begins the note of a row whose samples are too short for a frame of `steps`.
+inline std::string untimed_frames(int steps) {
+  return fmt::format("frames of {} are not timed", pluralize(steps, "step"));
 }
 
 /// Number of combinations of a scene.

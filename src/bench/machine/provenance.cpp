@@ -299,6 +299,8 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
       continue;  // not a file
     }
   }
+  for (auto& [name, value] : record.environment) value = escaped(without_home(value));
+  std::ranges::sort(record.environment);
   const auto same_name = [](const FileHash& a, const FileHash& b) { return a.name == b.name; };
   std::ranges::sort(record.files, {}, &FileHash::name);
   record.files.erase(std::unique(record.files.begin(), record.files.end(), same_name), record.files.end());

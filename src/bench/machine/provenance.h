@@ -96,6 +96,8 @@ struct BackendProgramRecord {
   std::string name;
   std::vector<std::string> command = {};  ///< as its user wrote it
   std::vector<FileHash> files = {};       ///< the program, and its arguments that are files, by name
+  /// Variables that its description sets, by name. The user's home folder is ~.
+  std::vector<std::pair<std::string, std::string>> environment = {};
   int ranks = 0;              ///< processes that it runs in; 0: one, with the run's number of threads
   int rank_threads = 0;       ///< per process
   std::string launcher = {};  ///< the command that starts them; empty: the default
@@ -104,7 +106,8 @@ struct BackendProgramRecord {
 };
 
 /// Origin of measured numbers, in enough detail to judge them and to repeat the measurement. Names neither
-/// the user nor the host, and only those environment variables that control threads.
+/// the user nor the host, and only those environment variables that control threads or that descriptions of
+/// programs set.
 struct Provenance {
   BuildInfo build;
   std::optional<std::uint64_t> program_fnv1a_64;  ///< of the program's file; none from older versions

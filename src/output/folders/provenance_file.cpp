@@ -157,12 +157,24 @@ Machine read_machine(const Place& document) {
   return machine;
 }
 
+std::vector<std::pair<std::string, std::string>> read_variables(const Place& environment) {
+  return environment.members(
+      [](const std::string& name, const Place& value) { return std::pair(name, value.text()); });
+}
+
+json variables_json(const std::vector<std::pair<std::string, std::string>>& variables) {
+  json environment = json::object();
+  for (const auto& [name, value] : variables) environment[name] = value;
+  return environment;
+}
+
 BackendProgramRecord read_program(const std::string& name, const Place& program) {
   BackendProgramRecord record{
       name, program["command"].list([](const Place& word) { return word.text(); }),
       program["files_fnv1a_64"].members([](const std::string& file, const Place& value) {
         return FileHash{file, value.hash()};
       })};
+  if (const auto environment = program.find("environment")) record.environment = read_variables(*environment);
   if (const auto processes = program.find("processes")) {
     record.ranks = (*processes)["ranks"].count<int>();
     record.rank_threads = (*processes)["threads_a_rank"].count<int>();
@@ -177,6 +189,7 @@ json programs_json(const std::vector<BackendProgramRecord>& programs) {
     json files = json::object();
     for (const FileHash& file : program.files) files[file.name] = to_hex(file.fnv1a_64);
     json& record = all[program.name] = {{"command", program.command}, {"files_fnv1a_64", files}};
+    if (!program.environment.empty()) record["environment"] = variables_json(program.environment);
     if (program.ranks > 0)
       record["processes"] = {
           {"ranks", program.ranks}, {"threads_a_rank", program.rank_threads}, {"launcher", program.launcher}};
@@ -193,8 +206,7 @@ Provenance read_document(const Place& document) {
   provenance.machine = read_machine(document);
   provenance.threads = threads["asked_for"].count<int>();
   provenance.allowed_cpus = threads["allowed_cpus"].list([](const Place& cpu) { return cpu.count<int>(); });
-  provenance.thread_environment = threads["environment"].members(
-      [](const std::string& name, const Place& value) { return std::pair(name, value.text()); });
+  provenance.thread_environment = read_variables(threads["environment"]);
   provenance.opencl_devices = document["opencl_devices"].list(text_of);
   if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
   if (const auto program = document.known("program_fnv1a_64")) provenance.program_fnv1a_64 = program->hash();
@@ -215,8 +227,7 @@ Provenance read_document(const Place& document) {
 json to_json(const Provenance& provenance) {
   const BuildInfo& build = provenance.build;
   const Machine& machine = provenance.machine;
-  json environment = json::object(), scenes = json::object();
-  for (const auto& [name, value] : provenance.thread_environment) environment[name] = value;
+  json scenes = json::object();
   for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = to_hex(scene.fnv1a_64);
   return {
       {"format_version", folder_format_version},
@@ -250,7 +261,7 @@ json to_json(const Provenance& provenance) {
       {"threads",
        {{"asked_for", provenance.threads},
         {"allowed_cpus", provenance.allowed_cpus},
-        {"environment", environment}}},
+        {"environment", variables_json(provenance.thread_environment)}}},
       {"device_memory", provenance.device_memory.empty() ? json() : json(provenance.device_memory)},
       {"opencl_devices", provenance.opencl_devices},
       {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},

@@ -51,6 +51,16 @@ std::string output_of(const std::string& stem) {
   return (fs::path(programs_name) / (stem + ".txt")).string();
 }
 
+/// The files of a row's trace, also those that an ended run has not completed.
+std::vector<std::string> traces_of(const std::string& stem) {
+  std::vector<std::string> names;
+  for (const char* extension : {".h5", ".xdmf"}) {
+    const fs::path file = fs::path(traces_name) / (stem + extension);
+    names.insert(names.end(), {file.string(), temporary_of(file).string()});
+  }
+  return names;
+}
+
 /// At most the first `bytes` bytes of a text, without a partial character.
 std::string beginning_of(std::string text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
@@ -96,11 +106,13 @@ bool ResultFolder::has_results() const {
 void ResultFolder::clear() const {
   std::vector<std::string> names;
   try {
-    if (!fs::is_symlink(folder_ / programs_name))
-      for (const std::string& stem : file_stems(read_timings(CsvTable(folder_ / timings_name))))
-        names.push_back(output_of(stem));
+    const bool own_programs = !fs::is_symlink(folder_ / programs_name);
+    for (const std::string& stem : file_stems(read_timings(CsvTable(folder_ / timings_name)))) {
+      if (own_programs) names.push_back(output_of(stem));
+      std::ranges::move(traces_of(stem), std::back_inserter(names));
+    }
   } catch (const CsvError&) {
-    // Rows that cannot be read do not name outputs.
+    // Rows that cannot be read do not name their files.
   }
   for (const RowFile& file : row_files) names.emplace_back(file.name);
   names.emplace_back(github_name);
@@ -111,8 +123,8 @@ void ResultFolder::clear() const {
   for (const std::string& name : names)
     if (::unlink((folder_ / name).c_str()) != 0 && errno != ENOENT && errno != ENOTDIR)
       throw WriteError(write_failure(folder_ / name, "removing it", errno));
-  // Other files among the outputs of programs belong to the user.
-  ::rmdir((folder_ / programs_name).c_str());
+  // Other files in these folders belong to the user.
+  for (const char* name : {programs_name, traces_name}) ::rmdir((folder_ / name).c_str());
 }
 
 void ResultFolder::go_on_with(const Provenance& earlier) {

@@ -18,6 +18,8 @@ inline constexpr const char *timings_name = "timings.csv", *samples_name = "samp
                             *garment_name = "garment.csv";
 /// Subfolder with the output of programs that are backends, one file per row, named by file_stems() and .txt.
 inline constexpr const char* programs_name = "programs";
+/// Subfolder with the traces of a bench, of each row one named by file_stems() and .h5, and its .xdmf.
+inline constexpr const char* traces_name = "traces";
 
 /// Names of each row's files without extension: SCENE-BACKEND-INTEGRATOR. If an earlier row has that name, or
 /// it is too long or not a valid file name, it is shortened and ends in a hash of the three.

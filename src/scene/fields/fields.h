@@ -48,7 +48,7 @@ struct Section {
   FieldList fields;
 };
 
-/// Longest text of a scene file, in characters.
+/// Longest text of a scene file, in characters; that of a field with a limit of its own may be longer.
 inline constexpr std::size_t longest_text = 200;
 
 /// Visits the fields of one JSON object. Fields not marked optional are required; keys that are not visited
@@ -68,11 +68,11 @@ class FieldVisitor {
                        std::uint32_t maximum) = 0;
   /// One line of at most `longest_text` characters.
   virtual void text(const Field& field, Presence presence, std::string& target) = 0;
-  /// A list of `least` to `most` texts like those of text().
+  /// A list of `least` to `most` lines of at most `longest` characters.
   virtual void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
-                     std::vector<std::string>& target) = 0;
-  /// An object of at most `most` such texts, with arbitrary keys.
-  virtual void named_texts(const Field& field, std::size_t most,
+                     std::size_t longest, std::vector<std::string>& target) = 0;
+  /// An object of at most `most` such lines, with arbitrary keys.
+  virtual void named_texts(const Field& field, std::size_t most, std::size_t longest,
                            std::vector<std::pair<std::string, std::string>>& target) = 0;
   /// One of several words; the target becomes its index.
   virtual void choice(const Field& field, Presence presence, std::span<const std::string_view> words,

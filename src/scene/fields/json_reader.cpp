@@ -227,11 +227,11 @@ class JsonReader final : public FieldVisitor {
   }
 
   void text(const Field& field, Presence presence, std::string& target) override {
-    if (const json* value = find(field.key, presence, one_text))
-      target = text_of(json_pointer(pointer_, field.key), *value);
+    if (const json* value = find(field.key, presence, one_text(longest_text)))
+      target = text_of(json_pointer(pointer_, field.key), *value, longest_text);
   }
 
-  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
+  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most, std::size_t longest,
              std::vector<std::string>& target) override {
     const std::string wanted = fmt::format("a list, [ ... ], of {} to {} texts", least, most);
     const json* value = find(field.key, presence, wanted);
@@ -240,10 +240,10 @@ class JsonReader final : public FieldVisitor {
     require_length(list, *value, least, most, wanted);
     target.clear();
     for (std::size_t i = 0; i < value->size(); ++i)
-      target.push_back(text_of(json_pointer(list, std::to_string(i)), (*value)[i]));
+      target.push_back(text_of(json_pointer(list, std::to_string(i)), (*value)[i], longest));
   }
 
-  void named_texts(const Field& field, std::size_t most,
+  void named_texts(const Field& field, std::size_t most, std::size_t longest,
                    std::vector<std::pair<std::string, std::string>>& target) override {
     const std::string wanted = fmt::format("an object, {{ ... }}, of at most {} texts", most);
     const json* value = find(field.key, Presence::optional, wanted);
@@ -252,7 +252,7 @@ class JsonReader final : public FieldVisitor {
     const std::string object = json_pointer(pointer_, field.key);
     target.clear();
     for (const auto& [name, text] : value->items())
-      target.emplace_back(name, text_of(json_pointer(object, name), text));
+      target.emplace_back(name, text_of(json_pointer(object, name), text, longest));
   }
 
   void vector(const Field& field, Presence presence, Vec3d& target, const Range& each) override {
@@ -382,14 +382,18 @@ class JsonReader final : public FieldVisitor {
     return number_of(json_pointer(list, std::to_string(i)), value[i], each, "a number " + described(each));
   }
 
-  std::string text_of(std::string_view pointer, const json& value) const {
+  std::string text_of(std::string_view pointer, const json& value, std::size_t longest) const {
     if (value.is_string()) {
       const auto& text = value.get_ref<const std::string&>();
       const bool one_line =
           std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
-      if (one_line && count_characters(text) <= longest_text) return text;
+      if (one_line && count_characters(text) <= longest) return text;
     }
-    fail(pointer, fmt::format("is {}: give {}", described(value), one_text));
+    fail(pointer, fmt::format("is {}: give {}", described(value), one_text(longest)));
+  }
+
+  static std::string one_text(std::size_t longest) {
+    return fmt::format("one line of text of at most {} characters", longest);
   }
 
   double number_of(std::string_view pointer, const json& value, const Range& range,
@@ -398,9 +402,6 @@ class JsonReader final : public FieldVisitor {
       if (const auto number = value.get<double>(); contains(range, number)) return number;
     fail(pointer, "is " + described(value) + ": give " + wanted);
   }
-
-  inline static const std::string one_text =
-      fmt::format("one line of text of at most {} characters", longest_text);
 
   const std::filesystem::path& file_;
   std::string pointer_;

@@ -26,8 +26,8 @@ ordered_json array_of(ordered_json items, std::size_t least, std::size_t most) {
 
 ordered_json words(std::span<const std::string_view> known) { return {{"type", "string"}, {"enum", known}}; }
 
-ordered_json one_text() {
-  return {{"type", "string"}, {"maxLength", longest_text}, {"pattern", "^[^\\u0000-\\u001f]*$"}};
+ordered_json one_text(std::size_t longest = longest_text) {
+  return {{"type", "string"}, {"maxLength", longest}, {"pattern", "^[^\\u0000-\\u001f]*$"}};
 }
 
 /// Describes one object.
@@ -51,14 +51,14 @@ class SchemaWriter final : public FieldVisitor {
   void text(const Field& field, Presence presence, std::string& /*target*/) override {
     add(field, presence, one_text());
   }
-  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
+  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most, std::size_t longest,
              std::vector<std::string>& /*target*/) override {
-    add(field, presence, array_of(one_text(), least, most));
+    add(field, presence, array_of(one_text(longest), least, most));
   }
-  void named_texts(const Field& field, std::size_t most,
+  void named_texts(const Field& field, std::size_t most, std::size_t longest,
                    std::vector<std::pair<std::string, std::string>>& /*target*/) override {
     add(field, Presence::optional,
-        {{"type", "object"}, {"maxProperties", most}, {"additionalProperties", one_text()}});
+        {{"type", "object"}, {"maxProperties", most}, {"additionalProperties", one_text(longest)}});
   }
   void choice(const Field& field, Presence presence, std::span<const std::string_view> known,
               std::uint32_t& /*target*/) override {

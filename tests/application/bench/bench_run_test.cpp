@@ -59,6 +59,25 @@ TEST(BenchRows, AreFinishedWhenEachHasItsRoundsOrCannotRun) {
   EXPECT_THROW(is_finished(settings, "a", rows), UsageError);
 }
 
+TEST(BenchRows, AreNotFinishedWithoutTheFramesThatAreAskedFor) {
+  BenchSettings settings;
+  settings.rounds = 3;
+  settings.backends = {find_backend("serial")};
+  settings.integrators = {find_integrator("semi-euler")};
+  std::vector<ResultRow> rows{row("a", "serial")};
+  rows[0].dt_s = 1e-3;
+  EXPECT_TRUE(is_finished(settings, "a", rows));
+  settings.fps = 60;
+  EXPECT_FALSE(is_finished(settings, "a", rows));
+  rows[0].frame_steps = 33;
+  EXPECT_FALSE(is_finished(settings, "a", rows)) << "those of 30 frames per second";
+  rows[0].frame_steps = 17;
+  EXPECT_TRUE(is_finished(settings, "a", rows));
+  rows[0].frame_steps = {};
+  rows[0].note = "draped; frames of 17 steps are not timed: samples of this row end after 9 steps";
+  EXPECT_TRUE(is_finished(settings, "a", rows));
+}
+
 ResultRow row(const std::string& backend, const std::string& status, bool verified) {
   ResultRow row;
   row.scene = "cloth";

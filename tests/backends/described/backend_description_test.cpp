@@ -88,8 +88,22 @@ TEST_F(BackendDescriptionTest, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(refusal(R"({"command": ["sh"], "time_limit_s": 0})"), HasSubstr("/time_limit_s is 0: give"));
   EXPECT_THAT(refusal(R"({"command": ["sh"], "environment": {"A=B": "1"}})"),
               HasSubstr("/environment has the name \"A=B\""));
+  for (const char* control : {"\\u0000", "\\n", "\\u001b"})
+    EXPECT_THAT(refusal(fmt::format(R"({{"command": ["sh"], "environment": {{"A{}B": "1"}}}})", control)),
+                HasSubstr("/environment has the name \"A\\"));
   EXPECT_THAT(refusal(R"({"command": ["sh"], "environment": {"A": 1}})"), HasSubstr("/environment/A is 1"));
   EXPECT_THAT(refusal(""), HasSubstr("is empty: give the description of a backend"));
+}
+
+TEST_F(BackendDescriptionTest, MayHaveLongWordsAndVariables) {
+  const auto with = [](std::size_t length) {
+    const std::string text(length, 'x');
+    return fmt::format(R"({{"command": ["sh", "{0}"], "environment": {{"PATHS": "{0}"}}}})", text);
+  };
+  EXPECT_EQ(parse(with(4096)).environment.front().size(), 4096 + std::string("PATHS=").size());
+  EXPECT_THAT(refusal(with(4097)), HasSubstr("give one line of text of at most 4096 characters"));
+  EXPECT_THAT(refusal(R"({"command": ["sh"], "description": ")" + std::string(201, 'x') + "\"}"),
+              HasSubstr("at most 200 characters"));
 }
 
 TEST_F(BackendDescriptionTest, ReadsFiles) {

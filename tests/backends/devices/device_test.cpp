@@ -44,6 +44,9 @@ TEST(OpenclDevice, IsChosenByNumberOrByAPartOfItsNameOrPlatformInAnyCase) {
   EXPECT_EQ(choose_opencl_device(some_devices(), "graphics").number, 1);
   EXPECT_EQ(choose_opencl_device(some_devices(), "PROCESSOR 7").number, 0);
   EXPECT_EQ(choose_opencl_device(some_devices(), "free opencl").number, 2);
+  std::vector<OpenclDevice> devices = some_devices();
+  devices[1].name = "pthread-skylake-avx512-AMD EPYC";
+  EXPECT_EQ(choose_opencl_device(devices, "PoCL on AMD EPYC").number, 1) << "as tables show it";
 }
 
 TEST(OpenclDevice, ThatDoesNotExistIsAnsweredWithWhatThereIs) {

@@ -91,6 +91,20 @@ TEST_F(ResultFiles, GoOnUnderTheProvenanceOfTheRunThatAddsRows) {
   EXPECT_THAT(read_file(file), AllOf(HasSubstr("2030"), HasSubstr(made_up_provenance().started_utc)));
 }
 
+TEST_F(ResultFiles, ThatAreReplacedTakeTheirTracesAlong) {
+  const std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  const std::string stem = "traces/" + file_stems(rows).front();
+  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).write(rows);
+  for (const char* end : {".h5", ".xdmf", ".h5.part", ".xdmf.part", "-mine.h5"}) put(stem + end, "old");
+  ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+  results.replace_results();
+  results.begin();
+  EXPECT_TRUE(fs::exists(folder() / (stem + ".h5"))) << "nothing new is measured yet";
+  results.write(rows);
+  EXPECT_EQ(text_of(folder() / (stem + "-mine.h5")), "old") << "it is the user's";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "traces"), {}), 1);
+}
+
 TEST_F(ResultFiles, SamplesAreListedRoundByRound) {
   EXPECT_EQ(samples_csv(std::vector{measured_row("serial", 0.5, 1.0)}),
             "scene,backend,integrator,round,steps,ms_per_step,outlier\n"
