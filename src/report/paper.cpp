@@ -158,8 +158,8 @@ std::string timing_of(const ReportFolder& folder) {
   return text + fmt::format(
                     "Times are medians of the samples. Their intervals contain the median of the "
                     "distribution with a probability of at least \\qty{{{}}}{{\\percent}}, whatever the "
-                    "distribution; their ends are samples~\\cite{{davidnagaraja2003}}. With fewer than six "
-                    "rounds they are the smallest and the largest sample.\nA speed-up is the median of the "
+                    "distribution; their ends are samples~\\cite{{davidnagaraja2003}}. Fewer than six rounds "
+                    "have none.\nA speed-up is the median of the "
                     "ratios within each round, with an interval of the same kind.",
                     decimal(100 * interval_confidence));
 }
