@@ -97,14 +97,18 @@ int compare_runs(const CompareOptions& options) {
   const MeasuredRun base = read(options.ab.base), next = read(options.ab.next);
   require_comparable(base, next, options.force);
   const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
+  tell("only BASE has", comparison.only_base);
+  tell("only NEW has", comparison.only_new);
+  tell("without a verified time in BASE", comparison.untimed);
+  if (comparison.rows.empty() && !comparison.untimed.empty())
+    throw UsageError(
+        "there is nothing to compare: {} has no verified time of what both have; measure it again",
+        options.ab.base);
   if (comparison.rows.empty())
     throw UsageError(
         "there is nothing to compare: " + options.ab.base + " and " + options.ab.next +
         " have no measured combination in common; measure the same scenes, backends and integrators");
   if (!options.out.empty()) make_folder(options.out);
-  tell("only BASE has", comparison.only_base);
-  tell("only NEW has", comparison.only_new);
-  tell("without a verified time in BASE", comparison.untimed);
   return report(comparison, options);
 }
 

@@ -75,6 +75,7 @@ std::vector<FolderFile> pdfs_of(std::span<const FolderFile> files) {
   for (const FolderFile& chart : files) {
     if (!is_chart(chart)) continue;
     write_file_atomically(from, chart.text);
+    fs::remove(to);  // of the chart before this one
     const ChildResult result = run({*program,
                                     {"--format=pdf", "--output=" + to.string(), from.string()},
                                     {},
@@ -83,6 +84,11 @@ std::vector<FolderFile> pdfs_of(std::span<const FolderFile> files) {
                                     most_seconds});
     if (const std::string failure = failed_end(result, "converting " + chart.name); !failure.empty())
       throw Error(exit_unavailable, "rsvg-convert " + failure);
+    if (!fs::exists(to))
+      throw Error(exit_unavailable,
+                  fmt::format("{} has ended without an error, but has written no PDF of {}; install Debian's "
+                              "package librsvg2-bin again",
+                              printable(program->string()), chart.name));
     pdfs.push_back({pdf_of(chart), read_file(to)});
   }
   return pdfs;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t most_claims = 100;
 constexpr std::array<std::string_view, 2> paper_words{"Hong et al. (2016)", "Vassilev"};
+constexpr std::string_view too_few_rounds = "too few rounds for an interval";
 /// Stands for the shipped garments, for which no numbers are published.
 constexpr std::string_view table_of_garments = "figure6";
 constexpr std::array<std::string_view, 2> device_words{"any", "GPU"}, of_words{"each", "average"};
@@ -85,7 +86,7 @@ bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& 
 std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
                                       const std::optional<RatioInterval>& b) {
   if (!a || !b) return std::nullopt;
-  return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low};
+  return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low, a->covers && b->covers};
 }
 
 /// The ratios of a test, for each scene and integrator with both times. `ratio` takes a scene and the
@@ -164,27 +165,33 @@ std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const Measured
 
 RatioInterval geometric_mean_of(const std::vector<RatioInterval>& ratios) {
   const auto mean = [&](double RatioInterval::*end) { return geometric_mean(mapped<double>(ratios, end)); };
-  return {mean(&RatioInterval::ratio), mean(&RatioInterval::low), mean(&RatioInterval::high)};
+  return {mean(&RatioInterval::ratio), mean(&RatioInterval::low), mean(&RatioInterval::high),
+          std::ranges::all_of(ratios, &RatioInterval::covers)};
 }
 
 void judge_ratios(JudgedClaim& judged, const ClaimTest& test, const std::vector<RatioInterval>& all) {
   const std::vector<RatioInterval> tested = test.of_average ? std::vector{geometric_mean_of(all)} : all;
-  const auto above =
-      std::ranges::count_if(tested, [&](const RatioInterval& one) { return one.low > test.at_least; });
-  const auto below =
-      std::ranges::count_if(tested, [&](const RatioInterval& one) { return one.high < test.at_least; });
+  const auto on_side = [&](int side) {
+    return std::ranges::count_if(
+        tested, [&](const RatioInterval& one) { return one.side_of(test.at_least) == side; });
+  };
+  const auto above = on_side(1), below = on_side(-1);
   judged.outcome = below > 0                     ? ClaimOutcome::not_held
                    : above == std::ssize(tested) ? ClaimOutcome::held
                                                  : ClaimOutcome::undecided;
   const auto [least, most] = std::ranges::minmax(all, {}, &RatioInterval::ratio);
   judged.measured = range_of(least.ratio, most.ratio);
   if (test.of_average)
-    judged.measured += fmt::format("; geometric mean {} ({})", times(tested.front().ratio),
-                                   range_of(tested.front().low, tested.front().high));
+    judged.measured += fmt::format(
+        "; geometric mean {} ({})", times(tested.front().ratio),
+        tested.front().covers ? range_of(tested.front().low, tested.front().high) : too_few_rounds);
   else
     judged.measured +=
         fmt::format("; {}: {} above {}, {} below, {} undecided", pluralize(all.size(), "ratio"), above,
                     times(test.at_least), below, std::ssize(all) - above - below);
+  if (const auto without = std::ranges::count(all, false, &RatioInterval::covers);
+      !test.of_average && without > 0)
+    judged.measured += fmt::format(", {} of these with {}", without, too_few_rounds);
 }
 
 JudgedClaim judge_rows(const Claim& claim, const Measured& measured, std::string published = {}) {

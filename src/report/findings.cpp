@@ -47,14 +47,16 @@ Finding about_speedups(std::span<const ResultRow> rows) {
   const std::vector<const ResultRow*> pointers = pointers_to(rows);
   std::vector<std::string> near_one;
   std::string_view baseline = baseline_name;
-  std::size_t all = 0;
+  std::size_t all = 0, without = 0;
   for (const ResultRow& row : rows) {
     const ResultRow* serial = baseline_of(pointers, row);
     const auto ratio = serial == &row ? std::nullopt : times_as_fast(&row, serial);
     if (!ratio) continue;
     ++all;
     baseline = serial->backend;
-    if (ratio->side_of_one() == 0)
+    if (!ratio->covers)
+      ++without;
+    else if (ratio->side_of(1) == 0)
       near_one.push_back(
           fmt::format("{} ({} to {})", row_name(row), three_digits(ratio->low), three_digits(ratio->high)));
   }
@@ -62,11 +64,15 @@ Finding about_speedups(std::span<const ResultRow> rows) {
     return {false,
             fmt::format("There are no speed-ups: no row that counts has a row of `{}` to compare with.",
                         baseline)};
-  return {false, pluralize(all, "speed-up") + fmt::format(" over `{}`: ", baseline) +
-                     (near_one.empty()
-                          ? "no interval includes 1."
-                          : subject(near_one.size(), "interval", " includes 1", " include 1") +
-                                ", so neither backend is certainly faster: " + join(near_one, "; ") + ".")};
+  std::string text = pluralize(all, "speed-up") + fmt::format(" over `{}`", baseline);
+  if (!near_one.empty())
+    text += ": " + subject(near_one.size(), "interval", " includes 1", " include 1") +
+            ", so neither backend is certainly faster: " + join(near_one, "; ");
+  else if (without < all)
+    text += ": no interval includes 1";
+  if (without > 0)
+    text += ". " + subject(without, "speed-up", " has", " have") + " too few rounds for a 95 % interval";
+  return {false, text + "."};
 }
 
 /// The sign only repeats the word.
@@ -161,8 +167,7 @@ Table times_of(RowPointers rows, const ReportFolder& folder) {
     table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
                           look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
                           row->threads > 0 ? Cell(row->threads) : Cell(), interval_cell(*row),
-                          speedup ? Cell(speedup->ratio) : Cell(),
-                          speedup ? Cell(interval_text(speedup->low, speedup->high)) : Cell(), published,
+                          speedup ? Cell(speedup->ratio) : Cell(), ratio_interval_cell(speedup), published,
                           shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
                           verified_mark(*row)});
   }

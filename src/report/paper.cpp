@@ -82,8 +82,11 @@ void add_figures(std::vector<FolderFile>& files, const std::string& prefix, cons
 
 // Methods
 
+/// Differs wherever mssim_entry() does.
 std::string mssim_key(const Provenance& provenance) {
-  return "mssim-" + provenance.build.commit.substr(0, 12);
+  const BuildInfo& build = provenance.build;
+  return fmt::format("mssim-{}{}", knows_commit(build) ? build.commit.substr(0, 12) : build.version,
+                     build.dirty ? "-changed" : "");
 }
 
 std::string mssim_entry(const Provenance& provenance) {
@@ -155,8 +158,8 @@ std::string timing_of(const ReportFolder& folder) {
   return text + fmt::format(
                     "Times are medians of the samples. Their intervals contain the median of the "
                     "distribution with a probability of at least \\qty{{{}}}{{\\percent}}, whatever the "
-                    "distribution; their ends are samples~\\cite{{davidnagaraja2003}}. With fewer than six "
-                    "rounds they are the smallest and the largest sample.\nA speed-up is the median of the "
+                    "distribution; their ends are samples~\\cite{{davidnagaraja2003}}. Fewer than six rounds "
+                    "have none.\nA speed-up is the median of the "
                     "ratios within each round, with an interval of the same kind.",
                     decimal(100 * interval_confidence));
 }
@@ -246,7 +249,7 @@ std::string breakable_code(const std::string& code) {
 /// How to measure again.
 std::string commands_of(const ReportFolder& folder) {
   const BuildInfo& build = folder.provenance->build;
-  const bool knows_commit = build.commit != "unknown", from_page = is_from_page(folder);
+  const bool has_commit = knows_commit(build), from_page = is_from_page(folder);
   std::vector<std::string> words = folder.provenance->command_line;
   std::string command = "scripts", settings;
   if (from_page) {  // behind "mssim web" are the settings in the page's address
@@ -261,11 +264,11 @@ std::string commands_of(const ReportFolder& folder) {
   std::string text = fmt::format(
       "In a clone of mssim on Debian 12 or 13, {} installs what is missing, builds mssim and {}{}{}:\n"
       "\\begin{{quote}}\\raggedright\n{}{}\n\\end{{quote}}\n",
-      knows_commit ? "the first command selects the commit, and the second" : "this command",
+      has_commit ? "the first command selects the commit, and the second" : "this command",
       from_page ? "writes the page that measured" : "measures",
-      knows_commit ? "" : "; the results do not name the commit",
+      has_commit ? "" : "; the results do not name the commit",
       build.dirty ? "; the program that was measured had uncommitted changes" : "",
-      knows_commit ? latex_prose("`git checkout " + build.commit + "`") + "\\\\\n" : "",
+      has_commit ? latex_prose("`git checkout " + build.commit + "`") + "\\\\\n" : "",
       breakable_code(command));
   if (!settings.empty())
     text += "The page measures at once if its address ends in " + breakable_code(settings) + ".\n";
@@ -361,7 +364,8 @@ std::vector<FolderFile> paper_files(const ReportInput& input) {
     body += "\\clearpage\n";
     appendix += "\\section{Artifact: " + name + "}\n";
     add(artifact_of(folder, input, prefix), appendix);
-    if (sources.find(mssim_key(*folder.provenance)) == std::string::npos)
+    // With its entry's brace and comma: one key may begin another.
+    if (sources.find('{' + mssim_key(*folder.provenance) + ',') == std::string::npos)
       sources += mssim_entry(*folder.provenance);
   }
   files.push_back({"sources.bib", std::move(sources)});

@@ -111,16 +111,28 @@ void drop_incomplete_samples(const fs::path& file, ReportFolder& folder) {
     folder.problems.push_back(file.string() + " has no samples of " + pluralize(without, "row"));
 }
 
-/// Removes times that are not positive, which would spoil derived numbers.
-void drop_impossible_times(ReportFolder& folder) {
-  const auto is_bad = [](double ms) { return !(ms > 0); };
+/// Removes what is no time, which would spoil derived numbers, and the samples of rows that have one such. A
+/// problem names each row.
+void drop_impossible_times(const fs::path& path, ReportFolder& folder) {
+  const auto tell = [&](const char* file, const ResultRow& row, const std::string& what, double value,
+                        std::string_view left_out) {
+    folder.problems.push_back(fmt::format("{}: {} of {} is {:.6g}, {}; {} left out", (path / file).string(),
+                                          what, combination_name(row), value, not_a_time, left_out));
+  };
   for (ResultRow& row : folder.rows) {
-    if (!counts(row)) continue;
-    for (std::optional<double>* time :
-         {&row.ms_per_step, &row.ms_per_step_low, &row.ms_per_step_high, &row.speedup_vs_serial})
-      if (*time && is_bad(**time)) time->reset();
-    if (std::ranges::any_of(row.samples_ms, is_bad)) row.samples_ms.clear();
-    if (!row.ms_per_step) row.status = "failed: timings.csv has no time for it";
+    for (const TimeColumn& column : time_columns) {
+      std::optional<double>& time = row.*column.value;
+      if (!time || is_time(*time)) continue;
+      tell(timings_name, row, std::string(column.name), *time, "it is");
+      time.reset();
+    }
+    if (const auto bad = std::ranges::find_if_not(row.samples_ms, is_time); bad != row.samples_ms.end()) {
+      tell(samples_name, row, fmt::format("round {}", bad - row.samples_ms.begin() + 1), *bad,
+           "the row's samples are");
+      row.samples_ms.clear();
+      row.sample_steps.clear();
+    }
+    if (counts(row) && !row.ms_per_step) row.status = "failed: timings.csv has no time for it";
   }
 }
 
@@ -225,7 +237,7 @@ ReportFolder read_report_folder(const fs::path& path) {
     if (is_there(path / garment_name))
       read_beside(path / garment_name, folder, "the draping of garments is not shown", read_dressings);
   }
-  drop_impossible_times(folder);
+  drop_impossible_times(path, folder);
   try {
     folder.provenance = read_provenance(path / "provenance.json");
   } catch (const LaterFormatError&) {

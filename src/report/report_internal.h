@@ -22,7 +22,7 @@ std::optional<double> exponent_of(std::span<const double> x, std::span<const dou
 enum class ClaimOutcome : std::uint8_t {
   held,
   not_held,      ///< the whole interval of a ratio is below the limit
-  undecided,     ///< an interval includes the limit
+  undecided,     ///< an interval includes the limit, or there is none
   not_testable,  ///< required rows or devices are missing
 };
 
@@ -48,7 +48,7 @@ struct Finding {
 };
 
 /// Findings about devices, rows that are not verified or have no time, and speed-ups whose interval includes
-/// 1. None without rows.
+/// 1 or that have none. None without rows.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
 
 /// Name of a backend on an OpenCL device ("" for none): "opencl on the CPU", "opencl, DEVICE". `family`
@@ -88,9 +88,10 @@ Table times_of(RowPointers rows, const ReportFolder& folder);
 
 /// Explains the columns of times_of(), with the marks of a Document.
 inline constexpr std::string_view how_to_read_times =
-    "*ms per step* are medians over the rounds. Intervals contain the true median in 95 % of all cases. With "
-    "fewer than six rounds they are the smallest and the largest sample. Speed-ups are over `serial`, in a "
-    "browser over `javascript`: medians of the ratios within each round.";
+    "*ms per step* are medians over the rounds. Intervals contain the true median in 95 % of all cases; "
+    "fewer "
+    "than six rounds have none. Speed-ups are over `serial`, in a browser over `javascript`: medians of the "
+    "ratios within each round.";
 
 /// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);

@@ -29,11 +29,18 @@ Axis nodes_axis() { return {.label = "nodes", .logarithmic = true, .ticks_at_val
 
 void add_point(Series& series, std::uint64_t nodes, double y) { series.add(static_cast<double>(nodes), y); }
 
-/// The time of a row that counts, with its interval.
+/// The time of a row that counts, with its interval; without one, its ends are the time.
 void add_time(Series& series, const ResultRow& row) {
   add_point(series, row.nodes, *row.ms_per_step);
-  series.low.push_back(row.ms_per_step_low.value_or(*row.ms_per_step));
-  series.high.push_back(row.ms_per_step_high.value_or(*row.ms_per_step));
+  series.low.push_back(has_interval(row) ? *row.ms_per_step_low : *row.ms_per_step);
+  series.high.push_back(has_interval(row) ? *row.ms_per_step_high : *row.ms_per_step);
+}
+
+/// A ratio in the same way.
+void add_ratio(Series& series, double x, const RatioInterval& ratio) {
+  series.add(x, ratio.ratio);
+  series.low.push_back(ratio.covers ? ratio.low : ratio.ratio);
+  series.high.push_back(ratio.covers ? ratio.high : ratio.ratio);
 }
 
 Chart chart_of(const std::string& id, const std::string& title, const std::string& subtitle, Axis x, Axis y,
@@ -200,10 +207,7 @@ std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLe
         for (const PaperScene& scene : scenes) {
           const ResultRow* row = find_row(all, scene.name, backend.name, integrator.name);
           const auto speedup = times_as_fast(row, row != nullptr ? baseline_of(all, *row) : nullptr);
-          if (!speedup) continue;
-          add_point(measured, scene.nodes, speedup->ratio);
-          measured.low.push_back(speedup->low);
-          measured.high.push_back(speedup->high);
+          if (speedup) add_ratio(measured, static_cast<double>(scene.nodes), *speedup);
         }
         if (measured.x.empty()) continue;
         is_measured = true;
@@ -308,9 +312,7 @@ std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenan
     auto series = std::ranges::find(all, look.family, &Series::family);
     if (series == all.end()) series = all.insert(series, {.name = look.name, .family = look.family});
     if (all.size() == 2) all.front().add(of.threads, static_cast<double>(of.threads) / of.fewest_threads);
-    series->add(of.threads, speedup->ratio);
-    series->low.push_back(speedup->low);
-    series->high.push_back(speedup->high);
+    add_ratio(*series, of.threads, *speedup);
   }
   return charts;
 }
@@ -366,10 +368,12 @@ Table values_of(const Chart& chart) {
   Table table{{{chart.x.label}, {"configuration"}, {chart.y.label}, {"95 % interval", Align::right}}, {}};
   for (const Series& series : chart.series) {
     if (series.origin == Origin::reference) continue;
-    for (std::size_t i = 0; i < series.x.size(); ++i)
-      table.rows.push_back(
-          {static_cast<std::uint64_t>(series.x[i]), series.name, series.y[i],
-           series.low.empty() ? Cell() : Cell(interval_text(series.low[i], series.high[i]))});
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      // Without an interval, its ends are the value.
+      const bool is_wide = !series.low.empty() && series.low[i] < series.high[i];
+      table.rows.push_back({static_cast<std::uint64_t>(series.x[i]), series.name, series.y[i],
+                            is_wide ? Cell(interval_text(series.low[i], series.high[i])) : Cell()});
+    }
   }
   return table;
 }

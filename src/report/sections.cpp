@@ -3,6 +3,8 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "bench/results/comparison.h"
 #include "output/tables/results.h"
@@ -215,12 +217,19 @@ std::string verdict_section(const ReportInput& input) {
                 "</details>\n");
 }
 
-/// The rows without those that count but have no samples, which cannot be compared.
-std::vector<ResultRow> with_samples(const ReportFolder& folder) {
-  std::vector<ResultRow> rows;
-  std::ranges::copy_if(folder.rows, std::back_inserter(rows),
-                       [](const ResultRow& row) { return !counts(row) || !row.samples_ms.empty(); });
+/// Whether the row counts but has no samples, so that it cannot be compared.
+bool lacks_samples(const ResultRow& row) { return counts(row) && row.samples_ms.empty(); }
+
+std::vector<ResultRow> with_samples(std::vector<ResultRow> rows) {
+  std::erase_if(rows, lacks_samples);
   return rows;
+}
+
+std::vector<std::string> without_samples(std::span<const ResultRow> rows) {
+  std::vector<std::string> names;
+  for (const ResultRow& row : rows)
+    if (lacks_samples(row)) names.push_back(combination_name(row));
+  return names;
 }
 
 /// The changes from the first of two folders to the second, as in `mssim compare`, or why they cannot be
@@ -235,12 +244,21 @@ std::string changes_section(const ReportInput& input) {
   if (!unlike.empty())
     return text + paragraph("The two runs are not comparable: " + html_text(join(unlike, "; ")) + ".") +
            paragraph("<code>mssim compare --force</code> compares them anyway.");
-  const RunComparison comparison = compare(with_samples(base), with_samples(next), input.threshold);
-  if (comparison.rows.empty()) return text + paragraph("They have no measured combination in common.");
-  text += html_of(comparison_page(comparison), 3);
+  RunComparison comparison = compare(with_samples(base.rows), with_samples(next.rows), input.threshold);
+  const std::vector<std::string> base_lacks = without_samples(base.rows),
+                                 next_lacks = without_samples(next.rows);
+  const auto is_in = [](const std::vector<std::string>& names) {
+    return [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
+  };
+  std::erase_if(comparison.only_base, is_in(next_lacks));
+  std::erase_if(comparison.only_new, is_in(base_lacks));
+  text += comparison.rows.empty() ? paragraph("They have no measured combination in common.")
+                                  : html_of(comparison_page(comparison), 3);
   for (const auto& [what, combinations] :
-       {std::pair("Only BASE has", &comparison.only_base), std::pair("Only NEW has", &comparison.only_new),
-        std::pair("Without a verified time in BASE", &comparison.untimed)})
+       {std::pair("Only BASE has", &std::as_const(comparison.only_base)),
+        std::pair("Only NEW has", &std::as_const(comparison.only_new)),
+        std::pair("Without a verified time in BASE", &std::as_const(comparison.untimed)),
+        std::pair("Without samples in BASE", &base_lacks), std::pair("Without samples in NEW", &next_lacks)})
     if (!combinations->empty())
       text += paragraph(fmt::format("{}: {}.", what, html_text(join(*combinations, "; "))));
   return text;

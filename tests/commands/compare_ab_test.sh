@@ -47,6 +47,12 @@ chmod +x "$work/sleeper"
 ab 2 sleeper sleeper --time-budget 1
 warns 'sleeper bench --help has not ended within 11 s'
 
+# One whose help fails is no mssim, either.
+printf '#!/bin/sh\nexit 7\n' >"$work/stranger"
+chmod +x "$work/stranger"
+expect 2 'stranger bench --help exited with 7: give the path of an mssim program' \
+  compare --ab "$work/stranger" "$mssim" --scene cloth2500
+
 # Times that vary a little from run to run.
 # shellcheck disable=SC2016 # for the programs' own shell
 {
@@ -158,6 +164,9 @@ says 'serial .* lost  *failed: late'
 [ "$(grep -c -- '--backend serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 3 ] ||
   fail "serial is not gone on with alone"
 
+ab 0 new-steady new-both --backend openmp,serial
+says 'openmp .* same'
+warns 'only .*new-both has cloth2500, serial, semi-euler$'
 ab 0 new-partly new-both --backend openmp,serial
 says 'openmp .* same'
 warns 'new-partly has no time for .*serial.*: unsupported: no such method'

@@ -72,6 +72,11 @@ compare 1 "$work/base" "$work/lost"
 says 'openmp .* lost  *failed: step 7 is not finite'
 compare 0 "$work/lost" "$work/base"
 warns 'without a verified time in BASE: cloth2500, openmp, semi-euler'
+cp -r "$work/lost" "$work/all-lost"
+sed -i '/,serial,/s/,true,ok,/,false,failed: step 7 is not finite,/' "$work/all-lost/timings.csv"
+compare 2 "$work/all-lost" "$work/base"
+warns 'without a verified time in BASE: cloth2500, serial, semi-euler and 1 more'
+warns 'nothing to compare: .*all-lost has no verified time of what both have; measure it again'
 
 # Formats.
 compare 1 "$work/base" "$work/slower" --format markdown
@@ -124,7 +129,11 @@ expect 2 'the compiler was GNU 12.* and is GNU 13.*; the number of threads was 2
 
 # Nothing to compare is no success.
 mkdir "$work/empty"
-expect 2 'nothing to compare' compare "$work/base" "$work/other"
+compare 2 "$work/base" "$work/other"
+warns 'only BASE has: cloth2500, serial, semi-euler and 1 more'
+warns 'only NEW has: cloth2500, hybrid, semi-euler'
+warns 'nothing to compare: .* have no measured combination in common'
+[ ! -s "$work/out" ] || fail "nothing to compare, and a table: $(cat "$work/out")"
 expect 2 'empty holds no timings.csv' compare "$work/base" "$work/empty"
 echo '{}' >"$work/empty/history.jsonl"
 expect 2 'history.jsonl is a file, and its folder .*empty holds no timings.csv' compare "$work/base" "$work/empty/history.jsonl"
@@ -139,7 +148,11 @@ broken() {
 broken && sed -i 's/,0.1\([0-9]*\),$/,nan,/' "$work/broken/samples.csv"
 expect 2 'samples.csv, line [0-9]*, column ms_per_step: "nan" is not a number' compare "$work/base" "$work/broken"
 broken && sed -i 's/,10,0.1\([0-9]*\),$/,10,0,/' "$work/broken/samples.csv"
-expect 2 'openmp, semi-euler has no time above zero in round' compare "$work/base" "$work/broken"
+expect 2 'openmp, semi-euler has 0 ms in round 1, not between 1e-12 and 1e12; measure' compare "$work/base" "$work/broken"
+broken && sed -i '/,openmp,/s/^\(\([^,]*,\)\{10\}\)[^,]*/\1/' "$work/broken/timings.csv"
+expect 2 'timings.csv: cloth2500, openmp, semi-euler has no ms_per_step' compare "$work/base" "$work/broken"
+broken && sed -i '/,openmp,/s/^\(\([^,]*,\)\{11\}\)[^,]*/\11e308/' "$work/broken/timings.csv"
+expect 2 'ms_per_step_low of cloth2500, openmp, semi-euler is 1e+308, not between' compare "$work/base" "$work/broken"
 broken && sed -i '/,openmp,/d' "$work/broken/samples.csv"
 expect 2 'openmp, semi-euler has no samples' compare "$work/base" "$work/broken"
 broken && rm "$work/broken/provenance.json"

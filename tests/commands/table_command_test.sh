@@ -137,6 +137,15 @@ cp -r "$work/svg" "$work/before"
 (ulimit -f 8 && PATH=$work/no-programs ends 4 table "$results/garment/zen5" --format latex --out "$work/svg" --overwrite)
 diff -r "$work/before" "$work/svg" || fail "a paper is half new"
 
+# A program that ends well but writes nothing is not believed; nor is the PDF of the chart before taken for that of the next.
+mkdir "$work/lazy"
+# shellcheck disable=SC2016 # the program expands it
+printf '#!/bin/sh\n[ -e "$0.once" ] || { : >"$0.once" && echo %%PDF- >"${2#--output=}"; }\n' >"$work/lazy/rsvg-convert"
+chmod +x "$work/lazy/rsvg-convert"
+PATH=$work/lazy ends 3 table "$results/table1/zen4" --format latex --out "$work/never"
+warns 'lazy/rsvg-convert has ended without an error, but has written no PDF of chart.*; install'
+[ "$(wc -l <"$work/err")" -eq 1 ] || fail "more than one sentence: $(cat "$work/err")"
+
 # What a page measured: how to measure it again, and no check that the page does not make.
 ends 0 table "$results/web/zen4-swiftshader-busy" --format latex --out "$work/web"
 grep -qF 'scripts/mssim web -{}-{}out web.html' "$work/web/artifact.tex" || fail "how to make the page: $(cat "$work/web/artifact.tex")"
@@ -149,6 +158,26 @@ cp -r "$results/table1/zen4" "$work/no-commit"
 sed -i 's/"commit": "[^"]*"/"commit": "unknown"/' "$work/no-commit/provenance.json"
 ends 0 table "$work/no-commit" --format latex --out "$work/no-commit-paper"
 ! grep -q 'git checkout' "$work/no-commit-paper/artifact.tex" || fail "an unknown commit is checked out"
+
+# Each program has its own source, also those of one commit or of none. The one with changes comes first: its key begins with the other's.
+cp -r "$results/table1/zen4" "$work/changed"
+sed -i 's/"dirty": false/"dirty": true/' "$work/changed/provenance.json"
+cp -r "$work/no-commit" "$work/older"
+sed -i 's/"version": "[^"]*"/"version": "0.0.9"/' "$work/older/provenance.json"
+ends 0 table "$work/changed" "$results/table1/zen4" "$work/no-commit" "$work/older" --format latex --out "$work/four"
+[ "$(grep -o '^@misc{mssim-[^,]*' "$work/four/sources.bib" | sort -u | wc -l)" -eq 4 ] || fail "sources: $(cat "$work/four/sources.bib")"
+for key in -changed '' 0.0.9; do grep -q "^@misc{mssim-[0-9a-f.]*$key,$" "$work/four/sources.bib" || fail "no source $key"; done
+for methods in "$work"/four/*-methods.tex; do
+  grep -qF "{$(grep -o 'mssim-[0-9a-f.]*\(-changed\)\{0,1\}' "$methods" | head -n 1)," "$work/four/sources.bib" || fail "$methods cites no source"
+done
+
+# One absurd number spoils no page, and is named.
+cp -r "$results/table1/zen4" "$work/absurd"
+sed -i '2s/^\(\([^,]*,\)\{5\}\)[^,]*/\11e308/' "$work/absurd/samples.csv"
+sed -i '3s/^\(\([^,]*,\)\{11\}\)[^,]*/\11e-300/' "$work/absurd/timings.csv"
+ends 0 table "$work/absurd"
+warns 'absurd/samples.csv: round 1 of cloth.* is 1e+308, not between 1e-12 and 1e12; the row.s samples are left out'
+warns 'absurd/timings.csv: ms_per_step_low of cloth.* is 1e-300, not between'
 
 # Bodies of Table 2 have no times.
 ends 0 table "$results/table2" --format latex --out "$work/bodies"

@@ -72,3 +72,8 @@ built build/release" ]] || fail 'the worktree of a revision is used again'
 rm -rf "$repository/build/ci-regression"
 runs 1 "$old"
 [[ $(cat "$base/source") == old ]] || fail 'a worktree that was removed is made again'
+
+# A program of the user's is compared in the folder that this is run from, which the base may lack.
+mkdir "$repository/later"
+(cd "$repository/later" && runs 2 HEAD~1 --mssim "$tools/ninja")
+grep -q 'HEAD~1 has no folder later/' "$place/err" || fail 'it says which folder is missing'

@@ -49,6 +49,15 @@ refuses() {
   [[ $status == 2 && $(wc -l <"$place/out") == 1 ]] || fail "$1: exit code $status"
 }
 refuses 'an unknown argument' --all
+timings=$place/results/table1/zen4/timings.csv
+cp "$timings" "$place/timings.csv"
+sed -i 's/^\(cloth350k,.*,openmp,.*,semi-euler,[^,]*,[^,]*,\)[^,]*/\1inf/' "$timings"
+refuses 'an infinite time'
+grep -q 'inf is no number' "$place/out" || fail 'it does not name the number'
+sed 's/^cloth350k,/350k-cloth,/' "$place/timings.csv" >"$timings"
+refuses 'a scene whose name begins with a digit'
+grep -q "'350k-cloth'" "$place/out" || fail 'it does not name the scene'
+cp "$place/timings.csv" "$timings"
 sed -i '/,before,/d' "$place/results/busy_machine/study.csv"
 "$place/scripts/tabulate-results" || fail 'a study without an earlier program'
 sed -i '$s/,[^,]*$//' "$place/results/busy_machine/study.csv"

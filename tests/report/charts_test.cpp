@@ -17,7 +17,7 @@ std::vector<ResultRow> two_cloths() {
   for (const auto& [nodes, springs, ms] : {std::tuple(2500, 29004, 1.0), std::tuple(10000, 118004, 8.0)})
     for (const auto& [backend, ratio] :
          {std::pair("serial", 1.0), std::pair("openmp", 10.0), std::pair("opencl", 5.0)}) {
-      ResultRow& row = rows.emplace_back(measured_row(backend, ms / ratio, ratio));
+      ResultRow& row = rows.emplace_back(in_six_rounds(measured_row(backend, ms / ratio, ratio)));
       row.scene = "cloth" + std::to_string(nodes);
       row.nodes = static_cast<std::uint64_t>(nodes);
       row.springs_published = springs;
@@ -93,7 +93,8 @@ TEST(LookOn, NamesTheDevice) {
 }
 
 TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
-  const std::vector<ResultRow> rows = two_cloths();
+  std::vector<ResultRow> rows = two_cloths();
+  rows[2].samples_ms[0] = 0.5;  // of 2 ms of serial
   const PublishedTable table1(published_table_kinds[0]);
   const auto chart_of = [&](std::size_t count) {
     return speedup_charts(std::span(rows).first(count), legend, table1, {}, "f1").at(0);
@@ -103,7 +104,12 @@ TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
   EXPECT_TRUE(has_one_place(chart));
   EXPECT_THAT(to_text(values_of(chart), ListingFormat::csv),
               AllOf(HasSubstr("\n2500,\"GPU, Nexus 7, published\",10.65"),
-                    HasSubstr("2500,\"opencl, measured\",5.0,5.00 to 5.00")));
+                    HasSubstr("2500,\"opencl, measured\",5.0,4.00 to 5.00")));
+  rows[2].samples_ms.resize(5);
+  rows[0].samples_ms.resize(5);
+  EXPECT_THAT(to_text(values_of(chart_of(3)), ListingFormat::csv),
+              HasSubstr("2500,\"opencl, measured\",5.0,\n"))
+      << "five rounds have no interval";
   Chart changed = chart;
   changed.series.push_back({.name = "order 4", .origin = Origin::reference, .x = {2500}, .y = {1}});
   EXPECT_EQ(values_of(changed).rows.size(), values_of(chart).rows.size()) << "a reference is no value";
@@ -118,6 +124,10 @@ TEST(ScalingCharts, NameTheSlopes) {
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_TRUE(charts[0].x.logarithmic && charts[0].y.logarithmic);
   EXPECT_EQ(series(charts[0], "serial, measured, slope 1.50").high, (std::vector<double>{2, 16}));
+  std::vector<ResultRow> few = rows;
+  few[0].rounds = 5;
+  EXPECT_EQ(series(scaling_charts(few, legend, published, {}, "f1")[0], "serial, measured, slope 1.50").high,
+            (std::vector<double>{1, 16}));
   EXPECT_EQ(series(charts[0], "CPU only, Nexus 7, published, slope 1.02").y,
             (std::vector<double>{19.475, 80.48}));
   const Table slopes = slope_table(rows, legend, published);

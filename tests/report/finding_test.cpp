@@ -9,10 +9,10 @@
 namespace mssim {
 namespace {
 
-/// A row of a published cloth; in each round it takes the same time.
+/// A row of a published cloth.
 ResultRow cloth_row(std::uint64_t nodes, std::uint64_t springs_published, const std::string& backend,
                     double ms, const std::string& integrator = "semi-euler") {
-  ResultRow row = measured_row(backend, ms, std::nullopt);
+  ResultRow row = in_six_rounds(measured_row(backend, ms, std::nullopt));
   row.scene = "cloth" + std::to_string(nodes);
   row.nodes = nodes;
   row.springs_published = springs_published;
@@ -51,11 +51,18 @@ ClaimOutcome outcome_of(const std::string& name, const std::vector<ResultRow>& r
   return judged(name, rows).outcome;
 }
 
-/// A backend that is as many times as fast as another in each of three rounds.
+/// A backend that is as many times as fast as another in each round, in turn.
 ResultRow faster(ResultRow row, const ResultRow& than, const std::vector<double>& times) {
   row.samples_ms.clear();
-  for (std::size_t round = 0; round < times.size(); ++round)
-    row.samples_ms.push_back(than.samples_ms[round] / times[round]);
+  for (std::size_t round = 0; round < than.samples_ms.size(); ++round)
+    row.samples_ms.push_back(than.samples_ms[round] / times[round % times.size()]);
+  return row;
+}
+
+/// The row without its last round.
+ResultRow in_five_rounds(ResultRow row) {
+  row.rounds = 5;
+  row.samples_ms.pop_back();
   return row;
 }
 
@@ -105,6 +112,22 @@ TEST(Claims, HoldWhereEveryIntervalLiesAboveWhatTheyNeed) {
   EXPECT_EQ(with({2, 2, 2}, {0.9, 1.2, 1.3}), ClaimOutcome::undecided);
   EXPECT_EQ(with({2, 2, 2}, {0.7, 0.8, 0.9}), ClaimOutcome::not_held);
   EXPECT_EQ(with({0.9, 2, 2}, {0.7, 0.8, 1.1}), ClaimOutcome::undecided);
+}
+
+TEST(Claims, AreUndecidedByTooFewRounds) {
+  const ResultRow serial = in_five_rounds(small("serial", 1)), larger_serial = larger("serial", 1);
+  for (const double times : {2.0, 0.5}) {
+    const JudgedClaim claim = judged(
+        "threads-before-cpu", {serial, larger_serial, faster(small("threads-mutex", 1), serial, {times}),
+                               faster(larger("threads-mutex", 1), larger_serial, {2})});
+    EXPECT_EQ(claim.outcome, ClaimOutcome::undecided) << times;
+    EXPECT_THAT(claim.measured, HasSubstr("1 undecided, 1 of these with too few rounds for an interval"));
+  }
+  const ResultRow body = in_five_rounds(cloth_row(3858, 72951, "serial", 1));
+  const JudgedClaim mean =
+      judged("threads-2-on-bodies", {body, faster(cloth_row(3858, 72951, "threads-mutex", 1), body, {3})});
+  EXPECT_EQ(mean.outcome, ClaimOutcome::undecided);
+  EXPECT_THAT(mean.measured, HasSubstr("geometric mean 3.00× (too few rounds for an interval)"));
 }
 
 TEST(Claims, OfARatioNeedAllOfIt) {
@@ -268,8 +291,11 @@ TEST(RowFindings, NameRowsThatAreNotVerified) {
 TEST(RowFindings, NameSpeedUpsThatMayBeOne) {
   std::vector<ResultRow> rows{small("serial", 1), small("openmp", 0.5)};
   EXPECT_FALSE(warns(row_findings(rows, {}), "1 speed-up over `serial`: no interval"));
-  rows[1].samples_ms = {3, 0.25, 1};
-  EXPECT_FALSE(warns(row_findings(rows, {}), "`openmp` on `cloth2500`, semi-euler (0.667 to 2.00)"));
+  rows[1].samples_ms = {3, 0.25, 1, 3, 0.25, 1};
+  EXPECT_FALSE(warns(row_findings(rows, {}), "`openmp` on `cloth2500`, semi-euler (0.667 to 2.00)."));
+  for (ResultRow& row : rows) row = in_five_rounds(row);
+  EXPECT_FALSE(warns(row_findings(rows, {}),
+                     "1 speed-up over `serial`. 1 speed-up has too few rounds for a 95 % interval."));
   rows.erase(rows.begin());
   EXPECT_FALSE(warns(row_findings(rows, {}), "There are no speed-ups"));
 }
@@ -277,15 +303,30 @@ TEST(RowFindings, NameSpeedUpsThatMayBeOne) {
 TEST(TimesAsFast, TakesTheIntervalsOfTimesWhereThereAreNoPairs) {
   ResultRow row = small("openmp", 1), than = small("serial", 4);
   EXPECT_EQ(times_as_fast(&row, &than)->low, 4);
+  EXPECT_TRUE(times_as_fast(&row, &than)->covers);
   row.samples_ms.pop_back();
   const auto ratio = times_as_fast(&row, &than);
   EXPECT_EQ(ratio->ratio, 4);
   EXPECT_EQ(ratio->low, 1);
   EXPECT_EQ(ratio->high, 16);
+  EXPECT_TRUE(ratio->covers);
+  than.rounds = 5;
+  EXPECT_FALSE(times_as_fast(&row, &than)->covers);
+  than.rounds = 6;
   row.ms_per_step_low = row.ms_per_step_high = std::nullopt;
   EXPECT_EQ(times_as_fast(&row, &than)->low, 2);
+  EXPECT_FALSE(times_as_fast(&row, &than)->covers);
   row.verified = false;
   EXPECT_FALSE(times_as_fast(&row, &than));
+}
+
+TEST(TimesOf, ShowsNoIntervalOfTooFewRounds) {
+  ReportFolder folder;
+  folder.rows = {small("serial", 1), small("openmp", 0.5)};
+  const auto text = [&] { return to_text(times_of(pointers_to(folder.rows), folder), ListingFormat::csv); };
+  EXPECT_THAT(text(), HasSubstr("0.250 to 1.00,2.0,2.00 to 2.00,"));
+  for (ResultRow& row : folder.rows) row = in_five_rounds(row);
+  EXPECT_THAT(text(), HasSubstr("cloth2500,0.5,openmp,semi-euler,2,,2.0,,19.475,"));
 }
 
 TEST(ExponentOf, IsTheSlopeOnLogarithmicAxes) {

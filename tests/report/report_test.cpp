@@ -116,6 +116,13 @@ TEST_F(ReportFolderTest, TrustsNoTimeThatIsNotAboveZero) {
   EXPECT_FALSE(counts(found.rows[0]));
   EXPECT_TRUE(counts(found.rows[1]));
   EXPECT_THAT(found.rows[1].samples_ms, IsEmpty());
+  EXPECT_THAT(
+      found.problems,
+      ElementsAre(
+          EndsWith("timings.csv: ms_per_step of cloth2500, serial, semi-euler is 0, not between 1e-12 and "
+                   "1e12; it is left out"),
+          EndsWith("samples.csv: round 2 of cloth2500, openmp, semi-euler is -1, not between 1e-12 and 1e12; "
+                   "the row's samples are left out")));
 }
 
 TEST_F(ReportFolderTest, SaysThatProvenanceIsDamaged) {
@@ -326,6 +333,22 @@ ReportInput input_of(ReportFolder folder) {
 
 bool has(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
 
+TEST_F(ReportFolderTest, TrustsNoAbsurdTime) {
+  std::vector<ResultRow> bad = rows;
+  bad[0].samples_ms[0] = 1e308;
+  bad[0].ms_per_step_high = 1e13;
+  bad[1].ms_per_step_low = 1e-300;
+  bad[1].speedup_vs_serial = 1e200;
+  put_run(timings_csv(bad), samples_csv(bad));
+  const ReportFolder found = read();
+  EXPECT_THAT(found.problems, ElementsAre(HasSubstr("ms_per_step_high of cloth2500, serial"),
+                                          HasSubstr("round 1 of cloth2500, serial, semi-euler is 1e+308"),
+                                          HasSubstr("ms_per_step_low of cloth2500, openmp"),
+                                          HasSubstr("speedup_vs_serial of cloth2500, openmp")));
+  for (const ResultRow& row : found.rows) EXPECT_TRUE(counts(row));
+  EXPECT_TRUE(has(report_page(input_of(found)), "is 1e+308, not between"));
+}
+
 TEST(ReportPage, EscapesNamesOfScenesAndFolders) {
   ReportFolder folder;
   folder.name = "<script>alert(1)</script>";
@@ -382,6 +405,11 @@ TEST(ReportPage, ComparesTwoFoldersAsCompareDoes) {
   EXPECT_TRUE(has(report_page(input), "<strong>slower</strong>"));
   input.folders[1].rows[0].samples_ms.clear();
   EXPECT_TRUE(has(report_page(input), "They have no measured combination in common"));
+  EXPECT_TRUE(has(report_page(input), "Without samples in NEW: cloth2500, openmp, semi-euler."));
+  EXPECT_FALSE(has(report_page(input), "Only BASE has"));
+  std::swap(input.folders[0].rows, input.folders[1].rows);
+  EXPECT_TRUE(has(report_page(input), "Without samples in BASE: cloth2500, openmp, semi-euler."));
+  EXPECT_FALSE(has(report_page(input), "Only NEW has"));
   input.folders[1].provenance->machine.cpu_model = "Another";
   EXPECT_TRUE(has(report_page(input), "The two runs are not comparable: the CPU was A Processor"));
   input.folders[1].provenance.reset();
@@ -438,7 +466,8 @@ TEST(ReportPage, SaysAtTheTopOfAFolderWhatDisturbedIt) {
 TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {
   ReportFolder folder;
   folder.name = "results/one";
-  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
+  folder.rows = {in_six_rounds(measured_row("serial", 1, 1.0)),
+                 in_six_rounds(measured_row("openmp", 0.5, 2.0))};
   ReportInput input = input_of(folder);
   Claim& claim = input.claims.emplace_back();
   claim.says = "Threads help";

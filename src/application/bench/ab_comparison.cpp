@@ -50,8 +50,8 @@ class AbProgram {
     limit(verification_limit * (options.time_budget_s + 60));
   }
 
-  /// Whether its bench has the option --verified, according to its help. Throws UsageError if the help does
-  /// not end within a minute.
+  /// Whether its bench has the option --verified, according to its help. Throws UsageError if the help fails
+  /// or does not end within a minute.
   bool takes_verified() const {
     ChildProcess child = child_;
     child.arguments = {"bench", "--help"};
@@ -60,8 +60,9 @@ class AbProgram {
     if (result.out_of_time)
       throw UsageError("{} bench --help has not ended within {} s: give the path of an mssim program", file_,
                        child.elapsed_seconds);
-    return result.signal == 0 && result.exit_code == exit_ok &&
-           result.output.find("--verified") != std::string::npos;
+    if (result.signal != 0 || result.exit_code != exit_ok)
+      throw UsageError("{} bench --help {}: give the path of an mssim program", file_, end_of(result));
+    return result.output.find("--verified") != std::string::npos;
   }
 
   /// The process that verifies everything, on which later samples rely.
@@ -141,6 +142,11 @@ class AbProgram {
 
   fs::path verified_folder() const { return folder_.path() / "verified"; }
 
+  static std::string end_of(const ChildResult& result) {
+    return result.signal != 0 ? fmt::format("was ended by signal {}", result.signal)
+                              : fmt::format("exited with {}", result.exit_code);
+  }
+
   [[noreturn]] void fail(const ChildResult& result) const {
     std::cerr << result.output;
     if (!result.output.empty() && !result.output.ends_with('\n')) std::cerr << '\n';
@@ -148,9 +154,7 @@ class AbProgram {
       throw UsageError(
           "{} bench has not ended within {} s: run it alone to see why, or give a longer --time-budget",
           file_, child_.elapsed_seconds);
-    const std::string how = result.signal != 0 ? fmt::format("was ended by signal {}", result.signal)
-                                               : fmt::format("exited with {}", result.exit_code);
-    const std::string sentence = file_ + " bench " + how + " instead of measuring" +
+    const std::string sentence = file_ + " bench " + end_of(result) + " instead of measuring" +
                                  (result.output.empty() ? ", without a message" : "; its messages are above");
     if (result.signal == 0 && result.exit_code == exit_unavailable) throw Unavailable(sentence);
     throw UsageError(sentence);
@@ -180,16 +184,24 @@ const CombinationTime* find(const std::vector<CombinationTime>& times, const Pai
 std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
                                     const std::vector<CombinationTime>& next, const AbOptions& options) {
   std::vector<Series> series;
+  const auto pairs_of = [](const CombinationTime& time) {
+    return PairedTimes{time.scene, time.backend, time.integrator, {}, {}, {}};
+  };
+  const auto tell_only = [](const std::string& program, const CombinationTime& time) {
+    std::cerr << "mssim: only " << program << " has " << combination_name(time) << '\n';
+  };
   for (const CombinationTime& time : base) {
-    const PairedTimes pairs{time.scene, time.backend, time.integrator, {}, {}, {}};
+    const PairedTimes pairs = pairs_of(time);
     if (!find(next, pairs))
-      std::cerr << "mssim: only " << options.base << " has " << combination_name(time) << '\n';
+      tell_only(options.base, time);
     else if (!time.least_ms)
       std::cerr << "mssim: " << options.base << " has no time for " << combination_name(time) << ": "
                 << time.status << '\n';
     else
       series.push_back({pairs});
   }
+  for (const CombinationTime& time : next)
+    if (!find(base, pairs_of(time))) tell_only(options.next, time);
   if (series.empty())
     throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
                      " have no measured combination in common; choose other backends or integrators");

@@ -79,10 +79,7 @@ fs::path folder_of(const fs::path& path) {
   return folder;
 }
 
-/// Limit of a time, so that numbers derived from it are finite.
-constexpr double longest_ms = 1e12;
-
-/// Throws UsageError unless the row has a time, and a sample above zero of every round.
+/// Throws UsageError unless the row has a time, and a sample of every round, within the bounds of times.
 void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.status != "ok") return;
   const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
@@ -92,14 +89,18 @@ void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.samples_ms.size() != static_cast<std::size_t>(row.rounds))
     throw UsageError("{}{}, but {} in timings.csv: one of the files is damaged; measure the folder again",
                      where, pluralize(row.samples_ms.size(), "sample"), pluralize(row.rounds, "round"));
-  if (row.ms_per_step && !(*row.ms_per_step > 0 && *row.ms_per_step <= longest_ms))
-    throw UsageError("{}: {} has an ms_per_step of {:.6g}, which is no time; measure the folder again",
-                     (folder / "timings.csv").string(), combination_name(row), *row.ms_per_step);
+  const std::string timings = (folder / "timings.csv").string();
+  if (!row.ms_per_step)
+    throw UsageError("{}: {} has no ms_per_step, although its status is ok; measure the folder again",
+                     timings, combination_name(row));
+  for (const TimeColumn& column : time_columns)
+    if (const std::optional<double> value = row.*column.value; value && !is_time(*value))
+      throw UsageError("{}: {} of {} is {:.6g}, {}; measure the folder again", timings, column.name,
+                       combination_name(row), *value, not_a_time);
   for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
-    if (!(row.samples_ms[round] > 0 && row.samples_ms[round] <= longest_ms))
-      throw UsageError(
-          "{}no time above zero in round {}, or one of more than 1e12 ms; measure the folder again", where,
-          round + 1);
+    if (!is_time(row.samples_ms[round]))
+      throw UsageError("{}{:.6g} ms in round {}, {}; measure the folder again", where, row.samples_ms[round],
+                       round + 1, not_a_time);
 }
 
 /// Throws UsageError if there are reasons why --resume cannot continue in the folder.

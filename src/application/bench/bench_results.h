@@ -41,7 +41,8 @@ struct MeasuredRun {
 };
 
 /// Reads a result folder, given as its path or the path of a file in it. Throws UsageError if there is none
-/// or its samples do not match its rows; CsvError and ProvenanceError for files that cannot be read.
+/// or its samples do not match its rows, or a number is no time (is_time); CsvError and ProvenanceError for
+/// files that cannot be read.
 MeasuredRun read_run(const std::filesystem::path& path);
 
 /// The rows of a result folder that were verified by the same program (to the byte), on the same machine,

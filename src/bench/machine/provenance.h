@@ -23,6 +23,9 @@ struct BuildInfo {
   std::string build_type;  ///< CMake's, for example "Release"
 };
 
+/// Whether the commit is known.
+inline bool knows_commit(const BuildInfo& build) { return build.commit != "unknown"; }
+
 /// BuildInfo of the running program.
 const BuildInfo& build_info();
 

@@ -35,8 +35,9 @@ void add_rows(MachineHistory& machine) {
     }
     series->at.push_back(machine.entries.size() - 1);
     series->ms.push_back(*row.ms_per_step);
-    series->low.push_back(row.ms_per_step_low.value_or(*row.ms_per_step));
-    series->high.push_back(row.ms_per_step_high.value_or(*row.ms_per_step));
+    const bool covers = has_interval(row.samples);
+    series->low.push_back(covers ? row.ms_per_step_low.value_or(*row.ms_per_step) : *row.ms_per_step);
+    series->high.push_back(covers ? row.ms_per_step_high.value_or(*row.ms_per_step) : *row.ms_per_step);
   }
 }
 
@@ -45,7 +46,7 @@ void add_rows(MachineHistory& machine) {
 HistoryEntry entry_of(const Provenance& provenance, std::span<const ResultRow> rows,
                       const std::string& commit) {
   const BuildInfo& build = provenance.build;
-  if (commit.empty() && build.commit == "unknown")
+  if (commit.empty() && !knows_commit(build))
     throw UsageError(
         "the program that measured was built outside a git repository: name the commit with --commit");
   if (rows.empty())
@@ -106,11 +107,42 @@ std::vector<MachineHistory> machines_of(std::span<const HistoryEntry> history) {
   return machines;
 }
 
-std::string judged(const ChangePoint& change, double threshold) {
-  if (change.ratio.ratio > 1 + threshold) return "slower";
-  if (change.ratio.ratio < 1 / (1 + threshold)) return "faster";
+std::span<const double> HistorySeries::level(std::size_t number) const {
+  const std::size_t first = number == 0 ? 0 : changes[number - 1].first;
+  const std::size_t end = number < changes.size() ? changes[number].first : ms.size();
+  return std::span(ms).subspan(first, end - first);
+}
+
+std::string judged(const RatioEstimate& ratio, double threshold) {
+  if (ratio.ratio > 1 + threshold) return "slower";
+  if (ratio.ratio < 1 / (1 + threshold)) return "faster";
   return fmt::format("within {:.6g} %", 100 * threshold);
 }
+
+namespace {
+
+/// A slowdown of a series, and the change with which it began.
+struct Slowdown {
+  const ChangePoint* began = nullptr;
+  RatioEstimate ratio;
+};
+
+/// The last level against the fastest of those that ended in one of the last `count` entries of the machine:
+/// a slowdown in several steps counts as a whole, and one that was repaired does not. None without such a
+/// level.
+std::optional<Slowdown> slowdown_of(const HistorySeries& series, const MachineHistory& machine,
+                                    std::size_t count) {
+  const std::size_t last = series.changes.size();
+  std::optional<std::size_t> fastest;
+  for (std::size_t level = 0; level < last; ++level)
+    if (machine.is_recent(series.at[series.changes[level].first], count) &&
+        (!fastest || median(series.level(level)) < median(series.level(*fastest))))
+      fastest = level;
+  if (!fastest) return std::nullopt;
+  return Slowdown{&series.changes[*fastest], ratio_of(series.level(*fastest), series.level(last))};
+}
+
+}  // namespace
 
 std::vector<std::string> regressions(const MachineHistory& machine, double threshold, std::size_t count) {
   std::vector<std::string> sentences;
@@ -132,12 +164,13 @@ std::vector<std::string> regressions(const MachineHistory& machine, double thres
                        "without a verified time since commit {}; measure it again, or see why it failed",
                        entry.commit));
     }
-    if (series.changes.empty()) continue;
-    const ChangePoint& last = series.changes.back();
-    if (judged(last, threshold) == "slower")
-      tell(series.at[last.first],
-           fmt::format("slower since commit {}, {:.3g} times the time ({:.3g} to {:.3g})",
-                       machine.commit_of(series, last), last.ratio.ratio, last.ratio.low, last.ratio.high));
+    const std::optional<Slowdown> slowdown = slowdown_of(series, machine, count);
+    if (!slowdown || judged(slowdown->ratio, threshold) != "slower") continue;
+    const auto& [began, ratio] = *slowdown;
+    tell(series.at[began->first],
+         fmt::format("slower since commit {}, {:.3g} times the time{}", machine.commit_of(series, *began),
+                     ratio.ratio,
+                     ratio.covers ? fmt::format(" ({:.3g} to {:.3g})", ratio.low, ratio.high) : ""));
   }
   return sentences;
 }

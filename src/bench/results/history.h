@@ -52,11 +52,15 @@ void add_entry(std::vector<HistoryEntry>& history, HistoryEntry entry, bool repl
 struct HistorySeries {
   std::string scene, backend, integrator, device;
   std::uint32_t nodes = 0;
-  std::vector<std::size_t> at;  ///< [times] the machine's entry
-  std::vector<double> ms, low, high;
+  std::vector<std::size_t> at;    ///< [times] the machine's entry
+  std::vector<double> ms;         ///< [times]
+  std::vector<double> low, high;  ///< [times] its 95 % interval; the time itself if it has none
   std::vector<ChangePoint> changes;
   /// The first of the machine's latest entries that have no verified time of it; none if the last one has.
   std::optional<std::size_t> vanished;
+
+  /// The times from one change to the next. Level 0 ends at changes[0], the last one at the end.
+  std::span<const double> level(std::size_t number) const;
 };
 
 /// The entries of one machine: a processor with a number of logical CPUs, used with a number of threads.
@@ -76,11 +80,12 @@ struct MachineHistory {
 /// history.
 std::vector<MachineHistory> machines_of(std::span<const HistoryEntry> history);
 
-/// How a change is judged: "slower" or "faster" beyond the threshold, a fraction; else "within N %".
-std::string judged(const ChangePoint& change, double threshold);
+/// How a ratio of times is judged: "slower" or "faster" beyond the threshold, a fraction; else "within N %".
+std::string judged(const RatioEstimate& ratio, double threshold);
 
-/// A sentence for each series of the machine that vanished, or whose last change is a slowdown beyond the
-/// threshold, if that is in one of the last `count` entries.
+/// A sentence for each series of the machine that vanished in one of the last `count` entries, or became
+/// slower in them: its last level is slower, beyond the threshold, than the fastest of those that ended in
+/// these entries. The sentence names the commit that ended the fastest level.
 std::vector<std::string> regressions(const MachineHistory& machine, double threshold, std::size_t count);
 
 }  // namespace mssim

@@ -8,6 +8,8 @@
 
 namespace mssim {
 
+bool has_interval(std::size_t samples) { return rank_coverage(samples, 1) >= interval_confidence; }
+
 void summarise(ResultRow& row, const ResultRow* serial) {
   row.rounds = static_cast<int>(row.samples_ms.size());
   if (row.status != "ok" || row.samples_ms.empty()) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -248,6 +249,35 @@ bool same_combination(const A& a, const B& b) {
 template <class A>
 std::string combination_name(const A& a) {
   return printable(a.scene + ", " + a.backend + ", " + a.integrator, 300);
+}
+
+/// Bounds of a time, ms. Within them, statistics of times, their ratios and rates are finite.
+inline constexpr double shortest_ms = 1e-12, longest_ms = 1e12;
+
+/// Whether this can be a time in ms, or a ratio of two.
+constexpr bool is_time(double ms) { return ms >= shortest_ms && ms <= longest_ms; }
+
+/// What a number is for which is_time() is false, for the end of a sentence.
+inline constexpr std::string_view not_a_time = "not between 1e-12 and 1e12";
+
+/// A column of a time, or of a ratio of two.
+struct TimeColumn {
+  std::string_view name;
+  std::optional<double> ResultRow::*value;
+};
+inline constexpr auto time_columns =
+    std::to_array<TimeColumn>({{"ms_per_step", &ResultRow::ms_per_step},
+                               {"ms_per_step_low", &ResultRow::ms_per_step_low},
+                               {"ms_per_step_high", &ResultRow::ms_per_step_high},
+                               {"ms_per_step_min", &ResultRow::ms_per_step_min},
+                               {"speedup_vs_serial", &ResultRow::speedup_vs_serial}});
+
+/// Whether so many samples have a 95 % interval (statistics.h).
+bool has_interval(std::size_t samples);
+
+/// Whether ms_per_step_low and ms_per_step_high are there, and are a 95 % interval.
+inline bool has_interval(const ResultRow& row) {
+  return row.ms_per_step_low && row.ms_per_step_high && has_interval(static_cast<std::size_t>(row.rounds));
 }
 
 /// Whether the row is ok and verified, so that its time counts.

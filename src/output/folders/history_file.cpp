@@ -4,7 +4,9 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
+#include <tuple>
 
 #include "platform/files.h"
 #include "scene/fields/fields.h"
@@ -21,7 +23,7 @@ constexpr std::size_t largest_history_bytes = std::size_t{256} << 20;
 constexpr std::array<std::string_view, 2> truth_words{"no", "yes"};
 
 void visit_row(FieldVisitor& fields, HistoryRow& row) {
-  const Range time = above(0, 1e12);
+  const Range time = from(shortest_ms, longest_ms);
   fields.text({"scene", "The scene's name."}, Presence::required, row.scene);
   fields.integer({"nodes", "Its nodes."}, row.nodes, 0, most);
   fields.text({"backend", "The backend's name."}, Presence::required, row.backend);
@@ -59,6 +61,18 @@ std::string one_line(const std::string& text) {
   return printable(printable(text, text.size()), longest_text - 20);
 }
 
+/// Throws InputError if two rows are one series, also as history_line() writes them.
+void require_rows_once(const HistoryEntry& entry, const std::string& where) {
+  std::set<std::tuple<std::string, std::uint32_t, std::string, std::string, std::string>> known;
+  for (const HistoryRow& row : entry.rows)
+    if (!known
+             .emplace(one_line(row.scene), row.nodes, one_line(row.backend), one_line(row.device),
+                      one_line(row.integrator))
+             .second)
+      throw InputError("{}: /rows/{} has {} on {} a second time; remove one of the two rows", where,
+                       &row - entry.rows.data(), combination_name(row), printable(row.device));
+}
+
 }  // namespace
 
 std::string history_line(const HistoryEntry& entry) {
@@ -69,7 +83,7 @@ std::string history_line(const HistoryEntry& entry) {
     line["nodes"] = row.nodes;
     line["backend"] = one_line(row.backend);
     line["device"] = one_line(row.device);
-    line["integrator"] = row.integrator;
+    line["integrator"] = one_line(row.integrator);
     if (row.ms_per_step) line["ms_per_step"] = *row.ms_per_step;
     if (row.ms_per_step_low) line["ms_per_step_low"] = *row.ms_per_step_low;
     if (row.ms_per_step_high) line["ms_per_step_high"] = *row.ms_per_step_high;
@@ -104,6 +118,7 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
     // Messages about the syntax count lines, too: those before this one are kept as empty ones.
     read_fields(where, std::string(number - 1, '\n') + std::string(line),
                 [&](FieldVisitor& fields) { visit_entry(fields, entry, where); });
+    require_rows_once(entry, where);
     if (std::any_of(history.begin(), history.end() - 1, [&](const HistoryEntry& earlier) {
           return earlier.commit == entry.commit && machine_of(earlier) == machine_of(entry);
         }))

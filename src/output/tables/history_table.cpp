@@ -34,18 +34,17 @@ Table history_table(const MachineHistory& machine, double threshold) {
   for (const HistorySeries& series : machine.series) {
     const auto add = [&](std::size_t entry, Cell count, Cell ms, const RatioEstimate* ratio,
                          const std::string& verdict) {
-      table.rows.push_back({series.scene, series.backend, series.integrator, device_name(series.device),
-                            short_commit(machine.entries[entry]->commit), std::move(count), std::move(ms),
-                            ratio ? Cell(ratio->ratio) : Cell(), ratio ? Cell(ratio->low) : Cell(),
-                            ratio ? Cell(ratio->high) : Cell(), verdict.empty() ? Cell() : Cell(verdict)});
+      table.rows.push_back(
+          {series.scene, series.backend, series.integrator, device_name(series.device),
+           short_commit(machine.entries[entry]->commit), std::move(count), std::move(ms),
+           ratio ? Cell(ratio->ratio) : Cell(), ratio && ratio->covers ? Cell(ratio->low) : Cell(),
+           ratio && ratio->covers ? Cell(ratio->high) : Cell(), verdict.empty() ? Cell() : Cell(verdict)});
     };
-    const std::span<const double> times = series.ms;
     for (std::size_t level = 0; level <= series.changes.size(); ++level) {
       const ChangePoint* change = level == 0 ? nullptr : &series.changes[level - 1];
-      const std::size_t first = change ? change->first : 0;
-      const std::size_t end = level < series.changes.size() ? series.changes[level].first : times.size();
-      add(series.at[first], end - first, median(times.subspan(first, end - first)),
-          change ? &change->ratio : nullptr, change ? judged(*change, threshold) : "");
+      const std::span<const double> times = series.level(level);
+      add(series.at[change ? change->first : 0], times.size(), median(times),
+          change ? &change->ratio : nullptr, change ? judged(change->ratio, threshold) : "");
     }
     if (series.vanished) add(*series.vanished, {}, {}, nullptr, "vanished");
   }

@@ -137,7 +137,7 @@ Cell measured_cell(const ResultRow* row, const std::optional<double>& value) {
 std::string interval_text(double low, double high) { return three_digits(low) + " to " + three_digits(high); }
 
 Cell interval_cell(const ResultRow& row) {
-  if (!counted_ms(row) || !row.ms_per_step_low || !row.ms_per_step_high) return {};
+  if (!counted_ms(row) || !has_interval(row)) return {};
   return interval_text(*row.ms_per_step_low, *row.ms_per_step_high);
 }
 
@@ -173,7 +173,7 @@ std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow
   if (!row || !than || !counts(*row) || !counts(*than)) return std::nullopt;
   if (!row->samples_ms.empty() && row->samples_ms.size() == than->samples_ms.size()) {
     const MedianInterval ratio = median_ratio(than->samples_ms, row->samples_ms);
-    return RatioInterval{ratio.median, ratio.low, ratio.high};
+    return RatioInterval{ratio.median, ratio.low, ratio.high, ratio.coverage >= interval_confidence};
   }
   if (!row->ms_per_step || !than->ms_per_step) return std::nullopt;
   const auto end = [](const ResultRow& of, std::optional<double> ResultRow::*value) {
@@ -181,7 +181,12 @@ std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow
   };
   return RatioInterval{*than->ms_per_step / *row->ms_per_step,
                        end(*than, &ResultRow::ms_per_step_low) / end(*row, &ResultRow::ms_per_step_high),
-                       end(*than, &ResultRow::ms_per_step_high) / end(*row, &ResultRow::ms_per_step_low)};
+                       end(*than, &ResultRow::ms_per_step_high) / end(*row, &ResultRow::ms_per_step_low),
+                       has_interval(*row) && has_interval(*than)};
+}
+
+Cell ratio_interval_cell(const std::optional<RatioInterval>& ratio) {
+  return ratio && ratio->covers ? Cell(interval_text(ratio->low, ratio->high)) : Cell();
 }
 
 std::string reason_without_speedups(std::span<const std::string_view> backends) {

@@ -121,8 +121,8 @@ enum class ComparisonFormat { table, markdown, json };
 std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8 = true);
 
 /// The levels of each series of a machine's history: the first commit of each level, the number of commits,
-/// the median of their times in ms, the ratio to the level before with its interval, and the verdict. A
-/// series that vanished has a row without a time.
+/// the median of their times in ms, the ratio to the level before with its 95 % interval, if there are enough
+/// commits for one, and the verdict. A series that vanished has a row without a time.
 Table history_table(const MachineHistory& machine, double threshold);
 
 // Tables of results, and helpers of tables of measured rows.
@@ -194,7 +194,7 @@ Cell measured_cell(const ResultRow* row, const std::optional<double>& value);
 
 /// "0.115 to 0.121"
 std::string interval_text(double low, double high);
-/// The interval of the row's time; empty if the row does not count, or has none.
+/// The 95 % interval of the row's time; empty if the row does not count, or has none.
 Cell interval_cell(const ResultRow& row);
 
 /// ns per node and step for `ms`, a time of the row; none if the row does not count.
@@ -234,14 +234,20 @@ std::string legend_of_excess(RowPointers rows, const Provenance& provenance);
 struct RatioInterval {
   double ratio = 1;
   double low = 1, high = 1;
+  /// Whether that is a 95 % interval. If not, too few rounds were measured, and it decides nothing.
+  bool covers = false;
 
-  /// 1 if the interval lies above 1, -1 if below, and 0 if it includes 1.
-  int side_of_one() const { return low > 1 ? 1 : high < 1 ? -1 : 0; }
+  /// 1 if the ratio is certainly above `limit`, -1 if certainly below, and 0 if that is not known.
+  int side_of(double limit) const { return !covers ? 0 : low > limit ? 1 : high < limit ? -1 : 0; }
 };
+
+/// The 95 % interval of a ratio; empty without one.
+Cell ratio_interval_cell(const std::optional<RatioInterval>& ratio);
 
 /// Speed-up of a row over `than`: the median of the ratios within each round, with its 95 % interval
 /// (statistics.h). If their samples are not pairs: the quotient of the times and of the ends of their
-/// intervals, which is wider. None if one of them does not count or is null.
+/// intervals, which is wider; `covers` then follows from their rounds. None if one of them does not count or
+/// is null.
 std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than);
 
 /// Why a table has no speed-ups, and the remedy, if serial is not one of the backends; otherwise empty.

@@ -296,7 +296,7 @@ std::vector<CombinationTime> read_combination_times(const std::filesystem::path&
     if (time.status == "ok" && table.text(row, verified) != "true") time.status = "failed: not verified";
     if (time.status == "ok") {
       time.least_ms = table.number(row, ms);
-      if (!(*time.least_ms > 0)) throw table.complaint(row, ms, "is not a time above zero");
+      if (!is_time(*time.least_ms)) throw table.complaint(row, ms, fmt::format("is {}", not_a_time));
     }
     times.push_back(std::move(time));
   }

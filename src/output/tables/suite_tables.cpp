@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "statistics/statistics.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -162,22 +161,25 @@ constexpr std::string_view how_to_read_peers =
     "interval. *Threads*: the number that a backend reports; *processors*: the number of CPUs that its steps "
     "kept busy. *Error* is the largest distance to the reference in mean rest lengths.";
 
-/// Time relative to `openmp`, round by round; none if either does not count or they were not measured in the
+/// Time over that of `openmp`, round by round; none if either does not count or they were not measured in the
 /// same rounds.
-std::optional<MedianInterval> times_yardstick(RowPointers rows, const ResultRow& row) {
+std::optional<RatioInterval> times_yardstick(RowPointers rows, const ResultRow& row) {
   const ResultRow* best = find_row(rows, row.scene, yardstick, row.integrator);
   if (!best || !counts(*best) || !counts(row) || row.samples_ms.empty() ||
       row.samples_ms.size() != best->samples_ms.size())
     return std::nullopt;
-  return median_ratio(row.samples_ms, best->samples_ms);
+  return times_as_fast(best, &row);
+}
+
+/// The cell of a part of such a ratio; of an end of its interval, only if it has one.
+Cell part_of(const std::optional<RatioInterval>& ratio, double RatioInterval::*part) {
+  const bool has_part = ratio && (part == &RatioInterval::ratio || ratio->covers);
+  return has_part ? Cell((*ratio).*part) : Cell();
 }
 
 Table data_of(RowPointers rows) {
-  const auto times = [rows](double MedianInterval::*part) {
-    return [rows, part](const ResultRow& row) {
-      const std::optional<MedianInterval> ratio = times_yardstick(rows, row);
-      return ratio ? Cell((*ratio).*part) : Cell();
-    };
+  const auto times = [rows](double RatioInterval::*part) {
+    return [rows, part](const ResultRow& row) { return part_of(times_yardstick(rows, row), part); };
   };
   return table_of(rows, {"scene",
                          "nodes",
@@ -188,9 +190,9 @@ Table data_of(RowPointers rows) {
                          "ms_per_step",
                          "ms_per_step_low",
                          "ms_per_step_high",
-                         {{"times_openmp"}, times(&MedianInterval::median)},
-                         {{"times_openmp_low"}, times(&MedianInterval::low)},
-                         {{"times_openmp_high"}, times(&MedianInterval::high)},
+                         {{"times_openmp"}, times(&RatioInterval::ratio)},
+                         {{"times_openmp_low"}, times(&RatioInterval::low)},
+                         {{"times_openmp_high"}, times(&RatioInterval::high)},
                          "position_error",
                          "verified",
                          {{"status"}, status_of},
@@ -219,16 +221,13 @@ std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenan
            [=](const ResultRow& row) {
              const auto times = times_yardstick(rows, row);
              if (!times) return Cell();
-             Cell ratio = times->median;
+             Cell ratio = times->ratio;
              const ResultRow* best = find_row(rows, row.scene, yardstick, row.integrator);
-             ratio.suffix = mark_of_ratio(times->median, *row.ms_per_step, *best->ms_per_step);
+             ratio.suffix = mark_of_ratio(times->ratio, *row.ms_per_step, *best->ms_per_step);
              return ratio;
            }},
           {{"interval", Align::right},
-           [=](const ResultRow& row) {
-             const auto times = times_yardstick(rows, row);
-             return times ? Cell(interval_text(times->low, times->high)) : Cell();
-           }},
+           [=](const ResultRow& row) { return ratio_interval_cell(times_yardstick(rows, row)); }},
           {{"error", Align::right},
            [](const ResultRow& row) { return counted_ms(row) ? Cell(row.position_error) : Cell(); }}};
 }
@@ -268,10 +267,7 @@ ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenanc
   const auto of = [&](const ResultRow& row) { return *std::ranges::find(rows, &row, &ThreadRow::row); };
   const auto threads = [&](const ResultRow& row) { return Cell(of(row).threads); };
   const auto speedup = [&](double RatioInterval::*part) {
-    return [=](const ResultRow& row) {
-      const std::optional<RatioInterval> times = of(row).speedup();
-      return times ? Cell((*times).*part) : Cell();
-    };
+    return [=](const ResultRow& row) { return part_of(of(row).speedup(), part); };
   };
   const auto efficiency = [&](const ResultRow& row) {
     const ThreadRow its = of(row);
@@ -303,10 +299,7 @@ ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenanc
        }},
       {{"times as fast", Align::right, "×"}, speedup(&RatioInterval::ratio)},
       {{"interval", Align::right},
-       [&](const ResultRow& row) {
-         const std::optional<RatioInterval> times = of(row).speedup();
-         return times ? Cell(interval_text(times->low, times->high)) : Cell();
-       }},
+       [&](const ResultRow& row) { return ratio_interval_cell(of(row).speedup()); }},
       {{"efficiency", Align::right}, efficiency},
       {{"processors", Align::right}, busy_processors}};
   Document page{Heading{1, "Scaling with threads"}, measured_on(all, provenance),

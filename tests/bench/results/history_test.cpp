@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+
 #include "output/folders/history_file.h"
 #include "output/tables/results.h"
 #include "platform/files.h"
@@ -60,6 +63,54 @@ TEST(History, AcceptsProgressAndARepairedSlowdown) {
   const std::vector<MachineHistory> machines = machines_of(history);
   EXPECT_EQ(machines[0].series[1].changes.size(), 2U);
   EXPECT_THAT(regressions(machines[0], threshold, history.size()), IsEmpty());
+}
+
+/// A machine whose openmp had these levels, of six commits each, whatever changes are found in them.
+MachineHistory with_levels(std::vector<HistoryEntry>& history, const std::vector<double>& levels) {
+  history.clear();
+  for (const double ms : levels)
+    for (int i = 0; i < 6; ++i)
+      history.push_back(entry(static_cast<int>(history.size()), ms * (1 + 0.001 * i)));
+  MachineHistory machine = machines_of(history)[0];
+  HistorySeries& series = machine.series[1];
+  series.changes.clear();
+  for (std::size_t level = 1; level < levels.size(); ++level) series.changes.push_back({6 * level, {}});
+  return machine;
+}
+
+TEST(History, AddsUpSlowdownsThatAreEachBelowTheThreshold) {
+  std::vector<HistoryEntry> history;
+  const MachineHistory machine = with_levels(history, {0.5, 0.515, 0.53, 0.546, 0.563});
+  EXPECT_THAT(regressions(machine, threshold, 24),
+              ElementsAre(HasSubstr("slower since commit commit-6, 1.13 times the time (1.1")));
+  EXPECT_THAT(regressions(machine, threshold, 12), ElementsAre(HasSubstr("since commit commit-18, 1.06")));
+  EXPECT_THAT(regressions(machine, threshold, 6), IsEmpty()) << "only the last step of 3 % is recent";
+  EXPECT_THAT(regressions(machine, threshold, 5), IsEmpty()) << "no change is recent";
+}
+
+TEST(History, SeesASlowdownBeforeASmallChange) {
+  std::vector<HistoryEntry> history;
+  EXPECT_THAT(regressions(with_levels(history, {0.5, 0.6, 0.605}), threshold, 12),
+              ElementsAre(HasSubstr("slower since commit commit-6, 1.21 times")));
+  EXPECT_THAT(regressions(with_levels(history, {0.6, 0.5, 0.55}), threshold, 12),
+              ElementsAre(HasSubstr("slower since commit commit-12, 1.1 times")));
+}
+
+TEST(History, TellsNoIntervalOfTooFewTimes) {
+  std::vector<HistoryEntry> history;
+  MachineHistory machine = with_levels(history, {0.5, 0.6});
+  HistorySeries& series = machine.series[1];
+  series.changes = {{11, ratio_of(std::span(series.ms).first(11), std::span(series.ms).last(1))}};
+  ASSERT_FALSE(series.changes[0].ratio.covers);
+  EXPECT_THAT(
+      regressions(machine, threshold, recent),
+      ElementsAre(AllOf(HasSubstr("slower since commit commit-11"), testing::Not(HasSubstr(" to ")))));
+  const Table table = history_table(machine, threshold);
+  const auto low = std::ranges::find(table.columns, "low", &Column::name) - table.columns.begin();
+  EXPECT_EQ(cell_text(table.rows[2][static_cast<std::size_t>(low)], {}), "–");
+  EXPECT_EQ(series.low, series.ms) << "entries of three samples";
+  history[0].rows[1].samples = 6;
+  EXPECT_EQ(machines_of(history)[0].series[1].low[0], 0.25);
 }
 
 TEST(History, MissesARowThatIsNoLongerVerifiedOrMeasured) {
@@ -152,6 +203,7 @@ TEST_F(HistoryFile, ReadsBackWhatWasWritten) {
   std::vector<HistoryEntry> history = two_levels(3, 0, 1);
   history.push_back(entry(3, std::nullopt));
   history[1].rows[0].device = std::string(300, 'd') + '\n';
+  history[1].rows[1].integrator = "\xff";
   change_history(folder() / "h.jsonl", [&](std::vector<HistoryEntry>& entries) { entries = history; });
   const std::vector<HistoryEntry> read = read_history(folder() / "h.jsonl");
   ASSERT_EQ(read.size(), history.size());
@@ -175,6 +227,12 @@ TEST_F(HistoryFile, NamesTheLineThatIsWrong) {
               AllOf(HasSubstr("h.jsonl, line 3"), HasSubstr("/threads"), HasSubstr("-2")));
   EXPECT_THAT(refusal(with_change(line, "\"ms_per_step\":0.5,", "\"ms_per_step\":0,")),
               AllOf(HasSubstr("line 1"), HasSubstr("/rows/1/ms_per_step")));
+  EXPECT_THAT(refusal(with_change(line, "\"ms_per_step\":0.5,", "\"ms_per_step\":1e-300,")),
+              HasSubstr("/rows/1/ms_per_step"));
+  HistoryEntry twice = entry(1, 0.5);
+  twice.rows.push_back(twice.rows[1]);
+  EXPECT_THAT(refusal(line + '\n' + with_change(history_line(twice), "commit-1", "commit-2")),
+              AllOf(HasSubstr("line 2: /rows/2 has cloth2500, openmp, semi-euler"), HasSubstr("remove")));
   EXPECT_THAT(refusal(with_change(line, "\"schema_version\":1", "\"schema_version\":2,\"new\":3")),
               AllOf(HasSubstr("line 1"), HasSubstr("/schema_version is 2"), HasSubstr("version 1")));
   EXPECT_THAT(refusal("{}"), AllOf(HasSubstr("line 1"), HasSubstr("/schema_version")));
