@@ -68,6 +68,9 @@ cp -r int moved
 sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8/' moved/provenance.json
 expect 2 'cannot continue in moved: the CPU was Another CPU[ ,].*; the number of threads was 8 and is 1; choose another' \
   "${bench[@]}" --out moved --resume
+cp -r int rebuilt
+sed -i 's/\("program_fnv1a_64": "\)..../\10000/' rebuilt/provenance.json
+expect 2 'cannot continue in rebuilt: it is from another build of the program' "${bench[@]}" --out rebuilt --resume
 expect 2 'resume' bench --scene cloth2500 --resume
 expect 2 'cannot continue in int: it has results of cloth2500, which this command leaves out; choose another' \
   bench --scene cloth4900 --integrator semi-euler --threads 1 --backend serial,openmp --rounds 6 --out int --resume

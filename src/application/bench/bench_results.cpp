@@ -121,6 +121,8 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
   if (revision(earlier.build) != revision(now.build))
     all.push_back(fmt::format("the program was built from commit {} and is now from {}",
                               revision(earlier.build), revision(now.build)));
+  else if (earlier.program_fnv1a_64 && earlier.program_fnv1a_64 != now.program_fnv1a_64)
+    all.emplace_back("it is from another build of the program, whose file differs");
   if (earlier.backend_programs != now.backend_programs)
     all.emplace_back("a program that is a backend is not the same");
   std::vector<std::string> left_out;
