@@ -183,9 +183,10 @@ Combination make_unjudged(const SceneJob& job, const BackendInfo& info, const In
   Combination combination = make_combination(job, info, integrator, start);
   combination.most_steps = most_steps;
   if (most_steps < verification_steps)
-    append_sentence(combination.row.note,
-                    fmt::format("compared and timed in {}, in which the integrator doubles a rounding",
-                                pluralize(most_steps, "step")));
+    append_sentence(
+        combination.row.note,
+        fmt::format("compared and timed in no more than {}, in which the integrator doubles a rounding",
+                    pluralize(most_steps, "step")));
   return combination;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <stdexcept>
 
 #include "integrators/all_integrators.h"
@@ -36,33 +37,17 @@ double spectral_radius(const Linear& first, const Linear& second) {
   return discriminant < 0 ? std::sqrt(determinant) : std::abs(half_trace) + std::sqrt(discriminant);
 }
 
-/// Least and most damping of a mode that has this fraction of the bound's stiffness.
-std::array<double, 2> dampings_of(const ModeBound& bound, double fraction) {
-  const double viscous = bound.viscous_damping;
-  if (bound.parts.empty()) {
-    const double damping = viscous + fraction * (bound.damping - viscous);
-    return {damping, damping};
+/// Damping of a mode of that stiffness that stretches the first parts as far as they reach, then the next
+/// ones.
+template <class Parts>
+double damping_in_order(const ModeBound& bound, double stiffness, const Parts& parts) {
+  double damping = bound.viscous_damping;
+  for (const ModeBound::Part& part : parts) {
+    const double taken = std::min(stiffness, part.stiffness);
+    if (taken > 0) damping += part.damping * taken / part.stiffness;
+    stiffness -= taken;
   }
-  std::vector<ModeBound::Part> parts = bound.parts;
-  std::ranges::sort(parts, [](const ModeBound::Part& a, const ModeBound::Part& b) {
-    return a.damping * b.stiffness < b.damping * a.stiffness;
-  });
-  // The damping of a mode that stretches the first springs most.
-  const auto in_this_order = [&] {
-    double damping = viscous, left = fraction * bound.stiffness;
-    for (const ModeBound::Part& part : parts) {
-      const double taken = std::min(left, part.stiffness);
-      if (taken > 0) damping += part.damping * taken / part.stiffness;
-      left -= taken;
-    }
-    return std::min(damping, bound.damping);
-  };
-  const double least = in_this_order();
-  std::ranges::reverse(parts);
-  double most = in_this_order();
-  for (const ModeBound::Part& part : parts)
-    if (part.stiffness == 0) most = std::min(most + part.damping, bound.damping);
-  return {least, most};
+  return std::min(damping, bound.damping);
 }
 
 bool is_stable(const Integrator& integrator, double dt_s, const ModeBound& bound) {
@@ -91,16 +76,34 @@ double amplification(const Integrator& integrator, double dt_s, double stiffness
 }
 
 double largest_amplification(const Integrator& integrator, double dt_s, const ModeBound& bound) {
+  double largest = 0;
+  const auto add = [&](double stiffness, double damping) {
+    const double factor = amplification(integrator, dt_s, stiffness, damping);
+    largest = std::isnan(factor) ? std::numeric_limits<double>::infinity() : std::max(largest, factor);
+  };
+  std::vector<ModeBound::Part> parts = bound.parts;
+  std::ranges::sort(parts, [](const ModeBound::Part& a, const ModeBound::Part& b) {
+    return a.damping * b.stiffness < b.damping * a.stiffness;
+  });
+  double dampers = 0;  // which do not resist
+  for (const ModeBound::Part& part : parts) dampers += part.stiffness > 0 ? 0 : part.damping;
+  const auto add_extremes = [&](double stiffness) {
+    add(stiffness, damping_in_order(bound, stiffness, parts));
+    add(stiffness,
+        std::min(bound.damping, damping_in_order(bound, stiffness, std::views::reverse(parts)) + dampers));
+  };
   // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, is nearly in free
   // flight.
   constexpr int modes = 63;
-  double largest = 0, fraction = 1;
-  for (int mode = 0; mode < modes; ++mode, fraction *= 0.8)
-    for (const double damping : dampings_of(bound, fraction)) {
-      const double factor = amplification(integrator, dt_s, fraction * bound.stiffness, damping);
-      if (std::isnan(factor)) return std::numeric_limits<double>::infinity();
-      largest = std::max(largest, factor);
-    }
+  double fraction = 1;
+  for (int mode = 0; mode < modes; ++mode, fraction *= 0.8) {
+    add(fraction * bound.stiffness,
+        bound.viscous_damping + fraction * (bound.damping - bound.viscous_damping));
+    if (!parts.empty()) add_extremes(fraction * bound.stiffness);
+  }
+  // The stiffest modes that stretch none of the springs that damp more.
+  double reach = 0;
+  for (const ModeBound::Part& part : parts) add_extremes(std::min(reach += part.stiffness, bound.stiffness));
   return largest;
 }
 

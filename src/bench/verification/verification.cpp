@@ -343,11 +343,13 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
   }
   reference.tolerance = comparison_tolerance(system, integrator, dt_s, reference.steps);
   if (reference.tolerance > largest_tolerance) {
+    const bool is_far = position_tolerance(system, integrator, reference.steps) > largest_tolerance;
     reference.failure = fmt::format(
         "nothing can be verified: roundings to single precision may move a node by {:.3g} rest lengths in "
-        "{}, "
-        "more than {}; move the scene nearer to the origin, or take a smaller dt_s",
-        reference.tolerance, pluralize(reference.steps, "step"), largest_tolerance);
+        "{}, more "
+        "than {}; {}",
+        reference.tolerance, pluralize(reference.steps, "step"), largest_tolerance,
+        is_far ? "move the scene nearer to the origin" : "take a smaller dt_s");
     return reference;
   }
   reference.energy = energy_of(system, reference.state);

@@ -73,7 +73,7 @@ TEST(Verification, PassesARightBackend) {
 TEST(Verification, PassesRightBackendsWhereRoundingsAddUp) {
   // Far up, and with short steps, a step moves a node by few units in its last place: roundings have one
   // sign.
-  for (const auto& [height_m, step_s] : {std::pair{1., 5e-5}, {10., 5e-5}, {100., 5e-5}, {0.2, 1e-6}}) {
+  for (const auto& [height_m, step_s] : {std::pair{2., 5e-5}, {10., 5e-5}, {100., 5e-5}, {0.2, 1e-6}}) {
     SceneSpec spec = cloth_spec(20, 25);
     std::get<ClothSpec>(spec.content).ceiling_height_m = height_m;
     const System system = build_system(spec);
@@ -87,7 +87,7 @@ TEST(Verification, PassesRightBackendsWhereRoundingsAddUp) {
         EXPECT_EQ(found.failure, std::nullopt) << name << " at " << height_m << " m";
         furthest = std::max(furthest, found.position_error.value() / reference.tolerance);
       }
-      if (height_m > 1 || step_s < 1e-5) continue;
+      if (height_m != 2) continue;
       System wrong = system;
       wrong.gravity *= 1.5;
       EXPECT_TRUE(verify(*make_serial(wrong, integrator, step_s, {}), system, reference, step_s).failure)
