@@ -140,9 +140,10 @@ std::optional<double> uniform_node_mass(const System& system) {
 }
 
 double mean_rest_length(const System& system) {
+  if (system.springs.empty()) return 1;
   double sum = 0;
   for (const Spring& spring : system.springs) sum += spring.rest_length;
-  return system.springs.empty() ? 0 : sum / static_cast<double>(system.springs.size());
+  return sum / static_cast<double>(system.springs.size());
 }
 
 System with_laws_of(const System& system) {

@@ -175,7 +175,7 @@ std::vector<SpringConstants<Real>> materials_of(const System& system) {
 /// The mass of each node, kg, if all nodes have the same mass; else nothing.
 std::optional<double> uniform_node_mass(const System& system);
 
-/// Mean rest length over all springs, m: the unit of position errors.
+/// Mean rest length over all springs, m, or 1 m without springs: the unit of position errors.
 double mean_rest_length(const System& system);
 
 /// A system without nodes and with this one's laws: materials, gravity, damping, floor and solver.
