@@ -29,7 +29,7 @@ ends 3 bench --scene cloth2500 --backend serial,openmp:each --integrator semi-eu
 [ "$(column_of cloth/timings.csv status | sed -n 1p)" = ok ] || fail "serial has not gone on: $(cat cloth/timings.csv)"
 warns 'openmp:each.*unsupported: it steps the bodies .* name the backend without'
 expect 2 'steps the bodies of a scene .* name the backend without' run --scene cloth2500 --backend serial:each --duration 0.001
-expect 2 'openmp:each:x .*from 1 to' run --scene bodies3858 --backend openmp:each:x
+expect 2 'openmp:each:x: .*from 1 to' run --scene bodies3858 --backend openmp:each:x
 expect 2 'own backends' bench --scene bodies3858 --backend mpi:each
 
 # On one processor ten threads are too many, and nothing else is left out for that. A user who says threads gets no other rows.
