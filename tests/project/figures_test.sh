@@ -80,9 +80,16 @@ def outcome(claim, folder):
     return found if found and found["outcome"] != "not testable here" else None
 
 
+def outcomes(claim, machine):
+    """The outcomes in the machine's folders (NAME-...), by what their names say besides; first one that decides, if there is one."""
+    found = [(os.path.basename(folder)[len(machine) + 1:].replace("-", " "), outcome(claim, os.path.basename(folder)))
+             for folder in sorted(glob.glob(f"results/{suite_of(claim)}/{machine}*"))]
+    return sorted(((remark, one) for remark, one in found if one), key=lambda pair: pair[1]["outcome"] == "undecided")
+
+
 def held(machine):
-    outcomes = [found["outcome"] for found in (outcome(claim, machine) for claim in testable) if found]
-    return f"{outcomes.count('held')} of {len(outcomes)}"
+    found = [all[0][1]["outcome"] for all in (outcomes(claim, machine) for claim in testable) if all]
+    return f"{found.count('held')} of {len(found)}"
 
 
 def published(claim):
@@ -106,19 +113,17 @@ def shown(match):
 
 
 def cell(claim, machine):
-    """The outcome on the machine; in brackets the other folders of it (NAME-...) with another one."""
-    found = {os.path.basename(folder)[len(machine) + 1:].replace("-", " "): outcome(claim, os.path.basename(folder))
-             for folder in sorted(glob.glob(f"results/{suite_of(claim)}/{machine}*"))}
-    found = {remark: one for remark, one in found.items() if one}
+    """The outcome on the machine; in brackets the other folders of it with another one."""
+    found = outcomes(claim, machine)
     if not found:
         return "–"
-    first, main = next(iter(found.items()))
+    first, main = found[0]
     others = {}
-    for remark, one in found.items():
+    for remark, one in found:
         if one["outcome"] != main["outcome"]:
             others.setdefault(one["outcome"], []).append(remark)
     return f"{main['outcome']}: {shown(interval(main))}" + (f" ({first})" if first else "") + "".join(
-        f" ({', '.join(remarks)}: {name})" for name, remarks in others.items())
+        f" ({', '.join(filter(None, remarks)) or 'another run'}: {name})" for name, remarks in others.items())
 
 
 def speedups(table, machine, backend):
@@ -164,7 +169,7 @@ readme.append(f"Of {len(claims)} claims in both papers, {len(testable)} can be d
 readme.append("Each machine's rows test some of these. Held, of those tested, without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
 readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
-slower = [machine for machine in machines if outcome(locks, machine)["outcome"] == "not held"]
+slower = [machine for machine in machines if outcomes(locks, machine)[0][1]["outcome"] == "not held"]
 readme.append(f"On {len(slower)} of {len(machines)} machines, threads that share a spring list and a lock took longer than one thread on at least one cloth")
 readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`, a plain spring list (Zen 4, as in the chart)")
 shares = [1 / float(row["speedup_vs_serial"]) for threads in ("1-thread", "2-threads")
