@@ -103,8 +103,7 @@ void require_one_table(const BenchPlan& plan, SummaryFormat format) {
   if (plan.described.empty() || plan.timed.empty()) return;
   throw UsageError(
       "--format csv and json are of one table, and sizes and times are two: ask for --suite {} alone, and "
-      "for "
-      "the others without it",
+      "for the others without it",
       std::ranges::find(suites(), false, &Suite::timed)->name);
 }
 

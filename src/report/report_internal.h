@@ -89,9 +89,8 @@ Table times_of(RowPointers rows, const ReportFolder& folder);
 /// Explains the columns of times_of(), with the marks of a Document.
 inline constexpr std::string_view how_to_read_times =
     "*ms per step* are medians over the rounds. Intervals contain the true median in 95 % of all cases; "
-    "fewer "
-    "than six rounds have none. Speed-ups are over `serial`, in a browser over `javascript`: medians of the "
-    "ratios within each round.";
+    "fewer than six rounds have none. Speed-ups are over `serial`, in a browser over `javascript`: medians "
+    "of the ratios within each round.";
 
 /// "Measured on PROCESSOR, N threads"; empty if unknown.
 std::string where_measured(const Provenance& provenance, bool with_threads = true);

@@ -54,8 +54,7 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
        "The plane y = height, which stops falling nodes. It acts once per step, after the integrator: for a "
        "free node below it, y becomes the height, a falling v_y becomes -restitution * v_y, and the "
        "horizontal speed decreases by friction * (1 + restitution) * |v_y|, at most to zero. With verlet, "
-       "the "
-       "positions meet it that its forces see, half a step ahead."},
+       "the positions meet it that its forces see, half a step ahead."},
       Presence::required, [&floor = spec.floor](FieldVisitor& section) {
         section.number({"height_m", "Height of the floor, m."}, floor.height, from(-1e6, 1e6));
         section.number({"restitution", "Fraction of the falling speed that is reversed, dimensionless."},
