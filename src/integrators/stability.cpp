@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <stdexcept>
 
 #include "integrators/all_integrators.h"
@@ -39,8 +38,7 @@ double spectral_radius(const Linear& first, const Linear& second) {
 
 /// Damping of a mode of that stiffness that stretches the first parts as far as they reach, then the next
 /// ones.
-template <class Parts>
-double damping_in_order(const ModeBound& bound, double stiffness, const Parts& parts) {
+double damping_in_order(const ModeBound& bound, double stiffness, const std::vector<ModeBound::Part>& parts) {
   double damping = bound.viscous_damping;
   for (const ModeBound::Part& part : parts) {
     const double taken = std::min(stiffness, part.stiffness);
@@ -85,12 +83,12 @@ double largest_amplification(const Integrator& integrator, double dt_s, const Mo
   std::ranges::sort(parts, [](const ModeBound::Part& a, const ModeBound::Part& b) {
     return a.damping * b.stiffness < b.damping * a.stiffness;
   });
+  const std::vector<ModeBound::Part> from_the_last(parts.rbegin(), parts.rend());
   double dampers = 0;  // which do not resist
   for (const ModeBound::Part& part : parts) dampers += part.stiffness > 0 ? 0 : part.damping;
   const auto add_extremes = [&](double stiffness) {
     add(stiffness, damping_in_order(bound, stiffness, parts));
-    add(stiffness,
-        std::min(bound.damping, damping_in_order(bound, stiffness, std::views::reverse(parts)) + dampers));
+    add(stiffness, std::min(bound.damping, damping_in_order(bound, stiffness, from_the_last) + dampers));
   };
   // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, is nearly in free
   // flight.
