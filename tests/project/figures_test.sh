@@ -168,9 +168,12 @@ assert {cpus(f"results/table1/{machine}") for machine in without_gpu} == {2}
 readme.append(f"Of {len(claims)} claims in both papers, {len(testable)} can be decided by a ratio of times.")
 readme.append("Each machine's rows test some of these. Held, of those tested, without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
 readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
+busy = sum(all[0][0].startswith("busy") and all[0][1]["outcome"] == "held" for all in (outcomes(claim, gpu) for claim in testable) if all)
+readme.append(f"{busy} of these held while the machine was busy; its quiet run has too few rounds.")
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
 slower = [machine for machine in machines if outcomes(locks, machine)[0][1]["outcome"] == "not held"]
-readme.append(f"On {len(slower)} of {len(machines)} machines, threads that share a spring list and a lock took longer than one thread on at least one cloth")
+crowded = sum(outcomes(locks, machine)[0][0].startswith("busy") for machine in slower)
+readme.append(f"On {len(slower)} of {len(machines)} machines ({crowded} of them busy), threads that share a spring list and a lock took longer than one thread on at least one cloth")
 readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`, a plain spring list (Zen 4, as in the chart)")
 shares = [1 / float(row["speedup_vs_serial"]) for threads in ("1-thread", "2-threads")
           for row in rows(f"results/peers/zen4/{threads}/timings.csv") if row["backend"] == "cpp-list" and row["status"] == "ok"]

@@ -346,8 +346,7 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
     const bool is_far = position_tolerance(system, integrator, reference.steps) > largest_tolerance;
     reference.failure = fmt::format(
         "nothing can be verified: roundings to single precision may move a node by {:.3g} rest lengths in "
-        "{}, more "
-        "than {}; {}",
+        "{}, more than {}; {}",
         reference.tolerance, pluralize(reference.steps, "step"), largest_tolerance,
         is_far ? "move the scene nearer to the origin" : "take a smaller dt_s");
     return reference;

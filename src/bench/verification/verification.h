@@ -121,7 +121,8 @@ double position_tolerance(const System& system, const Integrator& integrator, in
 /// lengths: position_tolerance, and what roundings of velocities add in xpbd's small steps.
 double comparison_tolerance(const System& system, const Integrator& integrator, double dt_s, int steps);
 
-/// Largest such tolerance, in mean rest lengths. With a larger one a comparison would not show much.
+/// Largest such tolerance, in mean rest lengths, and largest fraction of the energy in motion that is allowed
+/// for roundings. With larger ones a comparison would not show much.
 inline constexpr double largest_tolerance = 0.1;
 
 /// Reason for a missing reference if a node touches the floor within the first steps.
