@@ -85,8 +85,8 @@ Table list_backends(const ListOptions& options) {
                {"steps", steps_of(*backend)},
                {"paper_configuration", backend->paper_configuration},
                {"available", reason.empty()},
-               {"reason", reason.empty() ? Cell() : Cell(reason)},
-               {"description", backend->description}});
+               {"description", backend->description},
+               {"reason", reason.empty() ? Cell() : Cell(reason)}});
   }
   for (const std::string& reason : broken) std::cerr << "mssim: a backend is not shown: " << reason << '\n';
   return table;

@@ -63,7 +63,7 @@ end='the OpenCL driver .*/aborting_driver.so ended with signal 6 when queried fo
 devices 0 "$end\$"
 expect 3 "$end\$" run --scene cloth2500 --backend opencl --duration 0.01
 ends 0 list backends --format csv
-[ "$(grep -c "^\(opencl\|hybrid\),.*,false,\"\?$end" out)" -eq 2 ] || fail "list backends: $(cat out err)"
+[ "$(grep -c "^\(opencl\|hybrid\),.*,false,.*$end" out)" -eq 2 ] || fail "list backends: $(cat out err)"
 ends 0 bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1 --out results
 [ "$(column_of results/timings.csv verified | grep -c true)" -eq 3 ] || fail "not three rows: $(cat results/timings.csv)"
 [ "$(grep -c "unavailable: $end" results/timings.csv)" -eq 2 ] || fail "not two rows without a device: $(cat results/timings.csv)"

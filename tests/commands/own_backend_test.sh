@@ -132,7 +132,7 @@ echo text >wrong.txt
 describe here '"description": "a list of springs", "scenes": ["bodies"], "integrators": ["rk4"]'
 cp backends/here.json config/mssim/backends/mine.json
 ends 0 list backends --backend-folder backends --format csv
-grep -q '^here,bodies,,true,,a list of springs$' "$work/out" && grep -q '^mine,bodies,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
+grep -q '^here,bodies,,true,a list of springs,$' "$work/out" && grep -q '^mine,bodies,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
 XDG_CONFIG_HOME=config HOME=$work ends 0 list backends --format csv
 ! grep '^mine,' "$work/out" || fail "a relative XDG_CONFIG_HOME counts"
 ends 3 "${bench[@]}" --backend mine
