@@ -37,10 +37,13 @@ bool is_same(const fs::path& a, const fs::path& b) {
   return in_its_folder(a) == in_its_folder(b) || resolved(a) == resolved(b) || fs::equivalent(a, b, error);
 }
 
-void require_other(const NamedFile& a, const NamedFile& b) {
-  if (is_same(a.path, b.path))
-    throw UsageError("{} and {} are the same file, {}; give them different names", a.role, b.role,
-                     printable(a.path.string()));
+/// Throws UsageError if `written`, or its temporary, would replace the other file.
+void require_other(const NamedFile& written, const NamedFile& other) {
+  const NamedFile temporary{"the temporary file of " + written.role, temporary_of(written.path)};
+  for (const NamedFile& file : {written, temporary})
+    if (is_same(file.path, other.path))
+      throw UsageError("{} and {} are the same file, {}; give them different names", file.role, other.role,
+                       printable(file.path.string()));
 }
 
 std::vector<std::string>& arguments() {
@@ -63,8 +66,7 @@ void require_distinct(const std::vector<NamedFile>& written, const std::vector<N
   for (auto file = written.begin(); file != written.end(); ++file) {
     for (auto other = file + 1; other != written.end(); ++other) {
       require_other(*file, *other);
-      for (const auto& [under_way, whole] : {std::pair(*file, *other), std::pair(*other, *file)})
-        require_other({"the temporary file of " + under_way.role, temporary_of(under_way.path)}, whole);
+      require_other(*other, *file);
     }
     for (const NamedFile& input : read) require_other(*file, input);
   }

@@ -99,6 +99,7 @@ TEST_F(OutputNames, AreNotThoseOfFilesUnderWay) {
   const auto refused = ThrowsMessage<UsageError>(HasSubstr("the temporary file of --trace"));
   EXPECT_THAT([&] { require_distinct({{"--trace", trace}, {"--energy-curve", curve}}, {}); }, refused);
   EXPECT_THAT([&] { require_distinct({{"--energy-curve", curve}, {"--trace", trace}}, {}); }, refused);
+  EXPECT_THAT([&] { require_distinct({{"--trace", trace}}, {{"the scene", curve}}); }, refused);
 }
 
 }  // namespace

@@ -42,6 +42,10 @@ expect 2 'cloth.vtkhdf: .*H5MD' export cloth.vtkhdf --format obj --out never/a.o
 expect 2 'the same file' export cloth.h5 --format vtkhdf --out ./cloth.h5
 cp cloth.h5 same-000001.ply
 expect 2 'the same file' export same-000001.ply --format ply --frames 0,1 --out same.ply
+cp cloth.h5 fall.vtkhdf.part
+expect 2 'temporary file of --out and the trace .*fall.vtkhdf.part; give them different names' \
+  export fall.vtkhdf.part --format vtkhdf --out fall.vtkhdf
+cmp -s cloth.h5 fall.vtkhdf.part || fail "export has replaced the trace that it reads"
 expect 2 '--out is never/a.ply, .*OBJ: give a.obj' export cloth.h5 --format obj --out never/a.ply
 expect 2 '--out is cloth.xdmf, .*VTKHDF: give cloth.vtkhdf' export cloth.h5 --format vtkhdf --out cloth.xdmf
 expect 4 'cannot write no/such/a.ply' export cloth.h5 --format ply --out no/such/a.ply
