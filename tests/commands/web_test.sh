@@ -22,22 +22,26 @@ ends 0 web --out page.html
 (($(stat -c %s page.html) < 8000000)) || fail "the page has more than 8 MB"
 if grep -qE '(src|href)="?https?:|@import|import\(' page.html; then fail "the page needs something beside it"; fi
 
-# HEAD is answered like GET, without the body.
+# HEAD is answered like GET, without the body. A Host without a port is that of port 80; another host's page gets no answer.
 begins web --serve
 soon 300 test -s "$work/out" || fail "mssim does not serve the page"
-python3 - "$(grep -o '[0-9]*' "$work/out")" <<'PYTHON' || fail "HEAD is not answered like GET"
+python3 - "$(grep -o '[0-9]*' "$work/out")" <<'PYTHON' || fail "requests are not answered as they should be"
 import socket, sys
 
-def answer(method, path):
+def answer(method, path, host="localhost:1"):
     """Head and body of all that comes until the connection is closed."""
     with socket.create_connection(("localhost", int(sys.argv[1]))) as connection:
-        connection.sendall(f"{method} {path} HTTP/1.1\r\nHost: localhost:1\r\n\r\n".encode())
+        connection.sendall(f"{method} {path} HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
         return b"".join(iter(lambda: connection.recv(1 << 16), b"")).split(b"\r\n\r\n", 1)
 
 for path, status in (("/", b"200"), ("/?auto=cloth2500", b"200"), ("/nothing", b"404")):
     head, body = answer("GET", path)
     assert status in head.splitlines()[0] and body, head
     assert answer("HEAD", path) == [head, b""], path
+for host in "localhost", "127.0.0.1", "127.0.0.1:80":
+    assert b"200" in answer("GET", "/", host)[0].splitlines()[0], host
+for host in "localhost.example.org", "example.org:80", "":
+    assert answer("GET", "/", host) == [b""], host
 PYTHON
 is_ended 143 TERM
 # Both are packages of the tests. Only a build that was configured before they came has no module.
