@@ -121,20 +121,25 @@ def check_mutants(browser, page):
 
 
 def check_accidents(browser, page):
-    """The GPU is lost, and a buffer is too large for it: other rows stay."""
+    """The GPU is lost, a row of the CPU fails then, and a buffer is too large for the GPU: other rows stay."""
     browser.open(page, query_of("cloth2500,cloth4900,bodies3858", rounds=5, seconds=0.05, more="&lose=1.5"))
     rows = rows_of(lost := browser.results())
     expect(any("lost the GPU" in row["status"] + row["note"] for row in rows if row["backend"] == "webgpu"),
            f"nothing says that the device was lost: {rows}")
     expect(len(rows) >= 6 and all(is_timed(row) for row in rows if row["backend"] != "webgpu"), f"rows are gone: {rows}")
-    # A row fails after it has samples.
-    third = mutated(page, "  async sample(row, system) {", "  async sample(row, system) { if (row.backend === 'wasm' && row.samples.length > 1) throw new Error('failed: ended');")
+    sample = "  async sample(row, system) {"
+    third = mutated(page, sample, sample + """
+      if (row.backend === 'wasm' && row.samples.length > 1) {
+        this.device.destroy();
+        await this.device.lost;
+        throw new Error('ended');
+      }""")
     browser.open(third, query_of("cloth2500", rounds=4))
     failed = browser.results()
     rows = {row["backend"]: row for row in rows_of(failed)}
     ended = rows.pop("wasm")
     expect(ended["status"] == "failed: ended" and ended["rounds"] == "2" and not ended["ms_per_step"], f"not failed after two samples: {ended}")
-    expect(all(map(is_timed, rows.values())), f"not right: {rows}")
+    expect(all(map(is_timed, rows.values())) and "lost the GPU" in rows["webgpu"]["note"], f"not right: {rows}")
     browser.open(page.replace("if (bytes > device.limits[limit])", "if (bytes > 100000)"), query_of("cloth2500,cloth4900"))
     rows = {(row["scene"], row["backend"]): row for row in rows_of(browser.results())}
     large = rows.pop(("cloth4900", "webgpu"))
@@ -181,12 +186,23 @@ def check_person(browser, page):
             last = "last" if width == 1280 else "nth"  # of a phone's columns, those up to the time
             expect(browser.value(f"document.querySelector('thead th:{last}-child{'' if last == 'last' else '(4)'}').getBoundingClientRect().right")
                    <= width, f"columns of the table are hidden in a page of {width}")
+    # Stop while wasm is verified.
+    verify = "async function verify(backend, system, reference, row, pause) {"
+    browser.open(mutated(page, verify, verify + " while (row.backend === 'wasm') await pause();"), "integrators=semi-euler")
+    browser.value("void measure()")
+    browser.until("session && !session.finished && session.rows.some(row => row.backend === 'wasm')")
+    browser.value("session.stopping = true")
+    rows = rows_of(browser.results())
+    expect([row["backend"] for row in rows] == ["javascript"] and rows[0]["status"].startswith("not timed"),
+           f"rows without an end of their verification: {rows}")
 
 
 def check_without(browser, page):
-    """There is no WebGPU, no isolation, or no module."""
-    browser.open(page, query_of("cloth2500", rounds=2, threads=3))
+    """There is no WebGPU, no isolation, or no module; settings of the address."""
+    interval = "document.querySelector('#rows td:nth-child(5)').textContent"
+    browser.open(page, query_of("cloth2500", rounds=12, threads="03"))
     rows = rows_of(without := browser.results())
+    expect(" to " in browser.value(interval), "the page does not show the interval of twelve rounds")
     expect({row["backend"]: row["threads"] for row in rows} == {"javascript": "1", "wasm": "1", "wasm-threads": "3"}, f"threads: {rows}")
     expect(json.loads(without)["provenance"]["threads"]["asked_for"] == 3, f"threads of the run: {without}")
     expect("webgpu" not in [row["backend"] for row in rows] and all(map(is_timed, rows)), f"rows without WebGPU: {rows}")
@@ -195,10 +211,14 @@ def check_without(browser, page):
     browser.until("element('state').textContent.includes('auto nosuch, rounds 0 (1 to 100)')")
     browser.open(page, query_of("cloth2500", rounds=2.5, more="&integrator=rk4&webgpu=off"))
     browser.until("element('state').textContent.includes('rounds 2.5 (1 to 100), integrator rk4, webgpu off')")
+    browser.open(page, "rounds=500&seconds=abc&threads=1e2&integrator=rk4")
+    browser.until("element('state').textContent.includes('rounds 500 (1 to 100), threads 1e2 (2 to 99), seconds abc (0.001 to 10), integrator rk4')")
+    expect(browser.value("element('start').disabled"), "the page measures with settings that it does not know")
     browser.is_isolated = False
     browser.open(page, query_of("cloth2500"))
     rows = rows_of(browser.results())
     expect([row["backend"] for row in rows] == ["javascript", "wasm"] and all(map(is_timed, rows)), f"rows without isolation: {rows}")
+    expect(not browser.value(interval), "the page shows an interval of one round")
     expect("Cross-Origin-Embedder-Policy" in browser.value("element('notes').textContent"), "the page does not say how to isolate it")
     browser.is_isolated = True
     # A page of an mssim that was built without a compiler for WebAssembly.

@@ -253,8 +253,8 @@ class Session {
       for (const row of this.rows) {
         row.backend_?.destroy();
         delete row.backend_;
-        this.summarise(row);
       }
+      this.summarise();
       this.show(this);
     }
   }
@@ -264,26 +264,32 @@ class Session {
     return WebGpuBackend.make(this.device, system, integrator, dt);
   }
 
-  /** Keeps what a row has if the device is lost or the user stops. */
+  /** Why the row of a GPU cannot go on; empty if it can, and for rows of the CPU. */
+  lossOf(row) { return row.backend === 'webgpu' ? this.lost : ''; }
+
+  /** Keeps what a row has if its device is lost or the user stops. */
   async attempt(row, work) {
     if (row.status !== 'ok') return;
+    let failure = '';
     try {
-      if (row.backend === 'webgpu' && this.lost) throw new Error(this.lost);
-      await work();
-      if (row.backend === 'webgpu' && this.lost) throw new Error(this.lost);
+      if (!this.lossOf(row)) await work();
     } catch (error) {
       if (error instanceof Stopped) throw error;
-      if (row.samples.length && this.lost)
-        return void (row.note.includes(this.lost) || (row.note = [row.note, this.lost].filter(Boolean).join('; ')));
+      failure = error.message || error.name;
+    }
+    const loss = this.lossOf(row);
+    if (loss && row.samples.length) {
+      if (!row.note.includes(loss)) row.note = [row.note, loss].filter(Boolean).join('; ');
+    } else if (failure || loss) {
       row.verified = false;
-      row.status = /^(failed|unsupported): /.test(error.message) ? error.message : `failed: ${this.lost || error.message}`;
+      row.status = /^(failed|unsupported): /.test(failure) ? failure : `failed: ${loss || failure}`;
     }
   }
 
   /** Times steps from the start, which is set outside of the timed region. */
   async time(row, system, steps) {
     for (;;) {
-      if (row.backend === 'webgpu' && this.lost) throw new Error(this.lost);
+      if (this.lossOf(row)) throw new Error(this.lossOf(row));
       const already = hides;
       await row.backend_.setState(system.start);
       await row.backend_.step(1);
@@ -325,19 +331,23 @@ class Session {
     row.samples.push(1000 * seconds / row.steps);
   }
 
-  summarise(row) {
-    if (row.status === 'ok' && row.verified && !row.samples.length) row.status = 'not timed: the measurement ended before';
-    row.rounds = row.samples.length;
-    if (row.status !== 'ok' || !row.samples.length) return;
-    const {median: middle, low, high} = medianInterval(row.samples);
-    Object.assign(row, {ms_per_step: middle, ms_per_step_low: low, ms_per_step_high: high,
-                        ms_per_step_min: Math.min(...row.samples)});
-    // A device that becomes hot slows down from round to round.
-    const third = Math.floor(row.samples.length / 3);
-    if (third > 1) row.drift = median(row.samples.slice(-third)) / median(row.samples.slice(0, third));
-    const base = this.rows.find(it => it.scene === row.scene && it.integrator === row.integrator && it.backend === 'javascript');
-    if (base && base !== row && base.samples.length === row.samples.length)
-      row.speedup = median(base.samples.map((ms, i) => ms / row.samples[i]));
+  /** Computes what follows from the samples of all rows. A row whose verification has not ended says nothing: it is left out. */
+  summarise() {
+    this.rows = this.rows.filter(row => row.verified || row.status !== 'ok');
+    for (const row of this.rows) {
+      if (row.status === 'ok' && !row.samples.length) row.status = 'not timed: the measurement ended before';
+      row.rounds = row.samples.length;
+      if (row.status !== 'ok') continue;
+      const {median: middle, low, high} = medianInterval(row.samples);
+      Object.assign(row, {ms_per_step: middle, ms_per_step_low: low, ms_per_step_high: high,
+                          ms_per_step_min: Math.min(...row.samples)});
+      // A device that becomes hot slows down from round to round.
+      const third = Math.floor(row.samples.length / 3);
+      if (third > 1) row.drift = median(row.samples.slice(-third)) / median(row.samples.slice(0, third));
+      const base = this.rows.find(it => it.scene === row.scene && it.integrator === row.integrator && it.backend === 'javascript');
+      if (base && base !== row && base.samples.length === row.samples.length)
+        row.speedup = median(base.samples.map((ms, i) => ms / row.samples[i]));
+    }
   }
 
   /** Milliseconds that are left, about. */

@@ -5,6 +5,13 @@
 const element = id => document.getElementById(id);
 const address = new URLSearchParams(location.search);
 const listIn = name => (address.get(name) || '').split(',').filter(Boolean);
+const ranges = {rounds: [1, 100], threads: [2, 99], seconds: [0.001, 10]};
+/** The number of a setting in the address: undefined if it is not there, NaN if it is out of its range. */
+function numberIn(name) {
+  if (!address.has(name)) return undefined;
+  const number = Number(address.get(name)), [least, most] = ranges[name];
+  return number >= least && number <= most && (name === 'seconds' || Number.isInteger(number)) ? number : NaN;
+}
 /** Three significant digits, without an exponent. */
 const digits = value => value.toPrecision(3).includes('e') ? Number(value.toPrecision(3)).toString() : value.toPrecision(3);
 const create = (tag, properties = {}, ...children) => {
@@ -58,7 +65,7 @@ function showRows({rows}) {
     const together = published('gpu+multi-thread-cpu'), timed = row.status === 'ok' && row.ms_per_step;
     const verdict = row.verified ? `verified, error ${digits(row.position_error)}` : row.status === 'ok' ? '' : row.status;
     return create('tr', {}, create('th', {scope: 'row', textContent: `${row.scene} (${row.nodes.toLocaleString('en')})`}), ...[
-      row.integrator, row.threads > 1 ? `${row.backend} (${row.threads})` : row.backend, timed ? digits(row.ms_per_step) : '', timed ? `${digits(row.ms_per_step_low)} to ${digits(row.ms_per_step_high)}` : '',
+      row.integrator, row.threads > 1 ? `${row.backend} (${row.threads})` : row.backend, timed ? digits(row.ms_per_step) : '', timed && row.rounds > 5 ? `${digits(row.ms_per_step_low)} to ${digits(row.ms_per_step_high)}` : '',
       timed && row.speedup ? `${digits(row.speedup)}×` : '', timed && row.drift ? row.drift.toFixed(2) : '',
       published('cpu-only') ?? '', published('gpu') ?? (together ? `${together} with threads` : ''),
       row.verified && row.status !== 'ok' ? `${verdict}; ${row.status}` : verdict,
@@ -135,7 +142,7 @@ function showKept() {
     session.endedEarly = true;
     session.notes.push('the page was loaded again during the measurement, which ended');
   }
-  session.rows.forEach(row => session.summarise(row));
+  session.summarise();
   show(session);
 }
 
@@ -182,8 +189,7 @@ const chosen = id => [...element(id).querySelectorAll('input:checked')].map(({va
 
 async function measure() {
   const options = {scenes: chosen('scenes'), integrators: chosen('integrators'), rounds: Number(element('rounds').value) || 10,
-                   sampleSeconds: Number(address.get('seconds')) || 0.1,
-                   threads: Number(address.get('threads')?.match(/^[1-9]\d?$/)) || navigator.hardwareConcurrency || 1};
+                   sampleSeconds: numberIn('seconds') ?? 0.1, threads: numberIn('threads') ?? (navigator.hardwareConcurrency || 1)};
   if (session && !session.finished) return;
   if (!options.scenes.length || !options.integrators.length) return void (element('state').textContent = 'Choose a scene and an integrator.');
   element('stop').disabled = false;
@@ -225,14 +231,12 @@ element('send').addEventListener('click', send);
 const isServed = data.served;
 element('send').hidden = !isServed;
 
-/** Why the settings in the address cannot be measured; empty if they can. */
+/** Why the settings in the address cannot be used; empty if they can. */
 function wrongSetting() {
   const unknown = (name, known) => listIn(name).filter(value => !known.some(one => one.name === value)).map(value => `${name} ${value}`);
-  const numbers = {rounds: [1, 100], threads: [2, 99], seconds: [0.001, 10]};
-  const fits = (name, [least, most]) => address.get(name) >= least && address.get(name) <= most && (name === 'seconds' || Number.isInteger(Number(address.get(name))));
-  const beyond = Object.entries(numbers).filter(([name, range]) => address.has(name) && !fits(name, range))
+  const beyond = Object.entries(ranges).filter(([name]) => Number.isNaN(numberIn(name)))
     .map(([name, [least, most]]) => `${name} ${address.get(name)} (${least} to ${most})`);
-  const names = ['auto', 'integrators', 'webgpu', 'lose', ...Object.keys(numbers)];
+  const names = ['auto', 'integrators', 'webgpu', 'lose', ...Object.keys(ranges)];
   const other = [...address].filter(([name, value]) => !names.includes(name) || (name === 'webgpu' && value !== 'no')).map(pair => pair.join(' '));
   const all = [...unknown('auto', data.scenes), ...unknown('integrators', data.integrators), ...beyond, ...other];
   return all.length ? `The address has settings that this page does not know: ${all.join(', ')}. Change them, and load the page again.` : '';
@@ -243,7 +247,10 @@ const [autoScenes, integrators] = [listIn('auto'), listIn('integrators')];
 element('scenes').append(...data.scenes.map(({name}) => box(name, !autoScenes.length || autoScenes.includes(name))));
 element('integrators').append(...data.integrators.map(({name, paper_name}) =>
   box(name, integrators.length ? integrators.includes(name) : name === paper_name)));
-if (address.get('rounds')) element('rounds').value = address.get('rounds');
+if (numberIn('rounds')) element('rounds').value = numberIn('rounds');
+const wrong = wrongSetting();
+if (wrong) element('state').textContent = wrong;
+element('start').disabled = Boolean(wrong);
 if (!data.wasm) element('module').textContent = `In this page, ${missingModule}.`;
 element('version').textContent = `Made by mssim ${build.version}, commit ${build.commit.slice(0, 12)}${build.dirty ? ' with changes' : ''}.`;
 
@@ -252,9 +259,8 @@ element('version').textContent = `Made by mssim ${build.version}, commit ${build
   element('support').textContent = device ? `WebGPU runs on ${adapterName()}.` : `${missingWebGpu()} Only the CPU will be measured.`;
   device?.destroy();
   await animate();
+  if (wrong) return;
   if (!autoScenes.length) return showKept();
-  const wrong = wrongSetting();
-  if (wrong) return void (element('state').textContent = wrong);
   await measure();
   if (isServed) await send();
 })();
