@@ -412,9 +412,9 @@ int run_scene(RunOptions options) {
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
-  // By default 60 frames per simulated second, or one per step if steps are longer.
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
-                            options.fps.value_or(std::min(60.0, 1 / scene.dt_s)), options.losses};
+                            options.fps.value_or(std::min(options.usual_fps, 1 / scene.dt_s)),
+                            options.losses};
   return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
                                   : run_simulation(options, info, scene, integrator, plan);
 }

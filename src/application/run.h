@@ -126,7 +126,8 @@ struct RunOptions {
   std::string precision;  ///< "single" or "double"; empty: that of the backend's row
   std::optional<double> dt_s;
   std::optional<double> duration_s;  ///< default_duration_s if not given
-  std::optional<double> fps;         ///< frames per simulated second, 60 if not given
+  std::optional<double> fps;         ///< frames per simulated second
+  double usual_fps = 60;             ///< if fps is not given; one per step if steps are longer
   RunFiles files;
   PictureOptions pictures;  ///< of files.pictures, except for the threads
   bool losses = false;

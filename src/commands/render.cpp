@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -38,6 +39,8 @@ struct RenderOptions {
 };
 
 constexpr double movie_fps = 30;
+/// Browsers show a frame of 10 ms or less for 100 ms.
+constexpr double browser_fps = 90;
 constexpr std::uint32_t most_on_a_sheet = 20;  // across and down
 
 using Size = std::pair<std::uint32_t, std::uint32_t>;
@@ -80,23 +83,47 @@ std::optional<std::size_t> moments_on_sheet(const RenderOptions& options, bool h
   return places > 1 && has_legend ? places - 1 : places;
 }
 
+/// Frame rate at which a movie runs in simulated time.
+double natural_fps(const TraceContent& content, const std::vector<std::size_t>& frames) {
+  const double simulated_s = content.time_s[frames.back()] - content.time_s[frames.front()];
+  return simulated_s > 0 ? static_cast<double>(frames.size() - 1) / simulated_s : movie_fps;
+}
+
+/// Every k-th frame, so that browsers show a movie of them in simulated time.
+std::vector<std::size_t> frames_for_browsers(const TraceContent& content,
+                                             const std::vector<std::size_t>& frames) {
+  const double most = static_cast<double>(frames.size());
+  const auto k =
+      static_cast<std::size_t>(std::ceil(std::min(natural_fps(content, frames) / browser_fps, most)));
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < frames.size(); i += k) kept.push_back(frames[i]);
+  return kept;
+}
+
 /// The frames to draw, in order.
 std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceContent& content,
                                       bool has_legend) {
   std::vector<std::size_t> chosen = chosen_frames(options.frames, content.time_s);
   if (const auto moments = moments_on_sheet(options, has_legend)) return spread_over(chosen, *moments);
-  if (options.movie) return chosen;
+  if (options.movie) return options.run.fps ? chosen : frames_for_browsers(content, chosen);
   if (!options.frames.frames.empty() && chosen.size() > 1)
     throw UsageError("--frames names {}, and a picture shows one: name one, or give --sheet or --movie, too",
                      pluralize(chosen.size(), "frame"));
   return {chosen.back()};
 }
 
-/// Frame rate at which a movie runs in simulated time.
-double natural_fps(const TraceContent& content, const std::vector<std::size_t>& frames) {
-  const double simulated_s = content.time_s[frames.back()] - content.time_s[frames.front()];
-  return simulated_s > 0 ? std::clamp(static_cast<double>(frames.size() - 1) / simulated_s, 0.1, 1000.0)
-                         : movie_fps;
+/// Decimals of seconds, at least two, with which different times of the frames are written differently.
+int decimals_of_times(const TraceContent& content, const std::vector<std::size_t>& frames) {
+  constexpr double nanosecond = 1e-9;
+  std::vector<double> times_s =
+      mapped<double>(frames, [&](std::size_t frame) { return content.time_s[frame]; });
+  std::ranges::sort(times_s);
+  double least_s = 1;
+  for (std::size_t i = 1; i < times_s.size(); ++i)
+    if (const double distance_s = times_s[i] - times_s[i - 1]; distance_s > nanosecond)
+      least_s = std::min(least_s, distance_s);
+  // The last decimal is finer than the distance: 0.005 and 0.015 would both be rounded to 0.01.
+  return std::max(2, static_cast<int>(std::floor(1 - std::log10(0.999 * least_s))));
 }
 
 /// Draws the chosen frames of a trace. Throws Interrupted. Returns the bytes of the file, and a description
@@ -118,8 +145,10 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   ProgressLine progress({1}, ProgressLine::Log::nothing);
   progress.begin_scene(stem_of(options));
   std::optional<Movie> movie;
-  if (options.movie) movie.emplace(options.run.fps.value_or(natural_fps(content, frames)));
+  if (options.movie)
+    movie.emplace(options.run.fps.value_or(std::clamp(natural_fps(content, frames), 0.1, browser_fps)));
   std::vector<CaptionedPicture> pictures;
+  const int decimals = decimals_of_times(content, frames);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     stop.throw_if_requested();
     Picture drawn = painter.picture_of(trace.positions(frames[i]), !legend_apart);
@@ -128,7 +157,8 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
     if (movie)
       movie->add(drawn);
     else
-      pictures.push_back({std::move(drawn), fmt::format("t = {:.2f} s", content.time_s[frames[i]])});
+      pictures.push_back(
+          {std::move(drawn), fmt::format("t = {:.{}f} s", content.time_s[frames[i]], decimals)});
   }
   if (movie) return movie->take_bytes();
   if (legend_apart) pictures.push_back({painter.legend(), ""});
@@ -136,13 +166,12 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   return png_of(pictures.front().picture);
 }
 
-/// Frames per simulated second that a run must provide for the pictures. A large scene has a large trace, so
-/// it takes no more than needed.
-double fps_of_run(const RenderOptions& options, bool has_strain) {
-  if (options.run.fps) return *options.run.fps;
+/// Frames per simulated second that the pictures need if --fps names no others. A large scene has a large
+/// trace, so it takes no more.
+double usual_fps(const RenderOptions& options) {
   if (options.movie || options.frames.given()) return movie_fps;
   const double duration_s = options.run.duration_s.value_or(default_duration_s);
-  const std::size_t moments = moments_on_sheet(options, has_strain).value_or(2);
+  const std::size_t moments = moments_on_sheet(options, options.look.colour == ColourBy::strain).value_or(2);
   // It is unknown when a garment will have settled.
   if (sheet_size(options) && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content))
     return movie_fps;
@@ -175,7 +204,7 @@ int render(const RenderOptions& options) {
   int code = exit_ok;
   if (trace.empty()) {
     RunOptions run = options.run;
-    run.fps = fps_of_run(options, picture.colour == ColourBy::strain);
+    run.usual_fps = usual_fps(options);
     trace = temporary_folder_of_process() / "scene.h5";
     run.files.trace = trace.string();
     run.files.temporary = true;
@@ -223,7 +252,7 @@ std::function<int()> declare_render(Arguments& arguments) {
   declare_stepping(
       arguments, options->run,
       "Frames per simulated second of a scene (default: as many as are drawn, 30 for a movie), and per "
-      "second of a movie (default: as simulated)",
+      "second of a movie (default: as simulated; browsers slow down more than 90)",
       scene);
   return [options] { return render(*options); };
 }

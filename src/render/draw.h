@@ -64,9 +64,6 @@ class Ground {
   /// Ground under `box`, at `height` (m). The distance of its lines is a round number of metres.
   Ground(const Box<double>& box, double height);
 
-  /// Distance of the lines, m.
-  double spacing() const { return spacing_; }
-
   /// Where a ray towards the camera meets the ground; none if the camera looks along it or from below. `x`
   /// and `y` as in Camera::seen.
   std::optional<Vec3d> met_by(const Camera& camera, double x, double y) const;

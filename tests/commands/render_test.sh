@@ -38,19 +38,42 @@ for colour in object panel strain; do
 done
 cmp -s object.png panel.png || fail "a cloth has panels"
 cmp -s object.png strain.png && fail "strain is not shown"
+ends 0 run --scene bodies3858 --threads 1 --duration 0.01 --fps 100 --trace bodies.h5
+for colour in object panel; do ends 0 render bodies.h5 --size 320x240 --colour "$colour" --out "bodies-$colour.png"; done
+cmp -s bodies-object.png bodies-panel.png || fail "bodies have panels"
 
 ends 0 render t.h5 --sheet 2x2 --size 100x80
-expect_picture t-sheet.png "$(size_of t-sheet.png)"
-[ "$(size_of t-sheet.png | cut -dx -f1)" -gt 200 ] || fail "two pictures do not fit beside each other on the sheet"
+expect_picture t-sheet.png 233x227
 # A legend takes the last place: of two, one is the moment.
 ends 0 render t.h5 --sheet 2x1 --size 320x240 --colour strain --out with-legend.png
 [ "$(size_of with-legend.png | cut -dx -f1)" -gt 640 ] || fail "the legend has no place of its own"
+# Moments 1 ms apart, which look the same, have different times below them.
+sed 's/"gravity_m_per_s2": 9.81/"gravity_m_per_s2": 0/; s/"ripple": .*/"ripple": {"height_m": 0, "wavelength_m": 0.09, "speed_m_per_s": 0},/' \
+  "$2/scenes/cloth2500.json" >still.json
+ends 0 run --scene ./still.json --duration 0.005 --fps 1000 --trace still.h5
+for frames in 1,2 2,3; do ends 0 render still.h5 --frames $frames --sheet 2x1 --size 80x60 --out "still-$frames.png"; done
+cmp -s still-1,2.png still-2,3.png && fail "the times of 1 to 3 ms are written alike"
 ends 0 render t.h5 --movie --size 80x60
 [ "$(frames_of t.webp)" -eq 5 ] || fail "the movie has $(frames_of t.webp) frames instead of 5"
 ends 0 render t.h5 --movie --size 80x60 --frames 1-2,last --out some.webp
 [ "$(frames_of some.webp)" -eq 3 ] || fail "the movie has $(frames_of some.webp) frames instead of 3"
 ends 0 render t.h5 --size 80x60 --movie named.webp
 cmp -s t.webp named.webp || fail "--movie FILE writes something else than --movie"
+# Browsers would show frames of 5 ms for 100 ms: every third is taken, unless --fps says otherwise.
+ends 0 run --scene cloth2500 --duration 0.1 --fps 200 --trace fast.h5
+ends 0 render fast.h5 --movie --size 80x60
+[ "$(frames_of fast.webp)" -eq 7 ] || fail "the movie of 21 frames in 0.1 s has $(frames_of fast.webp) frames instead of 7"
+ends 0 render fast.h5 --movie --size 80x60 --fps 200
+[ "$(frames_of fast.webp)" -eq 21 ] || fail "--fps leaves out $((21 - $(frames_of fast.webp))) of 21 frames"
+# A scene has no more frames than steps, unless --fps names a number.
+long_steps=(--scene cloth2500 --integrator implicit-euler --dt 0.04 --duration 0.2 --size 80x60)
+ends 0 render "${long_steps[@]}" --movie long.webp
+[ "$(frames_of long.webp)" -eq 6 ] || fail "the movie of 5 steps has $(frames_of long.webp) frames instead of 6"
+ends 0 render "${long_steps[@]}" --time 0.1 --out long.png
+ends 0 render "${long_steps[@]}" --frames 2 --out long.png
+ends 0 render --scene cloth2500 --duration 0.00004 --size 80x60 --out short.png
+ends 0 render --scene cloth2500 --duration 0.0001 --sheet 3x2 --size 80x60 --out short.png
+expect 2 'more than one per step of 0.04 s; give --fps 25 or less' render "${long_steps[@]}" --fps 30 --movie long.webp
 expect 2 'put the trace before it' render --movie t.h5
 for name in movie.png movie.apng; do
   expect 2 "$name, but .*WebP: give movie.webp" render t.h5 --movie --out "$name"

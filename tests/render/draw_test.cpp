@@ -47,10 +47,16 @@ TEST(Drawn, ShowsTheColourOfTheSideThatIsSeen) {
 }
 
 TEST(Ground, HasLinesARoundNumberOfMetresApart) {
+  const Camera above({0, 90});
   for (const auto& [across, spacing] :
        {std::pair{8.0, 1.0}, {2.0, 0.2}, {0.9, 0.1}, {45.0, 5.0}, {1e-3, 1e-4}}) {
     const Ground ground({{0, 0, 0}, {across, across, across}}, 0);
-    EXPECT_NEAR(ground.spacing(), spacing, 1e-9 * spacing) << across;
+    const Light white_ground{1, 1, 1};
+    for (const double line : {0.0, 1.0, 2.0, 3.0}) {
+      const Vec3d on{line * spacing, 0, 0.3 * spacing}, between = on + Vec3d{spacing / 2, 0, 0};
+      EXPECT_LT(ground.colour_at(on, white_ground, 1, above, 1e-3 * spacing).x, 1) << across;
+      EXPECT_EQ(ground.colour_at(between, white_ground, 1, above, 1e-3 * spacing).x, 1) << across;
+    }
   }
 }
 

@@ -138,7 +138,8 @@ void Painter::make_room_for(const std::vector<Vec3d>& positions) {
 
 bool Painter::has_legend() const {
   return options_.colour == ColourBy::strain ||
-         (options_.colour == ColourBy::panel && skin_.parts.size() > 1);
+         (options_.colour == ColourBy::panel && content_.shape.in_panels && skin_.parts.size() > 1 &&
+          skin_.parts.size() <= category_colours().size());
 }
 
 Picture Painter::legend() const {

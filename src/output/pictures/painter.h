@@ -50,7 +50,7 @@ class Painter {
   /// The picture of a moment for which there is room.
   Picture picture_of(const std::vector<Vec3d>& positions, bool with_legend = true) const;
 
-  /// Whether the colours need a legend.
+  /// Whether the colours have a legend: those of strain, and those of two to eight panels, which all differ.
   bool has_legend() const;
   /// Only the legend, as large as a picture.
   Picture legend() const;

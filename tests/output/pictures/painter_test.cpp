@@ -7,6 +7,7 @@
 #include "picture/picture.h"
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/garment_system.h"
 #include "tests/support/picture_fixture.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
@@ -117,6 +118,21 @@ TEST(Painter, DrawsALegendApart) {
       if (static_cast<int>(x) < legend.left) {
         EXPECT_EQ(with.at(x, y), without.at(x, y));
       }
+}
+
+TEST(Painter, HasALegendOfPanelsThatAllLookDifferent) {
+  const auto has_legend = [](const System& system) {
+    const TraceContent content = content_of(system);
+    return Painter(content, system.start.position, options(ColourBy::panel)).has_legend();
+  };
+  const auto panels = [](std::size_t count) {
+    return garment_of(std::vector<SquarePanel>(count, {3, 4, 0.01, {0, 0, 0}}));
+  };
+  EXPECT_FALSE(has_legend(panels(1)));
+  EXPECT_TRUE(has_legend(panels(2)));
+  EXPECT_TRUE(has_legend(panels(8)));
+  EXPECT_FALSE(has_legend(panels(9))) << "there are eight colours";
+  EXPECT_FALSE(has_legend(two_solid_blocks())) << "bodies are no panels";
 }
 
 TEST(NodeStrain, IsTheMeanOfTheNodesSprings) {
