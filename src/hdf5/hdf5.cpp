@@ -121,55 +121,6 @@ std::string text_of(const char* bytes, std::size_t length, H5T_str_t padding) {
   return text;
 }
 
-/// The strings of a dataset or an attribute; `read` fills memory in the file's own type.
-template <class Read>
-std::vector<std::string> texts_in(hid_t file, const std::string& path, const Hdf5Type& type,
-                                  const Hdf5Space& space, const Read& read) {
-  const std::string action = "reading " + path;
-  if (checked(H5Tget_class(type.get()), action) != H5T_STRING) throw Hdf5ContentError(path + " is not text");
-  const H5T_str_t padding = checked(H5Tget_strpad(type.get()), action);
-  const auto count = static_cast<hsize_t>(checked(H5Sget_simple_extent_npoints(space.get()), action));
-  const std::size_t length = H5Tget_size(type.get());
-  require_room(file, path, count, length);
-  std::vector<std::string> texts;
-  if (checked(H5Tis_variable_str(type.get()), action) > 0) {
-    std::vector<char*> pointers(count, nullptr);
-    const herr_t status = read(pointers.data());
-    for (const char* text : pointers)
-      texts.push_back(text ? text_of(text, std::strlen(text), padding) : std::string());
-    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, pointers.data());
-    checked(status, action);
-  } else {
-    std::string bytes(count * length, '\0');
-    checked(read(bytes.data()), action);
-    for (std::size_t i = 0; i < count; ++i)
-      texts.push_back(text_of(bytes.data() + i * length, length, padding));
-  }
-  return texts;
-}
-
-Hdf5Attribute open_attribute(hid_t file, const std::string& path, const std::string& name) {
-  if (!exists(file, path) || !has_attribute(file, path, name))
-    throw Hdf5ContentError(fmt::format("{} has no attribute {}", path, name));
-  return {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-          fmt::format("opening attribute {} of {}", name, path)};
-}
-
-template <class Number>
-Number read_number(hid_t file, const std::string& path, const std::string& name,
-                   bool (*is_known)(const Hdf5Type&), hid_t memory_type) {
-  const Hdf5Attribute attribute = open_attribute(file, path, name);
-  const std::string action = fmt::format("reading attribute {} of {}", name, path);
-  const Hdf5Type type(H5Aget_type(attribute.get()), action);
-  const Hdf5Space space(H5Aget_space(attribute.get()), action);
-  if (!is_known(type) || H5Sget_simple_extent_npoints(space.get()) != 1)
-    throw Hdf5ContentError(
-        fmt::format("attribute {} of {} is not a single number of a type that mssim reads", name, path));
-  Number number{};
-  checked(H5Aread(attribute.get(), memory_type, &number), action);
-  return number;
-}
-
 }  // namespace
 
 void prepare_hdf5() {
@@ -360,12 +311,33 @@ void require_room(hid_t file, const std::string& path, hsize_t items, hsize_t by
 }
 
 std::vector<std::string> read_texts(hid_t file, const std::string& path) {
+  const std::string action = "reading " + path;
   const Hdf5Dataset dataset = open_dataset(file, path);
-  const Hdf5Type type(H5Dget_type(dataset.get()), "reading " + path);
-  const Hdf5Space space(H5Dget_space(dataset.get()), "reading " + path);
-  return texts_in(file, path, type, space, [&](void* data) {
+  const Hdf5Type type(H5Dget_type(dataset.get()), action);
+  const Hdf5Space space(H5Dget_space(dataset.get()), action);
+  if (checked(H5Tget_class(type.get()), action) != H5T_STRING) throw Hdf5ContentError(path + " is not text");
+  const H5T_str_t padding = checked(H5Tget_strpad(type.get()), action);
+  const auto count = static_cast<hsize_t>(checked(H5Sget_simple_extent_npoints(space.get()), action));
+  const std::size_t length = H5Tget_size(type.get());
+  require_room(file, path, count, length);
+  const auto read = [&](void* data) {
     return H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
-  });
+  };
+  std::vector<std::string> texts;
+  if (checked(H5Tis_variable_str(type.get()), action) > 0) {
+    std::vector<char*> pointers(count, nullptr);
+    const herr_t status = read(pointers.data());
+    for (const char* text : pointers)
+      texts.push_back(text ? text_of(text, std::strlen(text), padding) : std::string());
+    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, pointers.data());
+    checked(status, action);
+  } else {
+    std::string bytes(count * length, '\0');
+    checked(read(bytes.data()), action);
+    for (std::size_t i = 0; i < count; ++i)
+      texts.push_back(text_of(bytes.data() + i * length, length, padding));
+  }
+  return texts;
 }
 
 std::string read_text(hid_t file, const std::string& path) {
@@ -374,28 +346,20 @@ std::string read_text(hid_t file, const std::string& path) {
   return texts.front();
 }
 
-bool has_attribute(hid_t file, const std::string& path, const std::string& name) {
-  return checked(H5Aexists_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT),
-                 fmt::format("looking up attribute {} of {}", name, path)) > 0;
-}
-
-std::string read_text_attribute(hid_t file, const std::string& path, const std::string& name) {
-  const Hdf5Attribute attribute = open_attribute(file, path, name);
-  const std::string place = fmt::format("attribute {} of {}", name, path);
-  const Hdf5Type type(H5Aget_type(attribute.get()), "reading " + place);
-  const Hdf5Space space(H5Aget_space(attribute.get()), "reading " + place);
-  std::vector<std::string> texts = texts_in(
-      file, place, type, space, [&](void* data) { return H5Aread(attribute.get(), type.get(), data); });
-  if (texts.size() != 1) throw Hdf5ContentError(place + " is not a single text");
-  return texts.front();
-}
-
-double read_double_attribute(hid_t file, const std::string& path, const std::string& name) {
-  return read_number<double>(file, path, name, is_real, H5T_NATIVE_DOUBLE);
-}
-
 std::int64_t read_integer_attribute(hid_t file, const std::string& path, const std::string& name) {
-  return read_number<std::int64_t>(file, path, name, is_integer, H5T_NATIVE_INT64);
+  const std::string place = fmt::format("attribute {} of {}", name, path), action = "reading " + place;
+  if (!exists(file, path) ||
+      checked(H5Aexists_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT), action) == 0)
+    throw Hdf5ContentError(fmt::format("{} has no attribute {}", path, name));
+  const Hdf5Attribute attribute(H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                                action);
+  const Hdf5Type type(H5Aget_type(attribute.get()), action);
+  const Hdf5Space space(H5Aget_space(attribute.get()), action);
+  if (!is_integer(type) || H5Sget_simple_extent_npoints(space.get()) != 1)
+    throw Hdf5ContentError(place + " is not a single number of a type that mssim reads");
+  std::int64_t number = 0;
+  checked(H5Aread(attribute.get(), H5T_NATIVE_INT64, &number), action);
+  return number;
 }
 
 }  // namespace mssim

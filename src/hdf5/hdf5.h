@@ -173,12 +173,7 @@ std::string read_text(hid_t file, const std::string& path);
 /// A list of strings.
 std::vector<std::string> read_texts(hid_t file, const std::string& path);
 
-/// Whether the object at `path`, which exists, has an attribute.
-bool has_attribute(hid_t file, const std::string& path, const std::string& name);
-
-/// An attribute of one string, or of one number (is_real, is_integer).
-std::string read_text_attribute(hid_t file, const std::string& path, const std::string& name);
-double read_double_attribute(hid_t file, const std::string& path, const std::string& name);
+/// An attribute of one number (is_integer).
 std::int64_t read_integer_attribute(hid_t file, const std::string& path, const std::string& name);
 
 }  // namespace mssim

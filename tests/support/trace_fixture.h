@@ -47,6 +47,19 @@ inline std::string text_in(hid_t file, const std::string& path) {
   return text;
 }
 
+/// All bytes of a string, or an array of strings, in an attribute; checks that their length is fixed.
+inline std::string text_attribute(hid_t file, const std::string& object, const std::string& name) {
+  const Hdf5Attribute attribute(H5Aopen_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                                "opening " + name);
+  const Hdf5Type type(H5Aget_type(attribute.get()), "type");
+  EXPECT_EQ(H5Tis_variable_str(type.get()), 0) << name;
+  const Hdf5Space space(H5Aget_space(attribute.get()), "space");
+  const auto count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get()));
+  std::string text(count * H5Tget_size(type.get()), '\0');
+  checked(H5Aread(attribute.get(), type.get(), text.data()), "reading " + name);
+  return text;
+}
+
 inline Hdf5File open(const std::filesystem::path& file) {
   prepare_hdf5();
   return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening " + file.string()};

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "garment/garment.h"
 
@@ -30,9 +31,7 @@ void write_garment(hid_t file, const Garment& garment);
 /// Writes the joints into the existing group /connectivity. Throws Hdf5Error.
 void write_joints(hid_t file, const std::string& particles, const Garment& garment);
 
-/// Reads panels, seams and joints. A trace does not have the settings of the dressing or the length and
-/// strength of joints. Throws Hdf5Error, Hdf5ContentError, and std::invalid_argument if the garment does not
-/// fit the nodes.
-Garment read_garment(hid_t file, std::size_t nodes);
+/// Reads the panels. Throws Hdf5Error and Hdf5ContentError.
+std::vector<GarmentPanel> read_panels(hid_t file);
 
 }  // namespace mssim

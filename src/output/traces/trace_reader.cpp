@@ -46,6 +46,13 @@ void read_series(hid_t file, TraceContent& content) {
   if (!finite || std::ranges::adjacent_find(content.step, std::greater_equal<>()) != content.step.end() ||
       std::ranges::adjacent_find(content.time_s, std::greater_equal<>()) != content.time_s.end())
     throw Hdf5ContentError("its steps and times do not increase");
+  // In H5MD, velocities may be sampled at other times than positions.
+  const std::vector<hsize_t> list{Hdf5Table::any};
+  if ((exists(file, velocity + "/step") &&
+       Hdf5Table(file, velocity + "/step", list).integers(0, fewest) != content.step) ||
+      (exists(file, velocity + "/time") &&
+       Hdf5Table(file, velocity + "/time", list).doubles(0, fewest) != content.time_s))
+    throw Hdf5ContentError(fmt::format("{} and {} have different steps or times", position, velocity));
 }
 
 /// Tuples of nodes; an empty list has no dataset.
@@ -71,7 +78,7 @@ NodeShape read_shape(hid_t file, const TraceContent& content) {
     return shape_of(GridPatch{read_extent(file, "rows"), read_extent(file, "columns")});
   if (content.shape.kind == "bodies")
     return shape_of(TetrahedralMesh{read_tuples<4>(file, tetrahedra_dataset)});
-  return shape_of(read_garment(file, content.nodes));
+  return {content.shape.kind, read_panels(file), {}, true};
 }
 
 void read_springs(hid_t file, TraceContent& content) {
@@ -155,11 +162,6 @@ TraceContent read_trace_content(hid_t file) {
   content.body = read_static_body(file);
   require_fitting_body(content.shape, content.body);
   content.scene_json = read_text(file, "/parameters/scene");
-  content.backend = read_text_attribute(file, "/parameters", "backend");
-  content.integrator = read_text_attribute(file, "/parameters", "integrator");
-  content.dt_s = read_double_attribute(file, "/parameters", "dt_s");
-  if (!(content.dt_s > 0 && std::isfinite(content.dt_s)))
-    throw Hdf5ContentError("attribute dt_s of /parameters is not above 0");
   return content;
 }
 
@@ -172,9 +174,6 @@ TraceContent trace_content_of(const System& system, const TraceHeader& header, c
   }
   content.body = body;
   content.scene_json = header.scene_json;
-  content.backend = header.backend;
-  content.integrator = header.integrator;
-  content.dt_s = header.dt_s;
   content.in_double = header.in_double;
   content.nodes = system.nodes();
   return content;
@@ -234,17 +233,6 @@ std::vector<Vec3d> TraceReader::vectors(const Hdf5Table& series, const std::stri
         throw Hdf5ContentError(fmt::format("the {} of node {} in frame {} is not finite", what, node, frame));
     }
     return vectors;
-  });
-}
-
-std::optional<std::vector<double>> TraceReader::observable(std::string_view name) const {
-  const std::string path = "/observables/" + std::string(name) + "/value";
-  return explained(name_, [&]() -> std::optional<std::vector<double>> {
-    if (!exists(file_.get(), path)) return std::nullopt;
-    std::vector<double> numbers = Hdf5Table(file_.get(), path, {Hdf5Table::any}).doubles(0, frames());
-    if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
-      throw Hdf5ContentError(path + " has a number that is not finite");
-    return numbers;
   });
 }
 

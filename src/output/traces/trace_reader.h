@@ -25,14 +25,13 @@ namespace mssim {
 struct TraceContent {
   NodeShape shape;
   std::vector<std::array<std::uint32_t, 2>> springs;  ///< may be empty; two nodes that differ
-  std::vector<double> rest_length;              ///< [springs] m, above 0; empty in traces of earlier versions
-  Surface body;                                 ///< the fixed body; may be empty
-  std::string scene_json, backend, integrator;  ///< as written
-  double dt_s = 0;
-  bool in_double = false;          ///< whether positions are in double precision
-  std::size_t nodes = 0;           ///< at least one
-  std::vector<std::int64_t> step;  ///< [frames] increasing; at least one frame
-  std::vector<double> time_s;      ///< [frames] increasing
+  std::vector<double> rest_length;  ///< [springs] m, above 0; empty in traces of earlier versions
+  Surface body;                     ///< the fixed body; may be empty
+  std::string scene_json;           ///< as written
+  bool in_double = false;           ///< whether positions are in double precision
+  std::size_t nodes = 0;            ///< at least one
+  std::vector<std::int64_t> step;   ///< [frames] increasing; at least one frame
+  std::vector<double> time_s;       ///< [frames] increasing
 };
 
 /// Reads and checks the content; indices are below the number of nodes, and the shape fits the nodes. Throws
@@ -77,9 +76,6 @@ class TraceReader {
   std::vector<Vec3d> positions(std::size_t frame) const { return vectors(*position_, "position", frame); }
   /// [nodes] Velocities of a frame, m/s. Throws TraceError, also for numbers that are not finite.
   std::vector<Vec3d> velocities(std::size_t frame) const { return vectors(*velocity_, "velocity", frame); }
-  /// [frames] An energy or a loss, J, by its name in /observables, for example "total_energy"; none if the
-  /// trace does not have it. Throws TraceError, also for numbers that are not finite.
-  std::optional<std::vector<double>> observable(std::string_view name) const;
 
  private:
   void open();

@@ -34,6 +34,25 @@ TEST_F(GarmentTrace, HasAnXdmfWithEachPanelAndTheBodyInEachFrame) {
   EXPECT_EQ(count("<Grid"), count("</Grid>"));
 }
 
+TEST_F(GarmentTrace, SaysWherePanelsAreFlatAndWhatIsSewnToWhat) {
+  write(garment_, 1);
+  const Hdf5File h5 = open(file());
+  const auto& written = std::get<Garment>(garment_.topology);
+  const auto flat = read<double>(h5.get(), "/parameters/panels/flat", H5T_NATIVE_DOUBLE);
+  ASSERT_EQ(flat.size(), 2 * written.flat.size());
+  for (std::size_t node = 0; node < written.flat.size(); ++node) {
+    EXPECT_EQ(flat[2 * node], written.flat[node].x);
+    EXPECT_EQ(flat[2 * node + 1], written.flat[node].y);
+  }
+  EXPECT_EQ(read<std::uint32_t>(h5.get(), "/connectivity/joints", H5T_NATIVE_UINT32),
+            (std::vector<std::uint32_t>{11, 12, 13, 3, 17, 17}));
+  EXPECT_EQ(read<double>(h5.get(), "/parameters/joints/edge_share", H5T_NATIVE_DOUBLE),
+            (std::vector<double>{0.25, 0}));
+  EXPECT_EQ(read<std::uint32_t>(h5.get(), "/parameters/joints/seam", H5T_NATIVE_UINT32),
+            (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_EQ(read_texts(h5.get(), "/parameters/seams"), written.seams);
+}
+
 TEST_F(GarmentTrace, NeedsNoBody) {
   write(garment_, 2);
   EXPECT_THAT(text_of(folder() / "run.xdmf"), AllOf(HasSubstr("\"back\""), Not(HasSubstr("body"))));

@@ -16,19 +16,6 @@ using testing::AnyOf;
 using testing::Eq;
 using testing::ThrowsMessage;
 
-/// All bytes of a string, or an array of strings, in an attribute; checks that their length is fixed.
-std::string text_attribute(hid_t file, const std::string& object, const std::string& name) {
-  const Hdf5Attribute attribute(H5Aopen_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                                "opening " + name);
-  const Hdf5Type type(H5Aget_type(attribute.get()), "type");
-  EXPECT_EQ(H5Tis_variable_str(type.get()), 0) << name;
-  const Hdf5Space space(H5Aget_space(attribute.get()), "space");
-  const auto count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get()));
-  std::string text(count * H5Tget_size(type.get()), '\0');
-  checked(H5Aread(attribute.get(), type.get(), text.data()), "reading " + name);
-  return text;
-}
-
 /// The particles that a dataset is about.
 std::string group_of(hid_t file, const std::string& dataset) {
   const Hdf5Attribute group(
