@@ -53,6 +53,7 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
   BuiltScene built = build_scene(scene.spec, parts);
   scene.system = std::move(built.system);
   scene.body = std::move(built.body);
+  scene.files = parts.files;
   scene.counts = counts_of(scene.spec, scene.system);
   scene.note = difference(scene.spec, scene.counts, parts.stated);
   append_sentence(scene.note, built.note);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct PreparedScene {
   /// empty.
   std::string note;
   std::shared_ptr<const MeasuredBody> body;  ///< on which a garment is dressed; none for other scenes
+  std::vector<std::filesystem::path> files;  ///< from which it was read (SceneParts)
 };
 
 /// Builds the scene from its parts. Throws SceneError.

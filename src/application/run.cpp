@@ -7,7 +7,6 @@
 #include <iostream>
 #include <limits>
 
-#include "application/outputs.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
 #include "bench/verification/verification.h"
@@ -79,7 +78,7 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
   }
 }
 
-void require_distinct(const RunFiles& files, const SceneSpec& scene) {
+void require_distinct(const RunFiles& files, const PreparedScene& scene) {
   std::vector<NamedFile> written, read;
   if (!files.trace.empty()) {
     written.push_back({"--trace", files.trace});
@@ -87,7 +86,8 @@ void require_distinct(const RunFiles& files, const SceneSpec& scene) {
   }
   if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
   if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
-  for (const std::filesystem::path& file : files_of(scene)) read.push_back({"a file of the scene", file});
+  if (files.later) written.push_back(*files.later);
+  for (const std::filesystem::path& file : scene.files) read.push_back({"a file of the scene", file});
   require_distinct(written, read);
 }
 
@@ -410,7 +410,9 @@ int run_scene(RunOptions options) {
   require_device(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
-  require_distinct(options.files, scene.spec);
+  require_distinct(options.files, scene);
+  // Finds an unwritable file before anything is simulated.
+  if (options.files.later) AtomicFile(options.files.later->path).remove();
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
                             options.fps.value_or(std::min(options.usual_fps, 1 / scene.dt_s)),

@@ -9,6 +9,7 @@
 
 #include "application/choices.h"
 #include "application/console.h"
+#include "application/outputs.h"
 #include "application/prepared_scene.h"
 #include "backends/interface/backend.h"
 #include "model/system.h"
@@ -64,6 +65,8 @@ struct RunFiles {
   std::string energy_curve;
   std::string pictures;    ///< a folder
   bool temporary = false;  ///< not reported to the user
+  /// What the caller writes after the run, which is refused if this is one of its files or cannot be written.
+  std::optional<NamedFile> later;
 
   bool any() const { return !trace.empty() || !energy_curve.empty() || !pictures.empty(); }
 };
@@ -77,7 +80,7 @@ struct FileHeaders {
 
 /// Throws UsageError if two of these are the same file: the files, the XDMF of the trace, and the files of
 /// the scene.
-void require_distinct(const RunFiles& files, const SceneSpec& scene);
+void require_distinct(const RunFiles& files, const PreparedScene& scene);
 
 /// Writes the frames of a run into its files while the simulation continues, because compressing a large
 /// frame takes as long as many steps. Also keeps their energies.

@@ -208,11 +208,7 @@ int render(const RenderOptions& options) {
     trace = temporary_folder_of_process() / "scene.h5";
     run.files.trace = trace.string();
     run.files.temporary = true;
-    std::vector<NamedFile> read;
-    for (const fs::path& file : files_of(find_scene(run.scene)))
-      read.push_back({"a file of the scene", file});
-    require_distinct({{"--out", out}}, read);
-    AtomicFile(out).remove();  // finds an unwritable file before anything is simulated
+    run.files.later = {"--out", out};
     code = run_scene(run);
   } else {
     require_distinct({{"--out", out}}, {{"the trace", trace}, {"the XDMF beside the trace", xdmf_of(trace)}});

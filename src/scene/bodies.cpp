@@ -121,13 +121,14 @@ struct OwnShape {
   BodyShape shape;
   std::filesystem::path folder;             ///< base of the paths of its files
   std::optional<MeshSize> stated_by_other;  ///< size of the mesh that the other scene states
+  std::filesystem::path other;              ///< the file of that scene; empty if there is none
 };
 
 /// The shape of a body in a scene file of that folder. If it refers to another scene, that one is read;
 /// throws SceneError if there is no such scene or its first body has no shape of its own.
 OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
   const auto* other = std::get_if<ShapeOfScene>(&shape);
-  if (other == nullptr) return {shape, folder, std::nullopt};
+  if (other == nullptr) return {shape, folder, std::nullopt, {}};
   const std::string& name = other->name;
   const SceneSpec scene = find_scene(is_path_of_scene(name) ? (folder / name).string() : name);
   const auto* bodies = std::get_if<BodiesSpec>(&scene.content);
@@ -138,7 +139,7 @@ OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) 
   if (std::holds_alternative<ShapeOfScene>(body.shape))
     throw SceneError("the first body of the scene \"{}\" takes its shape from another scene: name that scene",
                      printable(name));
-  return {body.shape, scene.file.parent_path(), body.expected};
+  return {body.shape, scene.file.parent_path(), body.expected, scene.file};
 }
 
 /// Makes the mesh of a shape; one overload per kind.
@@ -284,6 +285,20 @@ class MeshedShapes {
     return counts;
   }
 
+  /// The files of all shapes.
+  std::vector<std::filesystem::path> files() const {
+    std::vector<std::filesystem::path> files;
+    for (const MeshedShape& shape : shapes_) {
+      const OwnShape& own = shape.own;
+      if (!own.other.empty()) files.push_back(own.other);
+      if (const auto* surface = std::get_if<SurfaceFile>(&own.shape))
+        files.push_back(own.folder / surface->file);
+      if (const auto* tetgen = std::get_if<MeshFiles>(&own.shape))
+        files.insert(files.end(), {own.folder / tetgen->node_file, own.folder / tetgen->ele_file});
+    }
+    return files;
+  }
+
   /// How the meshes were made, if a reader should know: sentences, or empty.
   std::string note() const {
     std::string all;
@@ -423,18 +438,6 @@ void check(const SceneSpec& spec) {
       refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
 }
 
-std::vector<std::string> files(const SceneSpec& spec) {
-  std::vector<std::string> names;
-  for (const BodySpec& body : bodies_of(spec).list) {
-    if (const auto* surface = std::get_if<SurfaceFile>(&body.shape)) names.push_back(surface->file);
-    if (const auto* mesh = std::get_if<MeshFiles>(&body.shape))
-      names.insert(names.end(), {mesh->node_file, mesh->ele_file});
-    if (const auto* shape = std::get_if<ShapeOfScene>(&body.shape); shape && is_path_of_scene(shape->name))
-      names.push_back(shape->name);
-  }
-  return names;
-}
-
 /// Meshes every shape once.
 ///
 /// The scene has its bodies one after the other, each in its mesh's node order; its springs are the edges of
@@ -447,7 +450,8 @@ SceneParts read(const SceneSpec& spec) {
           stated_counts_of(spec, [&](std::size_t body) { return shapes->of_body(body).own; }),
           [shapes](const SceneSpec& of) {
             return BuiltScene{build_bodies(of, *shapes), shapes->note()};
-          }};
+          },
+          shapes->files()};
 }
 
 }  // namespace
@@ -466,7 +470,6 @@ extern const SceneKind bodies_kind{
     // The published counts seem to be the length of the array of packed springs, three values per spring: all
     // nine are divisible by three, and the thirds fit tetrahedral meshes.
     .published_per_spring = 3,
-    .files = files,
     .stated =
         [](const SceneSpec& spec) {
           return stated_counts_of(spec, [&](std::size_t body) {

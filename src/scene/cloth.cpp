@@ -201,7 +201,6 @@ extern const SceneKind cloth_kind{
     // The published counts include the 12-neighbour stencil of every node, and so each spring from both of
     // its ends.
     .published_per_spring = 2,
-    .files = [](const SceneSpec& /*spec*/) { return std::vector<std::string>(); },
     .stated = [](const SceneSpec& spec) { return std::optional(cloth_counts(spec)); },
     .read =
         [](const SceneSpec& spec) {

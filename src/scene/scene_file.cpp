@@ -122,12 +122,6 @@ SceneSpec parse_scene(const std::filesystem::path& file, std::string text) {
 
 SceneSpec load_scene(const std::filesystem::path& file) { return parse_scene(file, text_of(file)); }
 
-std::vector<std::filesystem::path> files_of(const SceneSpec& spec) {
-  std::vector<std::filesystem::path> files{spec.file};
-  for (const std::string& name : kind_of(spec).files(spec)) files.push_back(spec.file.parent_path() / name);
-  return files;
-}
-
 std::vector<SceneSpec> shipped_scenes() {
   using Key = std::tuple<std::size_t, std::uint64_t, std::string>;
   std::vector<std::pair<Key, SceneSpec>> scenes;

@@ -22,9 +22,6 @@ SceneSpec parse_scene(const std::filesystem::path& file, std::string text);
 /// Reads and checks a scene file. Throws SceneError.
 SceneSpec load_scene(const std::filesystem::path& file);
 
-/// The files that a scene is made from: its own, and those it names.
-std::vector<std::filesystem::path> files_of(const SceneSpec& spec);
-
 /// Is it a path (with a slash or ending in .json) rather than the name of a scene?
 bool is_path_of_scene(std::string_view name_or_path);
 

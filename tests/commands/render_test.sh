@@ -126,6 +126,10 @@ expect 4 'cannot write' render t.h5 --out no/folder/t.png
 cp "$2/scenes/cloth2500.json" mine.json
 cp mine.json mine.png.json
 expect 2 '--out is mine.json, .*PNG: give mine.png' render --scene mine.json --out mine.json
+cp mine.json mine.png.part
+expect 2 'the temporary file of --out and a file of the scene are the same file' render --scene ./mine.png.part --out mine.png
+cmp -s mine.json mine.png.part || fail "render has replaced the scene that it reads"
+expect 4 'cannot write no/folder/t.png' render --scene cloth350k --duration 1000 --out no/folder/t.png
 # Links are followed, also where they lead to what is not there yet; where the system is, nothing is replaced.
 mkdir linked
 ln -s ../drawn.png linked/link.png

@@ -28,6 +28,29 @@ expect 2 'the XDMF beside --trace and --energy-curve are the same file' "${fall[
 cp "$source/scenes/cloth2500.json" mine.json
 expect 2 '--energy-curve and a file of the scene are the same file' run --scene ./mine.json --energy-curve mine.json
 cmp -s mine.json "$source/scenes/cloth2500.json" || fail "a scene was overwritten"
+# The mesh of another scene, whose shape the scene takes.
+mkdir other
+printf '4 3 0 0\n1 0 0 0\n2 3 0 0\n3 0 3 0\n4 0 0 3\n' >other/one.node
+printf '1 4 0\n1 1 2 3 4\n' >other/one.ele
+python3 - "$source/scenes/box-small.json" <<'PYTHON'
+import json, sys
+
+scene = json.load(open(sys.argv[1]))
+body = scene["bodies"]["list"][0]
+del body["box"]
+body.update(shape="tetgen", tetgen={"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})
+json.dump(scene, open("other/one.json", "w"))
+del body["tetgen"]
+body.update(shape="scene", scene={"name": "other/one.json"})
+json.dump(scene, open("same-shape.json", "w"))
+PYTHON
+ends 0 run --scene ./same-shape.json --threads 1 --duration 0.01 --energy-curve good.csv
+for file in one.node one.ele one.json; do
+  before=$(<"other/$file")
+  expect 2 "--energy-curve and a file of the scene are the same file, other/$file" \
+    run --scene ./same-shape.json --energy-curve "other/$file"
+  [ "$(<"other/$file")" = "$before" ] || fail "$file of another scene was overwritten"
+done
 expect 2 '--trace and --pictures are the same file, x.h5' "${fall[@]}" --trace x.h5 --pictures x.h5
 [ -z "$(find . -name 'x.*')" ] || fail "a refused run leaves a file"
 

@@ -390,9 +390,12 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
-  return {{cut->build.placed.size(), cut->build.springs.size()},
-          stated(spec),
-          [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
+  SceneParts parts{{cut->build.placed.size(), cut->build.springs.size()},
+                   stated(spec),
+                   [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
+  if (const auto* scan = std::get_if<BodyFile>(&garment_of(spec).body))
+    parts.files.push_back(spec.file.parent_path() / scan->file);
+  return parts;
 }
 
 }  // namespace
@@ -403,11 +406,6 @@ extern const SceneKind garment_kind{
     .visit_fields = visit_fields,
     .check = check,
     .published_per_spring = {},
-    .files =
-        [](const SceneSpec& spec) {
-          const auto* body = std::get_if<BodyFile>(&garment_of(spec).body);
-          return body ? std::vector{body->file} : std::vector<std::string>();
-        },
     .stated = stated,
     .read = read,
 };

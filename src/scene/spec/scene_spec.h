@@ -148,6 +148,7 @@ struct SceneParts {
   std::optional<SceneCounts> stated;  ///< nodes and springs that the files state; nothing if they state none
   /// Builds the scene for whose spec they were read. Throws SceneError for inconsistent content.
   std::function<BuiltScene(const SceneSpec& spec)> build;
+  std::vector<std::filesystem::path> files = {};  ///< all that were read, with the scene's own
 };
 
 class FieldVisitor;
@@ -165,11 +166,9 @@ struct SceneKind {
   /// Counts per spring in Hong et al.'s tables, inferred from their numbers; nothing for a kind that they do
   /// not have.
   std::optional<std::uint64_t> published_per_spring;
-  /// The files that the section names, relative to the scene file's folder.
-  std::vector<std::string> (*files)(const SceneSpec& spec);
   /// Nodes and unique springs that the file states; nothing if it states none.
   std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
-  /// Reads the files that the section names. Throws SceneError and MissingProgram.
+  /// Reads the files that the section names, and lists them. Throws SceneError and MissingProgram.
   SceneParts (*read)(const SceneSpec& spec);
 };
 
