@@ -80,6 +80,13 @@ std::optional<LegGap> leg_gap(const Surface& body, double height) {
   return best;
 }
 
+/// The middle of the box around points.
+PlanPoint middle_of(const std::vector<PlanPoint>& points) {
+  const auto [right, left] = std::ranges::minmax_element(points, {}, &PlanPoint::x);
+  const auto [behind, before] = std::ranges::minmax_element(points, {}, &PlanPoint::z);
+  return {(right->x + left->x) / 2, (behind->z + before->z) / 2};
+}
+
 using Corners = std::array<Vec3d, 3>;
 
 /// Calls `visit` with each corner of a triangle in the plane of constant `coordinate` = `value`, and with
@@ -167,6 +174,8 @@ BodyProfile::BodyProfile(const Surface& surface, std::string name)
       body_((validate_surface(surface, name_), mssim::trunk_and_legs(surface))),
       slices_(body_.surface),
       middle_(heights_in_the_middle()),
+      right_foot_(lowest_point(-1)),
+      left_foot_(lowest_point(1)),
       crotch_(find_crotch()) {}
 
 std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> intervals) {
@@ -199,13 +208,15 @@ std::optional<double> BodyProfile::find_crotch() const {
       middle_, {}, [](const Interval& interval) { return interval.high - interval.low; });
   if (trunk == middle_.end()) return std::nullopt;
   constexpr double shortest_leg = 0.01;  // m: the lowest point of a round underside need not be at x = 0
-  const auto has_leg = [&](double sign) {
-    return std::ranges::any_of(body_.surface.points, [&](const Vec3d& point) {
-      return sign * point.x > 0 && point.y < trunk->low - shortest_leg;
-    });
-  };
-  if (!has_leg(-1) || !has_leg(1)) return std::nullopt;
+  if (std::max(right_foot_, left_foot_) >= trunk->low - shortest_leg) return std::nullopt;
   return trunk->low;
+}
+
+double BodyProfile::lowest_point(int side) const {
+  double lowest = HUGE_VAL;
+  for (const Vec3d& point : body_.surface.points)
+    if (side * point.x > 0) lowest = std::min(lowest, point.y);
+  return lowest;
 }
 
 double BodyProfile::crotch_height() const {
@@ -288,23 +299,24 @@ double BodyProfile::crotch_length(double y) const {
 
 double BodyProfile::leg_girth(double y, int side) const { return hull_perimeter(leg_section(y, side)); }
 
-double BodyProfile::within_legs(double y) const {
-  constexpr double from_their_ends = 0.005;
-  return std::clamp(y, lowest() + from_their_ends, crotch_height() - from_their_ends);
+double BodyProfile::within_leg(double y, int side) const {
+  constexpr double from_its_ends = 0.005;
+  const double foot = side < 0 ? right_foot_ : left_foot_;
+  return std::clamp(y, foot + from_its_ends, crotch_height() - from_its_ends);
 }
 
 bool BodyProfile::legs_are_apart(double y) const {
-  const double height = within_legs(y);
-  return std::ranges::none_of(
-      middle_, [&](const Interval& joined) { return height >= joined.low && height <= joined.high; });
+  return std::ranges::none_of(middle_, [&](const Interval& joined) {
+    return std::ranges::any_of(std::array{within_leg(y, -1), within_leg(y, 1)},
+                               [&](double height) { return height >= joined.low && height <= joined.high; });
+  });
 }
 
-PlanPoint BodyProfile::leg_middle(double y) const {
-  const std::vector<PlanPoint> points = leg_section(within_legs(y), 1);
-  const auto [inner, outer] = std::ranges::minmax_element(points, {}, &PlanPoint::x);
-  const auto [behind, before] = std::ranges::minmax_element(points, {}, &PlanPoint::z);
-  return {(inner->x + outer->x) / 2, (behind->z + before->z) / 2};
+PlanPoint BodyProfile::leg_middle(double y, int side) const {
+  return middle_of(leg_section(within_leg(y, side), side));
 }
+
+PlanPoint BodyProfile::middle(double y) const { return middle_of(section(y)); }
 
 double BodyProfile::front(double y) const { return std::ranges::max(section(y), {}, &PlanPoint::z).z; }
 

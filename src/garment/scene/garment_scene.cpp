@@ -110,8 +110,8 @@ struct AskedMeasures {
   OfHeight girth = remembered([&of = profile](double y) { return of.hull_girth(y); });
   /// In front of the middle of the legs, above which the side seams lie.
   OfHeight front_share = remembered(
-      [&of = profile](double y) { return of.front_share(y, of.leg_middle(of.crotch_height()).z); });
-  OfHeight leg_x = remembered([&of = profile](double y) { return of.leg_middle(y).x; });
+      [&of = profile](double y) { return of.front_share(y, of.leg_middle(of.crotch_height(), 1).z); });
+  OfHeight leg_x = remembered([&of = profile](double y) { return of.leg_middle(y, 1).x; });
   BodyDepth depth{remembered([&of = profile](double y) { return of.front(y); }),
                   remembered([&of = profile](double y) { return of.back(y); })};
 };

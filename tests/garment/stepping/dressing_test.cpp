@@ -300,7 +300,7 @@ Fit fit_on_sphere(const System& system, const State& state) {
   const Solid solid(sphere());
   return fit_of(system, state.position,
                 {[&](std::span<const Vec3d> points) { return solid.depths(points); },
-                 [](const Vec3d& point) { return point; }});
+                 [](const Vec3d& row) { return std::vector{row}; }});
 }
 
 TEST(Drape, ASheetDroppedOnASphereRestsOnItWithNoPointInside) {
