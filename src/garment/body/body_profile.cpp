@@ -123,21 +123,22 @@ constexpr Search waist_search{1.16, 1.52, 1.35}, hip_search{1.05, 1.25, 1.12}, k
 using Girth = std::function<std::optional<double>(double)>;
 
 /// The height within the range with the least girth, or for a negative `sign` the greatest. An extreme at an
-/// end of the range is not a landmark; then the usual height counts.
+/// end of the range, or next to a height without girth, is not a landmark; then the usual height counts.
 Landmark extreme(const Girth& girth, const Search& search, double crotch, double sign) {
-  constexpr int steps = 100;
-  int best = -1;
-  double least = 0;
-  for (int i = 0; i <= steps; ++i) {
-    const double y = crotch * (search.low + (search.high - search.low) * i / steps);
-    const std::optional<double> there = girth(y);
-    if (!there || (best >= 0 && sign * *there >= least)) continue;
-    best = i;
-    least = sign * *there;
+  constexpr std::size_t steps = 100;
+  const auto fraction = [&](std::size_t step) {
+    return search.low + (search.high - search.low) * static_cast<double>(step) / steps;
+  };
+  std::vector<std::optional<double>> girths;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const std::optional<double> there = girths.emplace_back(girth(crotch * fraction(i))),
+                                least = girths[best];
+    if (there && (!least || sign * *there < sign * *least)) best = i;
   }
-  const bool shows = best > 0 && best < steps;
-  const double fraction = shows ? search.low + (search.high - search.low) * best / steps : search.usual;
-  return {crotch * fraction, girth(crotch * fraction), !shows};
+  const bool shows = best > 0 && best < steps && girths[best - 1] && girths[best + 1];
+  const double height = crotch * (shows ? fraction(best) : search.usual);
+  return {height, girth(height), !shows};
 }
 
 }  // namespace

@@ -228,6 +228,24 @@ TEST(Landmarks, WhatTheBodyDoesNotShowIsByProportion) {
   EXPECT_NEAR(found.waist.height, 1.35 * found.crotch_height, 1e-12);
 }
 
+TEST(Landmarks, AreNotWhereGirthsEnd) {
+  // A body that ends above its hip, where it still narrows.
+  Surface cut = mannequin({}, 48);
+  for (Vec3d& point : cut.points)
+    if (point.y > 0.95) point.y = 0.95 + 0.001 * (point.y - 0.95);
+  const BodyLandmarks of_cut = find_landmarks(BodyProfile(cut));
+  EXPECT_FALSE(of_cut.hip.by_proportion);
+  EXPECT_TRUE(of_cut.waist.by_proportion);
+  EXPECT_NEAR(of_cut.waist.height, 1.35 * of_cut.crotch_height, 1e-12);
+  EXPECT_FALSE(of_cut.waist.girth);
+  // Legs that touch from below the range of knees to within it.
+  const BodyLandmarks touching =
+      find_landmarks(BodyProfile(both(mannequin({}, 48), cylinder(0, 0.1, 0.03, 0.3, 0.5))));
+  EXPECT_TRUE(touching.knee.by_proportion);
+  EXPECT_NEAR(touching.knee.height, 0.6 * touching.crotch_height, 1e-12);
+  EXPECT_FALSE(touching.knee.girth);
+}
+
 TEST(JeansForBody, AreThoseOfTheReferenceBodyAndWideEnoughForAnyLeg) {
   const BodyProfile profile(mannequin({}));
   const JeansMeasures jeans = jeans_for_body(profile, find_landmarks(profile));
