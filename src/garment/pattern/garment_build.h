@@ -80,6 +80,9 @@ struct PanelGrid {
   std::vector<GridLine> row_lines{};  ///< ascending
 };
 
+/// The largest number of rows or columns.
+inline constexpr std::uint32_t most_panel_lines = 10'000;
+
 /// A pattern piece as nodes in its plane.
 struct PanelMesh {
   std::uint32_t rows = 0;
