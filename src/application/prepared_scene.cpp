@@ -35,14 +35,20 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts,
                          : "TetGen, or another file, makes another mesh");
 }
 
-/// The middle of the leg on the point's side, or of the trunk if that is nearer.
-Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
-  if (profile.has_legs() && profile.legs_are_apart(point.y)) {
-    const PlanPoint leg = profile.leg_middle(point.y);
-    if (std::abs(point.x) > leg.x / 2) return {point.x < 0 ? -leg.x : leg.x, point.y, leg.z};
+/// The axes around all of which a row of cloth with this middle must go: that of the leg on its side, those
+/// of both legs, or that of the trunk.
+std::vector<Vec3d> limb_axes(const BodyProfile& profile, const Vec3d& middle) {
+  // Between the legs, front and back of trousers nearly touch up to this height above the crotch. The middle
+  // of the trunk need not lie between them.
+  constexpr double fork = 0.1;  // m
+  const auto at = [&](const PlanPoint& axis) { return Vec3d{axis.x, middle.y, axis.z}; };
+  if (profile.has_legs() && profile.legs_are_apart(middle.y)) {
+    const Vec3d right = at(profile.leg_middle(middle.y, -1)), left = at(profile.leg_middle(middle.y, 1));
+    if (middle.x < right.x / 2) return {right};
+    if (middle.x > left.x / 2) return {left};
+    if (middle.y < profile.crotch_height() + fork) return {right, left};
   }
-  const double height = std::clamp(point.y, profile.lowest(), profile.highest());
-  return {0, point.y, (profile.front(height) + profile.back(height)) / 2};
+  return {at(profile.middle(std::clamp(middle.y, profile.lowest(), profile.highest())))};
 }
 
 }  // namespace
@@ -108,7 +114,7 @@ FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body) {
   // Cutting a hand off also removes part of the hip: cloth inside the whole body does not stand off.
   const auto whole = std::make_shared<const Solid>(body->surface);
   return {[solid](std::span<const Vec3d> points) { return solid->depths(points); },
-          [body](const Vec3d& point) { return limb_middle(body->profile, point); },
+          [body](const Vec3d& middle) { return limb_axes(body->profile, middle); },
           [whole, body](std::span<const Vec3d> points, double lowest, double highest) {
             const BandHull hull(body->profile.trunk_and_legs().surface, lowest, highest);
             std::vector<double> distances;

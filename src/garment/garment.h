@@ -104,6 +104,7 @@ struct Garment {
   /// last. Empty: there is no body.
   std::vector<std::shared_ptr<const BodyMaps>> body_maps;
   CloseCloth close;                            ///< to the body; no nodes: the fit measures no such distance
+  std::vector<std::uint32_t> crotch;           ///< nodes at the crotch of jeans; none without jeans
   std::optional<ClothClothSettings> touching;  ///< none: layers pass through each other
 
   /// The panel that a node belongs to.

@@ -39,7 +39,7 @@ struct Opening {
   std::vector<std::uint32_t> points;  ///< in the orientation of the adjacent triangles
   bool is_ring = true;                ///< the last point is joined to the first; else orientations disagree
   Vec3d centre;                       ///< mean of its edges, weighted by length
-  double size = 0;  ///< m, m, largest distance between points; of over 3,000, twice that from the centre
+  double size = 0;  ///< m, largest distance between points; of over 3,000, twice that from the centre
 
   std::size_t edges() const { return is_ring ? points.size() : points.size() - 1; }
 };

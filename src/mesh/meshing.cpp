@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "geometry/geometry.h"
@@ -178,6 +179,31 @@ Vec3d half_size(const TorusShape& torus) {
   return {outer, torus.minor_radius_m, outer};
 }
 
+/// Lengths of a surface's edges, m.
+struct EdgeLengths {
+  double shortest = HUGE_VAL, longest = 0;
+
+  explicit EdgeLengths(const Surface& surface) {
+    for (const auto& triangle : surface.triangles)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double edge = length(surface.points[triangle[i]] - surface.points[triangle[(i + 1) % 3]]);
+        shortest = std::min(shortest, edge);
+        longest = std::max(longest, edge);
+      }
+  }
+};
+
+/// Throws InputError if points are this near to each other, m: rounding would merge them or turn triangles
+/// over.
+void require_apart(double distance) {
+  constexpr double least = 1e-5;
+  if (distance >= least) return;
+  throw InputError(
+      "its points are {} m apart, and coordinates are rounded to 0.000001 m; give a larger body, or fewer "
+      "cells or points, for a distance of {} m",
+      two_digits(distance), decimal(least));
+}
+
 /// TetGen adds nodes, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
 /// than 1.414 times its shortest edge. (Long triangles of the surface, if kept, would become springs of the
 /// body.)
@@ -200,8 +226,11 @@ struct Thickness {
 
 /// Samples the surface uniformly by area and returns the places where the body is thinner than `limit`, m,
 /// the thinnest first.
-std::vector<Thickness> thin_places(const Surface& surface, const std::vector<double>& area_up_to,
+std::vector<Thickness> thin_places(Surface surface, const std::vector<double>& area_up_to,
                                    std::size_t samples, double limit) {
+  // Far from the origin, rounding would make any body thin.
+  const Vec3d origin = surface.points.front();
+  for (Vec3d& point : surface.points) point -= origin;
   const TriangleTree tree(surface);
   std::vector<Thickness> thin;
   for (std::size_t i = 0; i < samples; ++i) {
@@ -230,7 +259,7 @@ std::vector<Thickness> thin_places(const Surface& surface, const std::vector<dou
       const double size = (fits + too_large) / 2;
       (has_room(size) ? fits : too_large) = size;
     }
-    thin.push_back({too_large, at});
+    thin.push_back({too_large, origin + at});
   }
   std::ranges::sort(thin, {}, &Thickness::size);
   return thin;
@@ -359,9 +388,23 @@ ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
       [&](const auto& kind) {
         ShapePoints points;
         points.surface = surface_of(kind);
-        points.interior =
-            place_interior_points(interior, {volume_of(points.surface), half_size(kind),
-                                             [&](const Vec3d& point) { return depth_in(kind, point); }});
+        const double volume = volume_of(points.surface);
+        const EdgeLengths edges(points.surface);
+        require_apart(edges.shortest);
+        if (interior.count > 0) require_apart(std::cbrt(volume / interior.count));
+        // A round shape has points outside its triangles, no deeper than a triangle's middle, whose nearest
+        // corner lies on the shape.
+        const TriangleTree triangles(points.surface);
+        constexpr bool is_round = !std::is_same_v<decltype(kind), const BoxShape&>;
+        const double deepest_triangle = is_round ? edges.longest / std::sqrt(3.0) : 0;
+        const auto depth = [&](const Vec3d& point) {
+          const double in_shape = depth_in(kind, point);
+          if (in_shape <= 0 || in_shape > deepest_triangle) return in_shape;
+          const Vec3d placed = rounded(point);
+          const std::optional<int> winding = triangles.winding_by_ray(placed);
+          return (winding ? *winding : triangles.winding_by_angles(placed)) == 1 ? in_shape : 0;
+        };
+        points.interior = place_interior_points(interior, {volume, half_size(kind), depth});
         return points;
       },
       shape);
@@ -369,8 +412,15 @@ ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
 
 TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
   require_meshable(point_count(shape, interior));
-  const ShapePoints points = points_of(shape, interior);
-  return tetrahedralise(points.surface, points.interior, keep_surface);
+  ShapePoints points = points_of(shape, interior);
+  TetMesh mesh = tetrahedralise(points.surface, points.interior, keep_surface);
+  std::vector<Vec3d> wanted = std::move(points.surface.points);
+  wanted.insert(wanted.end(), points.interior.begin(), points.interior.end());
+  const auto lacks = std::ranges::mismatch(wanted, mesh.nodes).in1;
+  if (lacks != wanted.end())
+    throw InputError("TetGen's mesh lacks the point at {}; give fewer points inside, or a larger margin",
+                     place(*lacks));
+  return mesh;
 }
 
 TetMesh surface_mesh(const SurfaceShape& body) {

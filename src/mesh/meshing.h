@@ -168,13 +168,14 @@ struct ShapePoints {
   Surface surface;
   std::vector<Vec3d> interior;
 };
-/// Makes these points. Throws InputError for parameters out of range.
+/// Makes these points; those inside lie within the triangles of the surface. Throws InputError for parameters
+/// out of range, and for points less than 10 micrometres apart.
 ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
 
 /// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add
 /// (none for the bodies of the committed scenes). Made by TetGen or taken from the cache (tetrahedralise).
-/// Throws InputError for parameters out of range and for more points than can be meshed (tetgen.h),
-/// MissingProgram if TetGen is needed and not installed.
+/// Throws InputError for parameters out of range, for more points than can be meshed (tetgen.h) and if TetGen
+/// leaves a point out; MissingProgram if TetGen is needed and not installed.
 TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior);
 
 /// A body whose surface comes from a user's file.

@@ -179,8 +179,9 @@ class Lattice {
     const double cell = spacing * std::cbrt(2.0);  // a cubic cell holds two points
     const int reach = static_cast<int>(length(space_.half_size) / cell) + 2;
     std::vector<LatticePoint> found;
-    for (int i = -reach; i <= reach; ++i)
-      for (int j = -reach; j <= reach; ++j) {
+    for (int i = -reach; i <= reach; ++i) {
+      const auto [right, left] = lines_of_plane(i, reach, cell);
+      for (int j = right; j <= left; ++j) {
         const auto [first, last] = cells_of_line(i, j, reach, cell);
         for (int k = first; k <= last; ++k)
           for (const double centre : {0.0, 0.5}) {
@@ -191,10 +192,38 @@ class Lattice {
             if (depth > 0 && depth >= smallest_depth) found.push_back({depth, position});
           }
       }
+    }
     return found;
   }
 
  private:
+  /// The lines j of a plane of cells i, from -reach to reach, that may hold points of the box around the
+  /// body. The last is less than the first if there are none.
+  std::pair<int, int> lines_of_plane(int i, int reach, double cell) const {
+    const auto corner = [&](unsigned number) {
+      const auto side = [&](unsigned bit, double half_size) {
+        return (number & bit) != 0 ? half_size + cell : -half_size - cell;
+      };
+      return Vec3d{side(1, space_.half_size.x), side(2, space_.half_size.y), side(4, space_.half_size.z)};
+    };
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (unsigned number = 0; number < 8; ++number)
+      for (const unsigned bit : {1U, 2U, 4U}) {
+        if ((number & bit) != 0) continue;
+        const Vec3d from = corner(number), to = corner(number | bit);
+        const double height = cell * (0.5 * offset_.x + i);
+        const double below = dot(from, axes_[0]) - height, above = dot(to, axes_[0]) - height;
+        if ((below > 0) == (above > 0)) continue;
+        const Vec3d cut = from + below / (below - above) * (to - from);
+        const double line = dot(cut, axes_[1]) / cell - 0.5 * offset_.y;
+        low = std::min(low, line);
+        high = std::max(high, line);
+      }
+    if (high < low) return {0, -1};
+    return {std::max(-reach, static_cast<int>(std::floor(low))),
+            std::min(reach, static_cast<int>(std::ceil(high)))};
+  }
+
   /// The cells k of a line of cells (i, j), from -reach to reach, that may hold points of the box around the
   /// body: all others of a slender body would be many more. The last is less than the first if there are
   /// none.
@@ -379,7 +408,8 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
     constexpr int tries = 20;
     for (int i = 0; i < tries; ++i) {
       const Vec3d candidate = point.position + (enough * parameters.jitter) * random.next_vector();
-      if (space.depth(candidate) < parameters.margin * enough) continue;
+      const double depth = space.depth(candidate);
+      if (!(depth > 0 && depth >= parameters.margin * enough)) continue;
       moved = candidate;
       break;
     }

@@ -5,7 +5,7 @@ set -euo pipefail
 scenes=$source/scenes
 
 # A person of closed tubes through ellipses: trunk with head, legs, feet and arms. "neck" leaves the top open, "waist" cuts
-# the trunk off and leaves it open.
+# the trunk off and leaves it open, "hip" cuts it off lower and closes it, and with "thighs" the thighs touch.
 person() {
   /usr/bin/python3 - "$@" <<'PYTHON'
 import math, sys
@@ -33,8 +33,10 @@ trunk = [(0.77, 0, -0.01, 0.09, 0.03), (0.79, 0, -0.01, 0.155, 0.075), (0.82, 0,
          (1.15, 0, 0, 0.144, 0.108), (1.28, 0, 0, 0.166, 0.119), (1.38, 0, 0, 0.150, 0.080),
          (1.44, 0, 0, 0.062, 0.060), (1.53, 0, 0, 0.062, 0.060), (1.60, 0, 0.01, 0.075, 0.095),
          (1.68, 0, 0.01, 0.060, 0.080)]
-cuts = {"neck": 1.5, "waist": 1.1}
-tube([s for s in trunk if s[0] < cuts.get(cut, 2)], cut in cuts)
+cuts = {"neck": 1.5, "waist": 1.1, "hip": 1}
+tube([s for s in trunk if s[0] < cuts.get(cut, 2)], cut in ("neck", "waist"))
+if cut == "thighs":
+    tube([(0.62, 0, 0, 0.04, 0.05), (0.80, 0, 0, 0.04, 0.05)])
 for side in (1, -1):
     leg = [(0.05, 0.125, 0, 0.037, 0.040), (0.09, 0.125, 0, 0.036, 0.040), (0.32, 0.113, -0.01, 0.054, 0.060),
            (0.46, 0.107, 0, 0.057, 0.061), (0.62, 0.099, 0, 0.076, 0.080), (0.76, 0.094, 0, 0.088, 0.090),
@@ -81,6 +83,16 @@ measure 0 "$work/makehuman.obj" --format csv
 [ "$(of_listing "$work/out" unit)" = 0.1 ] || fail "decimetres: $(cat "$work/out")"
 ! grep -q 'not certain' "$work/err" || fail "decimetres are not certain: $(cat "$work/err")"
 
+# What is not found is said, and why.
+person 1 +x+y+z hip >"$work/hip.obj"
+measure 0 "$work/hip.obj" --unit m
+grep -q '^waist_height .*estimated by proportion$' "$work/out" || fail "the waist of a body without: $(cat "$work/out")"
+grep -q '^waist_girth .*the body ends below that height$' "$work/out" || fail "its girth: $(cat "$work/out")"
+person 1 +x+y+z thighs >"$work/thighs.obj"
+measure 0 "$work/thighs.obj" --format csv
+near "$(of_listing "$work/out" crotch_height)" .62 .001 || fail "thighs that touch: $(cat "$work/out")"
+warns 'not certain of crotch_height: it is 0.37 of the height, .* thighs apart'
+
 # What is given beats what is found.
 measure 0 "$work/scan.obj" --unit mm --up z --facing -y --format csv
 [ "$(of_listing "$work/out" facing)" = -y ] || fail "a facing that is given"
@@ -103,6 +115,10 @@ jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(json.load(open
   "$scenes/scene.schema.json" "$work/scenes/my.json" || fail "the scene is not valid by the schema"
 (cd "$work/scenes" && exec timeout 120 "$mssim" run --scene my.json >"$work/out" 2>"$work/err") ||
   fail "the body is not dressed: $? $(cat "$work/err" "$work/out")"
+
+ln -s ../scan.obj "$work/scenes/today.obj"
+measure 0 "$work/scenes/today.obj" --scene "$work/scenes/today.json"
+grep -q '"file": "today.obj"' "$work/scenes/today.json" || fail "a link to a body: $(cat "$work/scenes/today.json")"
 
 # Nothing is replaced unasked, and nothing is written where something is wrong.
 echo mine >"$work/mine.json"

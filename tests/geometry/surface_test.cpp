@@ -1,6 +1,7 @@
 #include "geometry/surface.h"
 
 #include "garment/body/mannequin.h"
+#include "geometry/triangle_tree.h"
 #include "mesh/meshing.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/testing.h"
@@ -134,6 +135,38 @@ TEST(InteriorPoints, LieInARod) {
     tenths.insert(static_cast<int>(std::floor(5 * (point.x + 1))));
   }
   EXPECT_EQ(tenths.size(), 10U) << "all along the rod";
+}
+
+// The planes of a lattice over a rope have billions of lines.
+TEST(InteriorPoints, LieInARope) {
+  const BoxShape rope{{1000, 0.01, 0.01}, {1000, 1, 1}};
+  const std::vector<Vec3d> points = points_of(rope, {1000, 1453, 0.1, 0.6}).interior;
+  ASSERT_EQ(points.size(), 1000U);
+  for (const Vec3d& point : points) EXPECT_GT(depth_in(rope, point), 0);
+}
+
+TEST(InteriorPoints, LieInTheTrianglesOfACoarseShape) {
+  const std::array<Shape, 4> shapes{SphereShape{0.09, 1}, SphereShape{0.09, 2}, TorusShape{0.3, 0.1, 4, 3},
+                                    TorusShape{0.3, 0.1, 10, 5}};
+  for (const Shape& shape : shapes)
+    for (const double margin : {0.0, 0.3}) {
+      const ShapePoints points = points_of(shape, {200, 1453, 0.5, margin});
+      ASSERT_EQ(points.interior.size(), 200U);
+      const TriangleTree triangles(points.surface);
+      for (const Vec3d& point : points.interior) EXPECT_EQ(triangles.winding_by_angles(point), 1);
+    }
+}
+
+TEST(InteriorPoints, TooDenseForMicrometresAreRefused) {
+  const auto complaint = [](const Shape& shape, std::uint32_t count) {
+    return input_error_of([&] { points_of(shape, {count, 1, 0.1, 0.6}); });
+  };
+  const auto tells =
+      AllOf(HasSubstr(" m apart"), HasSubstr("larger body"), HasSubstr("fewer cells or points"));
+  EXPECT_THAT(complaint(SphereShape{1e-4, 40}, 10), tells);
+  EXPECT_THAT(complaint(BoxShape{{1, 1, 1e-4}, {1, 1, 100}}, 0), AllOf(HasSubstr("1e-06"), tells));
+  EXPECT_THAT(complaint(TorusShape{2e-4, 1e-4, 100, 3}, 0), tells);
+  EXPECT_THAT(complaint(BoxShape{{1e-4, 1e-4, 1e-4}, {1, 1, 1}}, 10'000), tells);
 }
 
 TEST(InteriorPoints, FollowFromTheSeedAlone) {

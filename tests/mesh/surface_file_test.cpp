@@ -328,6 +328,11 @@ TEST_F(SurfaceFile, OfASheetThatIsTooThinToBeMeshedIsRefused) {
   EXPECT_NEAR(static_cast<double>(surface_mesh({sheet(0.03)}).nodes.size()), 0.5 * 2 / (0.03 * 0.03), 200);
 }
 
+TEST_F(SurfaceFile, OfAThickBodyFarFromTheOriginIsMeshed) {
+  const auto file = put("far.obj", obj_text(unit_cube({9e8, -9e8, 9e8})));
+  EXPECT_EQ(surface_mesh({file}).nodes.size(), 8U);
+}
+
 TEST_F(SurfaceFile, ThatEnclosesNoBodyIsNamed) {
   put("open.obj", obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
   EXPECT_THAT(input_error_of([&] { surface_mesh({folder() / "open.obj"}); }),

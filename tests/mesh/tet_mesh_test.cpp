@@ -265,6 +265,12 @@ INSTANTIATE_TEST_SUITE_P(HongEtAl, TableTwoBody,
                                          "torus-large"),
                          ByName());
 
+TEST(ShapeMesh, OfACoarseShapeHasAllItsPoints) {
+  const Shape shape = SphereShape{0.09, 1};
+  const InteriorPoints interior{200, 1453, 0.1, 0};
+  EXPECT_EQ(shape_mesh(shape, interior).nodes.size(), point_count(shape, interior));
+}
+
 TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
   const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {
     return input_error_of([&] { shape_mesh(shape, interior); });

@@ -10,11 +10,12 @@
 
 namespace mssim {
 
-/// A body for fits, of which nothing is anywhere but an axis through `middle`, or through every point.
-inline FitBody nobody(std::optional<Vec3d> middle = {}) {
+/// A body for fits, of which nothing is anywhere but an axis through `axis`, or through the middle of each
+/// row.
+inline FitBody nobody(std::optional<Vec3d> axis = {}) {
   return {[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
-          [middle](const Vec3d& point) {
-            return middle ? Vec3d{middle->x, point.y, middle->z} : point;
+          [axis](const Vec3d& middle) {
+            return std::vector{axis ? Vec3d{axis->x, middle.y, axis->z} : middle};
           }};
 }
 

@@ -80,6 +80,13 @@ std::optional<LegGap> leg_gap(const Surface& body, double height) {
   return best;
 }
 
+/// The middle of the box around points.
+PlanPoint middle_of(const std::vector<PlanPoint>& points) {
+  const auto [right, left] = std::ranges::minmax_element(points, {}, &PlanPoint::x);
+  const auto [behind, before] = std::ranges::minmax_element(points, {}, &PlanPoint::z);
+  return {(right->x + left->x) / 2, (behind->z + before->z) / 2};
+}
+
 using Corners = std::array<Vec3d, 3>;
 
 /// Calls `visit` with each corner of a triangle in the plane of constant `coordinate` = `value`, and with
@@ -116,21 +123,22 @@ constexpr Search waist_search{1.16, 1.52, 1.35}, hip_search{1.05, 1.25, 1.12}, k
 using Girth = std::function<std::optional<double>(double)>;
 
 /// The height within the range with the least girth, or for a negative `sign` the greatest. An extreme at an
-/// end of the range is not a landmark; then the usual height counts.
+/// end of the range, or next to a height without girth, is not a landmark; then the usual height counts.
 Landmark extreme(const Girth& girth, const Search& search, double crotch, double sign) {
-  constexpr int steps = 100;
-  int best = -1;
-  double least = 0;
-  for (int i = 0; i <= steps; ++i) {
-    const double y = crotch * (search.low + (search.high - search.low) * i / steps);
-    const std::optional<double> there = girth(y);
-    if (!there || (best >= 0 && sign * *there >= least)) continue;
-    best = i;
-    least = sign * *there;
+  constexpr std::size_t steps = 100;
+  const auto fraction = [&](std::size_t step) {
+    return search.low + (search.high - search.low) * static_cast<double>(step) / steps;
+  };
+  std::vector<std::optional<double>> girths;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const std::optional<double> there = girths.emplace_back(girth(crotch * fraction(i))),
+                                least = girths[best];
+    if (there && (!least || sign * *there < sign * *least)) best = i;
   }
-  const bool shows = best > 0 && best < steps;
-  const double fraction = shows ? search.low + (search.high - search.low) * best / steps : search.usual;
-  return {crotch * fraction, girth(crotch * fraction), !shows};
+  const bool shows = best > 0 && best < steps && girths[best - 1] && girths[best + 1];
+  const double height = crotch * (shows ? fraction(best) : search.usual);
+  return {height, girth(height), !shows};
 }
 
 }  // namespace
@@ -167,6 +175,8 @@ BodyProfile::BodyProfile(const Surface& surface, std::string name)
       body_((validate_surface(surface, name_), mssim::trunk_and_legs(surface))),
       slices_(body_.surface),
       middle_(heights_in_the_middle()),
+      right_foot_(lowest_point(-1)),
+      left_foot_(lowest_point(1)),
       crotch_(find_crotch()) {}
 
 std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> intervals) {
@@ -199,13 +209,15 @@ std::optional<double> BodyProfile::find_crotch() const {
       middle_, {}, [](const Interval& interval) { return interval.high - interval.low; });
   if (trunk == middle_.end()) return std::nullopt;
   constexpr double shortest_leg = 0.01;  // m: the lowest point of a round underside need not be at x = 0
-  const auto has_leg = [&](double sign) {
-    return std::ranges::any_of(body_.surface.points, [&](const Vec3d& point) {
-      return sign * point.x > 0 && point.y < trunk->low - shortest_leg;
-    });
-  };
-  if (!has_leg(-1) || !has_leg(1)) return std::nullopt;
+  if (std::max(right_foot_, left_foot_) >= trunk->low - shortest_leg) return std::nullopt;
   return trunk->low;
+}
+
+double BodyProfile::lowest_point(int side) const {
+  double lowest = HUGE_VAL;
+  for (const Vec3d& point : body_.surface.points)
+    if (side * point.x > 0) lowest = std::min(lowest, point.y);
+  return lowest;
 }
 
 double BodyProfile::crotch_height() const {
@@ -288,23 +300,24 @@ double BodyProfile::crotch_length(double y) const {
 
 double BodyProfile::leg_girth(double y, int side) const { return hull_perimeter(leg_section(y, side)); }
 
-double BodyProfile::within_legs(double y) const {
-  constexpr double from_their_ends = 0.005;
-  return std::clamp(y, lowest() + from_their_ends, crotch_height() - from_their_ends);
+double BodyProfile::within_leg(double y, int side) const {
+  constexpr double from_its_ends = 0.005;
+  const double foot = side < 0 ? right_foot_ : left_foot_;
+  return std::clamp(y, foot + from_its_ends, crotch_height() - from_its_ends);
 }
 
 bool BodyProfile::legs_are_apart(double y) const {
-  const double height = within_legs(y);
-  return std::ranges::none_of(
-      middle_, [&](const Interval& joined) { return height >= joined.low && height <= joined.high; });
+  return std::ranges::none_of(middle_, [&](const Interval& joined) {
+    return std::ranges::any_of(std::array{within_leg(y, -1), within_leg(y, 1)},
+                               [&](double height) { return height >= joined.low && height <= joined.high; });
+  });
 }
 
-PlanPoint BodyProfile::leg_middle(double y) const {
-  const std::vector<PlanPoint> points = leg_section(within_legs(y), 1);
-  const auto [inner, outer] = std::ranges::minmax_element(points, {}, &PlanPoint::x);
-  const auto [behind, before] = std::ranges::minmax_element(points, {}, &PlanPoint::z);
-  return {(inner->x + outer->x) / 2, (behind->z + before->z) / 2};
+PlanPoint BodyProfile::leg_middle(double y, int side) const {
+  return middle_of(leg_section(within_leg(y, side), side));
 }
+
+PlanPoint BodyProfile::middle(double y) const { return middle_of(section(y)); }
 
 double BodyProfile::front(double y) const { return std::ranges::max(section(y), {}, &PlanPoint::z).z; }
 

@@ -58,12 +58,14 @@ class BodyProfile {
   /// legs and up to the back at the same height; it bridges hollows. Throws InputError for a body without
   /// legs, and for a height below the crotch.
   double crotch_length(double y) const;
-  /// Whether the legs do not touch at x = 0 where leg_middle(y) cuts them.
+  /// Whether the legs do not touch at x = 0 where leg_middle(y, side) cuts them.
   bool legs_are_apart(double y) const;
-  /// The middle of the leg at x > 0, half way between the outermost points of its section. For heights above
-  /// the crotch or below the body, it is that of the nearest section of the leg. Throws InputError unless
-  /// legs_are_apart().
-  PlanPoint leg_middle(double y) const;
+  /// The middle of the box around the section of one leg, at x < 0 for a negative `side`, else at x > 0. For
+  /// heights above the crotch or below the leg, it is that of the nearest section of the leg. Throws
+  /// InputError unless legs_are_apart().
+  PlanPoint leg_middle(double y, int side) const;
+  /// The middle of the box around the section.
+  PlanPoint middle(double y) const;
   /// The largest z of the section, m.
   double front(double y) const;
   /// The smallest z of the section, m.
@@ -80,8 +82,10 @@ class BodyProfile {
   std::vector<PlanPoint> section(double y) const;
   /// Its part on one side of x = 0.
   std::vector<PlanPoint> leg_section(double y, int side) const;
-  /// The nearest height at which there are legs, m.
-  double within_legs(double y) const;
+  /// The nearest height at which there is this leg, m.
+  double within_leg(double y, int side) const;
+  /// The height of the lowest point on one side of x = 0, m; infinite without points there.
+  double lowest_point(int side) const;
   /// The union of `intervals`, in pieces, bottom up.
   static std::vector<Interval> merged(std::vector<Interval> intervals);
   std::vector<Interval> heights_in_the_middle() const;
@@ -90,7 +94,8 @@ class BodyProfile {
   std::string name_;
   TrunkAndLegs body_;
   HeightSlices slices_;
-  std::vector<Interval> middle_;  ///< heights at which the section reaches x = 0
+  std::vector<Interval> middle_;   ///< heights at which the section reaches x = 0
+  double right_foot_, left_foot_;  ///< m, lowest_point() at x < 0 and at x > 0
   std::optional<double> crotch_;
 };
 

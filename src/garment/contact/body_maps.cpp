@@ -13,9 +13,9 @@
 namespace mssim {
 
 SideMap side_map(const Surface& surface, const std::vector<Vec3d>& normals, const PixelGrid& grid,
-                 ViewFrom view, int threads) {
+                 ViewFrom view) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::vector<Fragment> fragments = rasterise(surface, grid, view, threads);
+  const std::vector<Fragment> fragments = rasterise(surface, grid, view);
   SideMap map{std::vector<double>(fragments.size(), view == ViewFrom::front ? -infinity : infinity),
               std::vector<Vec3d>(fragments.size())};
   for (std::size_t pixel = 0; pixel < fragments.size(); ++pixel) {
@@ -37,7 +37,8 @@ namespace {
 constexpr double least_facing = 0.1;
 /// n . P of a plane with no point behind it.
 constexpr float beyond_all = -1e30F;
-constexpr int most_dilation = 64;
+/// Pixels by which the maps reach beyond the silhouette.
+constexpr int dilation = 2;
 
 void check(const BodyMapSettings& settings) {
   if (!(settings.pixel > 0 && std::isfinite(settings.pixel)))
@@ -46,9 +47,6 @@ void check(const BodyMapSettings& settings) {
   if (!std::isfinite(settings.offset))
     throw std::invalid_argument(fmt::format("the body's maps have an offset of {} m; give a finite length",
                                             decimal(settings.offset)));
-  if (settings.dilation < 0 || settings.dilation > most_dilation)
-    throw std::invalid_argument(fmt::format("the body's maps are dilated by {} pixels; give 0 to {}",
-                                            settings.dilation, most_dilation));
 }
 
 /// The surface's extent with margins for offset and dilation, and a border of pixels that stay empty.
@@ -57,7 +55,7 @@ PixelGrid grid_of(const Surface& surface, const BodyMapSettings& settings) {
   if (surface.points.empty()) return {0, 0, settings.pixel, 1, 1};
   const auto [left, right] = std::ranges::minmax(surface.points, {}, &Vec3d::x);
   const auto [bottom, top] = std::ranges::minmax(surface.points, {}, &Vec3d::y);
-  const double margin = std::abs(settings.offset) + (settings.dilation + 1) * settings.pixel;
+  const double margin = std::abs(settings.offset) + (dilation + 1) * settings.pixel;
   const auto pixels_over = [&](double low, double high, const char* axis) {
     const double pixels = std::ceil((high - low + 2 * margin) / settings.pixel);
     if (!(pixels <= most_pixels_a_side))
@@ -123,8 +121,8 @@ BodyMaps::BodyMaps(const Surface& surface, const BodyMapSettings& settings) {
   const Surface outwards = facing_outwards(surface);
   const std::vector<Vec3d> normals = vertex_normals(outwards);
   const Surface body = inflated(outwards, normals, settings.offset);
-  const SideMap front = side_map(body, normals, grid, ViewFrom::front, settings.threads);
-  const SideMap back = side_map(body, normals, grid, ViewFrom::back, settings.threads);
+  const SideMap front = side_map(body, normals, grid, ViewFrom::front);
+  const SideMap back = side_map(body, normals, grid, ViewFrom::back);
   constexpr std::array<float, 4> none{0, 0, 0, beyond_all};
   pixels_.assign(grid.pixels(), record(none, none));
   for (std::uint32_t row = 0; row < grid.rows; ++row)
@@ -134,7 +132,7 @@ BodyMaps::BodyMaps(const Surface& surface, const BodyMapSettings& settings) {
       const Vec3d centre{grid.centre_x(column), grid.centre_y(row), 0};
       pixels_[pixel] = record(tangent_plane(front, pixel, centre, 1), tangent_plane(back, pixel, centre, -1));
     }
-  for (int ring = 0; ring < settings.dilation; ++ring) dilate(pixels_, grid.columns);
+  for (int ring = 0; ring < dilation; ++ring) dilate(pixels_, grid.columns);
 }
 
 }  // namespace mssim

@@ -21,17 +21,15 @@ struct SideMap {
   std::vector<Vec3d> normal;
 };
 
-/// The maps of `surface` with these normals at its points, made by `threads` threads (0: OpenMP's default).
-/// They are bitwise identical for every number of threads. Throws as rasterise() does.
+/// The maps of `surface` with these normals at its points. They are bitwise identical for every number of
+/// OpenMP's threads. Throws as rasterise() does.
 SideMap side_map(const Surface& surface, const std::vector<Vec3d>& normals, const PixelGrid& grid,
-                 ViewFrom view, int threads = 0);
+                 ViewFrom view);
 
 /// Settings of the maps of a body.
 struct BodyMapSettings {
   double pixel = 0.0025;  ///< m, width and height of a pixel
   double offset = 0;      ///< m, by which the surface is moved outwards, along the normals at its points
-  int dilation = 2;       ///< pixels by which the maps reach beyond the silhouette, at least 0
-  int threads = 0;        ///< that make the maps; 0: OpenMP's default
 };
 
 /// A pixel's record, aligned to its own size: a cache line holds two.
@@ -44,7 +42,7 @@ static_assert(sizeof(BodyPixel) == BODY_FLOATS * sizeof(float));
 /// planes of the pixel in which it lies, so that the cost of a test does not depend on the number of
 /// triangles.
 ///
-/// Beyond the silhouette, `dilation` pixels repeat the planes of their neighbours. Otherwise a point that
+/// Beyond the silhouette, two pixels repeat the planes of their neighbours. Otherwise a point that
 /// slides from pixel to pixel there would touch in every other step and chatter. The plane of a face seen
 /// edge-on leans 6 degrees towards the camera, so that points far in front of the body do not count as behind
 /// the plane.
@@ -59,7 +57,7 @@ static_assert(sizeof(BodyPixel) == BODY_FLOATS * sizeof(float));
 /// - Only points are tested. A vertex or ridge of the body may pass through a face or edge of the cloth
 ///   between points: the offset must be at least the sagitta of the cloth's edges.
 /// - Thighs that touch over a length are one solid, and cloth is not drawn between them. If two bodies are
-///   less than twice `dilation` pixels apart, the pixels between them hold the planes of one.
+///   less than four pixels apart, the pixels between them hold the planes of one.
 ///
 /// Immutable: threads may use it concurrently.
 class BodyMaps {

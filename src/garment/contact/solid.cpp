@@ -60,9 +60,9 @@ double Solid::depth(const Vec3d& point) const {
   return deepest;
 }
 
-std::vector<double> Solid::depths(std::span<const Vec3d> points, int threads) const {
+std::vector<double> Solid::depths(std::span<const Vec3d> points) const {
   std::vector<double> depths(points.size());
-#pragma omp parallel for num_threads(openmp_team(threads)) schedule(dynamic, 256)
+#pragma omp parallel for num_threads(openmp_team(0)) schedule(dynamic, 256)
   for (std::size_t i = 0; i < points.size(); ++i) depths[i] = depth(points[i]);
   return depths;
 }

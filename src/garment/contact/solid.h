@@ -28,8 +28,8 @@ class Solid {
   /// largest of these inside several parts, and 0 outside all. A point that is not finite is outside.
   double depth(const Vec3d& point) const;
 
-  /// depth() of each point, on `threads` threads; 0: OpenMP's default.
-  std::vector<double> depths(std::span<const Vec3d> points, int threads = 0) const;
+  /// depth() of each point, on OpenMP's threads.
+  std::vector<double> depths(std::span<const Vec3d> points) const;
 
   /// Distance of a point (m), inside or outside, from the nearest triangle of any part, m.
   double distance(const Vec3d& point) const;

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -20,13 +20,12 @@
 namespace mssim {
 namespace {
 
-/// The quantile of the distances that nodes have moved, m.
-double moved(const State& before, const State& after, double fraction) {
-  std::vector<double> distances;
-  distances.reserve(after.position.size());
+/// Whether enough nodes have moved little. A node that is not finite has not.
+bool rests(const State& before, const State& after, const SettlingRule& rule) {
+  std::size_t resting = 0;
   for (std::size_t i = 0; i < after.position.size(); ++i)
-    distances.push_back(length(after.position[i] - before.position[i]));
-  return quantile(std::move(distances), fraction);
+    if (length(after.position[i] - before.position[i]) < rule.distance) ++resting;
+  return static_cast<double>(resting) > rule.fraction * static_cast<double>(after.position.size());
 }
 
 /// Delivers the frames of a dressing in their order.
@@ -51,12 +50,18 @@ class FrameDelivery {
 
 /// Steps from `done` to `end`, and delivers the frames due before `end`.
 void step_through(DressingBackend& backend, std::int64_t done, std::int64_t end, FrameDelivery& frames) {
+  const auto step_to = [&](std::int64_t step) {
+    while (done < step) {
+      const auto count = std::min<std::int64_t>(step - done, std::numeric_limits<int>::max());
+      backend.step(static_cast<int>(count));
+      done += count;
+    }
+  };
   for (auto due = frames.due(); due && *due < end; due = frames.due()) {
-    backend.step(static_cast<int>(*due - done));
-    done = *due;
+    step_to(*due);
     frames.deliver(backend.state(), done);
   }
-  backend.step(static_cast<int>(end - done));
+  step_to(end);
 }
 
 double largest_gap(const Garment& garment, const std::vector<Vec3d>& position) {
@@ -123,51 +128,50 @@ double upper_edge_rise(const Garment& garment, const std::vector<Vec3d>& positio
   return farthest;
 }
 
-std::vector<std::uint32_t> where_seams_meet(const Garment& garment) {
-  std::map<std::uint32_t, std::set<std::uint32_t>> seams_at;
-  for (const Joint& joint : garment.joints) {
-    seams_at[joint.node].insert(joint.seam);
-    if (joint.edge_share == 0) seams_at[joint.edge_first].insert(joint.seam);
-    if (joint.edge_share == 1) seams_at[joint.edge_second].insert(joint.seam);
-  }
-  std::vector<std::uint32_t> nodes;
-  for (const auto& [node, seams] : seams_at)
-    if (seams.size() > 1) nodes.push_back(node);
-  return nodes;
-}
-
-/// Closed loops of nodes: rows of two panels that are sewn to each other at both ends.
-std::vector<std::vector<std::uint32_t>> sewn_rows(const Garment& garment) {
-  // For each end of a row, the nodes of other panels that it is sewn to.
+/// The closed rows of a garment (Fit::rows) as loops of nodes. Each row of a panel is in one of them at
+/// least, if it is closed.
+std::vector<std::vector<std::uint32_t>> closed_rows(const Garment& garment) {
   std::multimap<std::uint32_t, std::uint32_t> sewn_to;
   for (const Joint& joint : garment.joints) {
     const std::uint32_t other = joint.edge_share < 0.5 ? joint.edge_first : joint.edge_second;
     sewn_to.emplace(joint.node, other);
     sewn_to.emplace(other, joint.node);
   }
-  const auto rows_sewn_to = [&](std::uint32_t node) {
-    std::map<const GarmentPanel*, std::uint32_t> rows;
-    for (auto [to, end] = sewn_to.equal_range(node); to != end; ++to) {
-      const GarmentPanel& panel = garment.panel_of(to->second);
-      rows.emplace(&panel, (to->second - panel.first_node) / panel.columns);
+  struct Link {
+    std::uint32_t left;  // end of a row
+    std::size_t before;  // link whose right end is sewn to it
+  };
+  std::set<std::uint32_t> in_a_loop;  // rows, by their left ends
+  // The shortest loop from a row to its panel.
+  const auto loop_from = [&](std::uint32_t start) {
+    std::vector<std::uint32_t> loop;
+    std::vector<Link> chain{{start, 0}};
+    std::set<const GarmentPanel*> reached;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      const std::uint32_t right = chain[i].left + garment.panel_of(chain[i].left).columns - 1;
+      for (auto [to, end] = sewn_to.equal_range(right); to != end; ++to) {
+        const GarmentPanel& next = garment.panel_of(to->second);
+        if ((to->second - next.first_node) % next.columns != 0) continue;  // no left end
+        if (&next != &garment.panel_of(start)) {
+          if (reached.insert(&next).second) chain.push_back({to->second, i});
+          continue;
+        }
+        for (std::size_t link = i;; link = chain[link].before) {
+          const std::uint32_t left = chain[link].left;
+          in_a_loop.insert(left);
+          for (std::uint32_t column = garment.panel_of(left).columns; column-- > 0;)
+            loop.push_back(left + column);
+          if (link == 0) return loop;
+        }
+      }
     }
-    return rows;
+    return loop;
   };
   std::vector<std::vector<std::uint32_t>> loops;
   for (const GarmentPanel& panel : garment.panels)
     for (std::uint32_t row = 0; row < panel.rows; ++row) {
-      const auto left = rows_sewn_to(panel.node(row, 0));
-      const auto right = rows_sewn_to(panel.node(row, panel.columns - 1));
-      for (const auto& [other, other_row] : left) {
-        if (other < &panel || !right.contains(other)) continue;  // each pair once
-        std::vector<std::uint32_t> loop;
-        for (std::uint32_t column = 0; column < panel.columns; ++column)
-          loop.push_back(panel.node(row, column));
-        // Each panel is seen from its own outside: the other's left is this one's right.
-        for (std::uint32_t column = 0; column < other->columns; ++column)
-          loop.push_back(other->node(other_row, column));
-        loops.push_back(std::move(loop));
-      }
+      if (in_a_loop.contains(panel.node(row, 0))) continue;
+      if (auto loop = loop_from(panel.node(row, 0)); !loop.empty()) loops.push_back(std::move(loop));
     }
   return loops;
 }
@@ -203,7 +207,9 @@ constexpr Unit plain{1, "", 1}, millimetres{1e3, " mm", 1e3}, per_cent{1, " %", 
 /// A row of the TABLE of a fit's numbers.
 struct FitNumber {
   std::string_view name;
-  std::variant<double Fit::*, std::size_t Fit::*, std::optional<double> Fit::*> value;
+  std::variant<double Fit::*, std::size_t Fit::*, std::optional<double> Fit::*,
+               std::optional<std::size_t> Fit::*>
+      value;
   Unit unit = plain;
   double FitBounds::*bound = nullptr;  ///< on the magnitude; null: none
   std::string_view what{};             ///< in a sentence
@@ -240,9 +246,9 @@ constexpr auto numbers = std::to_array<FitNumber>({
       "a lower waist or less ease there (of jeans: waist_height_m, waist_ease_m), more friction, or a longer "
       "step"}},
     {"crotch_rise_mm",
-     &Fit::meeting_rise,
+     &Fit::crotch_rise,
      millimetres,
-     &FitBounds::meeting_shift,
+     &FitBounds::crotch_shift,
      "the distance of the crotch from its place in the pattern",
      {"the crotch was drawn up", "more crotch_ease_m"},
      {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"}},
@@ -272,14 +278,7 @@ constexpr auto numbers = std::to_array<FitNumber>({
 
 /// None if the garment has no such number.
 std::optional<double> value_of(const FitNumber& number, const Fit& fit) {
-  return std::visit(
-      [&](auto member) -> std::optional<double> {
-        if constexpr (std::is_same_v<decltype(member), std::optional<double> Fit::*>)
-          return fit.*member;
-        else
-          return static_cast<double>(fit.*member);
-      },
-      number.value);
+  return std::visit([&](auto member) { return std::optional<double>(fit.*member); }, number.value);
 }
 
 /// NaN is within no bound.
@@ -298,8 +297,8 @@ std::string shown_bound(const FitNumber& number, const FitBounds& bounds, double
 
 DressingResult dress(DressingBackend& backend, const System& system, double dt_s, const SettlingRule& rule,
                      const OnWindow& on_window, const DressingFrames& frames) {
-  const int window = std::max(1, static_cast<int>(std::lround(rule.window_s / dt_s)));
-  const auto longest = static_cast<std::int64_t>(std::llround(rule.longest_s / dt_s));
+  const std::int64_t window = std::max(1LL, std::llround(rule.window_s / dt_s));
+  const std::int64_t longest = std::llround(rule.longest_s / dt_s);
   backend.set_state(system.start);
   DressingResult result;
   result.state = system.start;
@@ -315,7 +314,7 @@ DressingResult dress(DressingBackend& backend, const System& system, double dt_s
     State state = backend.state();
     if (backend.progress().draping) result.seamed_at = backend.progress().seamed_at;
     // A window that started with open seams, or was cut short, does not show whether a sewn garment rests.
-    result.settled = was_draping && whole_window && moved(result.state, state, rule.fraction) < rule.distance;
+    result.settled = was_draping && whole_window && rests(result.state, state, rule);
     result.state = std::move(state);
     goes_on = on_window(result.state, result.iterations) && !result.settled && result.iterations < longest;
     if (!goes_on || delivery.due() == result.iterations) delivery.deliver(result.state, result.iterations);
@@ -356,13 +355,15 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
   }
   measure_side_distance(garment.close, position, body, fit);
   fit.upper_edge_rise = upper_edge_rise(garment, position);
-  if (const auto meeting = where_seams_meet(garment); !meeting.empty())
-    fit.meeting_rise = mean_rise(garment, position, meeting);
-  for (const std::vector<std::uint32_t>& loop : sewn_rows(garment)) {
+  if (!garment.crotch.empty()) fit.crotch_rise = mean_rise(garment, position, garment.crotch);
+  for (const std::vector<std::uint32_t>& loop : closed_rows(garment)) {
     Vec3d middle;
     for (const std::uint32_t node : loop) middle += 1 / static_cast<double>(loop.size()) * position[node];
-    ++fit.rows;
-    fit.rows_astray += std::abs(turns_around(loop, position, body.limb_middle(middle))) == 1 ? 0U : 1U;
+    const bool goes_around = std::ranges::all_of(body.limb_axes(middle), [&](const Vec3d& axis) {
+      return std::abs(turns_around(loop, position, axis)) == 1;
+    });
+    fit.rows = fit.rows.value_or(0) + 1;
+    fit.rows_astray = fit.rows_astray.value_or(0) + (goes_around ? 0U : 1U);
   }
   const std::vector<double> longer = elongations(system, garment, position);
   fit.elongation_50 = quantile(longer, 0.5);

@@ -17,7 +17,7 @@ namespace mssim {
 struct SettlingRule {
   double window_s = 0.05;    ///< of simulated time
   double distance = 0.0005;  ///< m that nodes may move within a window
-  double fraction = 0.99;    ///< of the nodes, which must move less
+  double fraction = 0.99;    ///< of the nodes; more than these must move less
   double longest_s = 4;      ///< of simulated time, seaming included
 };
 
@@ -59,11 +59,12 @@ struct Fit {
   /// m, mean height of the upper edges of a layer's panels above their place in the pattern, of the layer
   /// with the largest deviation; negative: below.
   double upper_edge_rise = 0;
-  /// m, mean rise of the nodes at which seams meet (the crotch); none if seams do not meet.
-  std::optional<double> meeting_rise = {};
-  /// Rows of two panels that are sewn to each other at both ends, and those of them that do not go once
-  /// around the limb between the panels.
-  std::size_t rows = 0, rows_astray = 0;
+  /// m, mean height of Garment::crotch above its place in the pattern; none without jeans.
+  std::optional<double> crotch_rise = {};
+  /// Closed rows of cloth, and those of them that do not go once around their limb; none without closed rows.
+  /// A closed row consists of rows of panels, each sewn by its right end to the left end of the next, and the
+  /// last to the first; or of one, sewn to itself.
+  std::optional<std::size_t> rows = {}, rows_astray = {};
   /// Elongation over rest length of structural and shear springs: the median, the 99 % and 99.9 % quantiles
   /// and the maximum.
   double elongation_50 = 0, elongation_99 = 0, elongation_999 = 0, elongation_max = 0;
@@ -76,8 +77,9 @@ struct Fit {
 struct FitBody {
   /// Depth of each point inside the body, m; 0 outside.
   std::function<std::vector<double>(std::span<const Vec3d> points)> depths;
-  /// The middle of the limb around which a point lies, at the point's height.
-  std::function<Vec3d(const Vec3d& point)> limb_middle;
+  /// Points of the axes around each of which a closed row of cloth with this middle must go once: of a leg,
+  /// of both, or of the trunk.
+  std::function<std::vector<Vec3d>(const Vec3d& middle)> limb_axes;
   /// Distances of points from the body, m, with hollows bridged between two heights, m. Needed for a garment
   /// with cloth that must lie close.
   std::function<std::vector<double>(std::span<const Vec3d> points, double lowest, double highest)> distances =
@@ -99,7 +101,7 @@ struct FitBounds {
   double elongation_99 = 0.06;     ///< of 99 % of the structural and shear springs
   double elongation_999 = 0.08;    ///< of 99.9 % of them
   double upper_edge_shift = 0.02;  ///< m, up or down
-  double meeting_shift = 0.03;     ///< m, up or down
+  double crotch_shift = 0.03;      ///< m, up or down
   double rows_astray = 0;
   double crossings = 0;  ///< of layers
 };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "geometry/triangle_tree.h"
@@ -22,15 +21,6 @@ constexpr std::uint32_t least_cells_of_task = 1024;
 constexpr float box_reach = 1.01F;
 
 constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
-
-/// The nodes of one triangle of a cell; half is 0 or 1.
-std::array<std::uint32_t, 3> nodes_of(const GarmentPanel& panel, std::uint32_t row, std::uint32_t column,
-                                      std::uint32_t half) {
-  const std::uint32_t low_left = panel.node(row, column);
-  const std::uint32_t high_right = low_left + panel.columns + 1;
-  if (half == 0) return {low_left, low_left + 1, high_right};
-  return {low_left, high_right, high_right - 1};
-}
 
 NearestPoint nearest_on(const std::array<std::uint32_t, 3>& triangle, const Vec3<float>& point,
                         const Coordinates& position) {
@@ -72,7 +62,7 @@ std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t 
                                        float outward, const Coordinates& position) {
   const std::uint32_t cell = nearest / 2, row_length = panel.columns - 1;
   ClothContact contact{.node = node,
-                       .triangle = nodes_of(panel, cell / row_length, cell % row_length, nearest % 2)};
+                       .triangle = cell_triangle(panel, cell / row_length, cell % row_length, nearest % 2)};
   const NearestPoint point = nearest_on(contact.triangle, point_of(position, node), position);
   contact.weight = point.weight;
   const Vec3<float> first = point_of(position, contact.triangle[0]);
@@ -100,19 +90,11 @@ std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t 
 }  // namespace
 
 std::vector<PanelPair> layer_pairs(const Garment& garment) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> sewn;
-  const auto number = [&](std::uint32_t node) {
-    return static_cast<std::uint32_t>(&garment.panel_of(node) - garment.panels.data());
-  };
-  for (const Joint& joint : garment.joints)
-    sewn.insert(std::minmax({number(joint.node), number(joint.edge_first)}));
   std::vector<PanelPair> pairs;
   const auto panels = static_cast<std::uint32_t>(garment.panels.size());
   for (std::uint32_t inner = 0; inner < panels; ++inner)
     for (std::uint32_t outer = 0; outer < panels; ++outer)
-      if (garment.panels[inner].layer < garment.panels[outer].layer &&
-          !sewn.contains(std::minmax({inner, outer})))
-        pairs.push_back({inner, outer});
+      if (garment.panels[inner].layer < garment.panels[outer].layer) pairs.push_back({inner, outer});
   return pairs;
 }
 
@@ -266,7 +248,7 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
         for (std::uint32_t c = cells.column_begin; c < cells.column_end; ++c) {
           if (too_far(of_triangles.cell_box(r, c))) continue;
           for (const std::uint32_t half : {0U, 1U}) {
-            const NearestPoint on_half = nearest_on(nodes_of(other, r, c, half), point, position);
+            const NearestPoint on_half = nearest_on(cell_triangle(other, r, c, half), point, position);
             if (on_half.distance_squared() < best.distance_squared)
               best = {on_half.distance_squared(), 2 * (r * (other.columns - 1) + c) + half};
           }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,18 @@ struct PanelPair {
   bool operator==(const PanelPair&) const = default;
 };
 
-/// All pairs of panels of different layers, in ascending order; `inner` is of the lower layer. Pairs that a
-/// joint sews together are omitted: they would repel each other at their seam.
+/// All pairs of panels of different layers, in ascending order; `inner` is of the lower layer.
 std::vector<PanelPair> layer_pairs(const Garment& garment);
+
+/// The nodes of one of the two triangles of a cell: for half 0, (low left, low right, high right), and for
+/// half 1, (low left, high right, high left).
+inline std::array<std::uint32_t, 3> cell_triangle(const GarmentPanel& panel, std::uint32_t row,
+                                                  std::uint32_t column, std::uint32_t half) {
+  const std::uint32_t low_left = panel.node(row, column);
+  const std::uint32_t high_right = low_left + panel.columns + 1;
+  if (half == 0) return {low_left, low_left + 1, high_right};
+  return {low_left, high_right, high_right - 1};
+}
 
 /// The coordinates of all nodes: x, y, z, each [nodes] m.
 using Coordinates = std::array<std::span<const float>, 3>;
@@ -90,8 +100,6 @@ struct ClothContact {
 /// panel. Edges are not tested against edges: cells must be fine enough that two edges do not cross while all
 /// nodes keep their distance.
 ///
-/// A cell's triangles are (low left, low right, high right) and (low left, high right, high left).
-///
 /// Nodes of the outer panel belong on the side of the inner panel to which its normal points (GarmentPanel),
 /// nodes of the inner panel on the opposite side of the outer one. The triangle's normal decides the side if
 /// the nearest point is inside the triangle. If it is on an edge or corner, the normals at the nodes decide,
@@ -153,15 +161,17 @@ class ClothContactSearch {
 
 /// The number of crossings of two panels: pairs of an edge of one panel (sides of cells, and diagonals from
 /// low left to high right) and a triangle of the other through which it runs. 0 if the panels are apart,
-/// however near, and also if one is entirely on its wrong side.
+/// however near, and also if one is entirely on its wrong side. Edges and triangles with a node of `sewn` do
+/// not count.
 ///
 /// Signs of volumes decide, in double precision and without a tolerance. The signs at a side that two
 /// triangles share are equal for both, so that an edge through that side crosses exactly one of them. For
 /// checks, not for every step. position: [nodes] m, finite.
 std::size_t count_crossings(const GarmentPanel& first, const GarmentPanel& second,
-                            std::span<const Vec3d> position);
+                            std::span<const Vec3d> position, const std::set<std::uint32_t>& sewn = {});
 
-/// The sum over all pairs of layers (layer_pairs).
+/// The sum over all pairs of layers (layer_pairs). Of panels that are sewn to each other, what ends at their
+/// seam does not count.
 std::size_t count_crossings(const Garment& garment, std::span<const Vec3d> position);
 
 }  // namespace mssim

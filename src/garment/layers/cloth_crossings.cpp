@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "garment/layers/cloth_contacts.h"
 
@@ -7,6 +8,15 @@ namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
 using Triangle = std::array<std::uint32_t, 3>;
+
+/// Removes edges or triangles with a node of `sewn`.
+template <class Parts>
+Parts without(Parts parts, const std::set<std::uint32_t>& sewn) {
+  std::erase_if(parts, [&](const auto& part) {
+    return std::ranges::any_of(part, [&](std::uint32_t node) { return sewn.contains(node); });
+  });
+  return parts;
+}
 
 std::vector<Edge> edges_of(const GarmentPanel& panel) {
   std::vector<Edge> edges;
@@ -24,11 +34,8 @@ std::vector<Edge> edges_of(const GarmentPanel& panel) {
 std::vector<Triangle> triangles_of(const GarmentPanel& panel) {
   std::vector<Triangle> triangles;
   for (std::uint32_t row = 0; row + 1 < panel.rows; ++row)
-    for (std::uint32_t column = 0; column + 1 < panel.columns; ++column) {
-      const std::uint32_t low = panel.node(row, column), high = low + panel.columns;
-      triangles.push_back({low, low + 1, high + 1});
-      triangles.push_back({low, high + 1, high});
-    }
+    for (std::uint32_t column = 0; column + 1 < panel.columns; ++column)
+      for (const std::uint32_t half : {0U, 1U}) triangles.push_back(cell_triangle(panel, row, column, half));
   return triangles;
 }
 
@@ -36,11 +43,11 @@ double volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   return dot(a - d, cross(b - d, c - d));
 }
 
-/// Counts edges that run through the triangles of one panel.
+/// Counts edges that run through triangles of one panel.
 class PiercedPanel {
  public:
-  PiercedPanel(const GarmentPanel& panel, std::span<const Vec3d> position)
-      : position_(position), triangles_(triangles_of(panel)) {
+  PiercedPanel(std::vector<Triangle> triangles, std::span<const Vec3d> position)
+      : position_(position), triangles_(std::move(triangles)) {
     std::ranges::sort(triangles_, {}, [&](const Triangle& triangle) { return leftmost(triangle); });
     for (const Triangle& triangle : triangles_)
       widest_ = std::max(widest_, range(triangle, &Vec3d::x)[1] - leftmost(triangle));
@@ -106,15 +113,26 @@ class PiercedPanel {
 }  // namespace
 
 std::size_t count_crossings(const GarmentPanel& first, const GarmentPanel& second,
-                            std::span<const Vec3d> position) {
-  return PiercedPanel(second, position).crossings(edges_of(first)) +
-         PiercedPanel(first, position).crossings(edges_of(second));
+                            std::span<const Vec3d> position, const std::set<std::uint32_t>& sewn) {
+  const auto through = [&](const GarmentPanel& edges, const GarmentPanel& triangles) {
+    return PiercedPanel(without(triangles_of(triangles), sewn), position)
+        .crossings(without(edges_of(edges), sewn));
+  };
+  return through(first, second) + through(second, first);
 }
 
 std::size_t count_crossings(const Garment& garment, std::span<const Vec3d> position) {
   std::size_t count = 0;
-  for (const auto& [inner, outer] : layer_pairs(garment))
-    count += count_crossings(garment.panels[inner], garment.panels[outer], position);
+  for (const auto& [inner, outer] : layer_pairs(garment)) {
+    const GarmentPanel &inside = garment.panels[inner], &outside = garment.panels[outer];
+    std::set<std::uint32_t> sewn;
+    for (const Joint& joint : garment.joints) {
+      const std::array ends{&garment.panel_of(joint.node), &garment.panel_of(joint.edge_first)};
+      if (ends == std::array{&inside, &outside} || ends == std::array{&outside, &inside})
+        sewn.insert({joint.node, joint.edge_first, joint.edge_second});
+    }
+    count += count_crossings(inside, outside, position, sewn);
+  }
   return count;
 }
 

@@ -125,8 +125,8 @@ Document page_of(const Layout& layout, const Provenance& provenance) {
           "The paper shows four curves, without numbers: a laptop (Intel Core i7-4702MQ, four cores, eight "
           "threads, 2.2 GHz) and a mobile device (ARM Cortex-A17, four cores, 1.7 GHz), each without and "
           "with parallelisation. Lines *as printed* run its Algorithm 1 loop by loop, with and without SIMD "
-          "instructions. The other lines run mssim's own form, which limits elongations by positions and "
-          "closes seams by constraints."},
+          "instructions. The other lines run mssim's own form, which limits elongations and closes seams by "
+          "constraints on velocities."},
       table_of(layout, provenance, "milliseconds per iteration", time_cell),
       Paragraph{"Nanoseconds per iteration and vertex, from the same samples:"},
       table_of(layout, provenance, "nanoseconds",

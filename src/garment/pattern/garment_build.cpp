@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "geometry/geometry.h"
@@ -222,10 +223,25 @@ CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
     }
   };
   for (const Joint& joint : garment.joints) {
-    if (std::ranges::find(close.seams, garment.seams[joint.seam]) == close.seams.end()) continue;
+    if (std::ranges::find(close.seams, joint.seam) == close.seams.end()) continue;
     for (const std::uint32_t sewn : {joint.node, joint.edge_first, joint.edge_second}) add_beside(sewn);
   }
   return {{nodes.begin(), nodes.end()}, close.lowest, close.highest};
+}
+
+/// The nodes at which two of these seams or more meet, in ascending order.
+std::vector<std::uint32_t> where_seams_meet(const std::vector<std::uint32_t>& seams, const Garment& garment) {
+  std::map<std::uint32_t, std::set<std::uint32_t>> seams_at;
+  for (const Joint& joint : garment.joints) {
+    if (std::ranges::find(seams, joint.seam) == seams.end()) continue;
+    seams_at[joint.node].insert(joint.seam);
+    if (joint.edge_share == 0) seams_at[joint.edge_first].insert(joint.seam);
+    if (joint.edge_share == 1) seams_at[joint.edge_second].insert(joint.seam);
+  }
+  std::vector<std::uint32_t> nodes;
+  for (const auto& [node, meeting] : seams_at)
+    if (meeting.size() > 1) nodes.push_back(node);
+  return nodes;
 }
 
 }  // namespace
@@ -371,6 +387,7 @@ GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body)
   add_each(pattern.seams, PatternError::Part::seam,
            [&](const Seam& seam) { add_seam(seam, workshop, build.garment); });
   build.garment.close = close_cloth(pattern.close, build.garment);
+  build.garment.crotch = where_seams_meet(pattern.crotch, build.garment);
   return build;
 }
 

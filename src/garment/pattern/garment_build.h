@@ -80,6 +80,9 @@ struct PanelGrid {
   std::vector<GridLine> row_lines{};  ///< ascending
 };
 
+/// The largest number of rows or columns.
+inline constexpr std::uint32_t most_panel_lines = 10'000;
+
 /// A pattern piece as nodes in its plane.
 struct PanelMesh {
   std::uint32_t rows = 0;
@@ -108,9 +111,9 @@ PanelMesh mesh_panel(const PatternPiece& piece, const PanelGrid& grid);
 
 /// The cloth of a pattern that must lie close to the body: next to these seams.
 struct CloseSeams {
-  std::vector<std::string> seams;  ///< names
-  double reach = 0;                ///< m, from a seam, along a row in the flat pattern
-  double lowest = 0, highest = 0;  ///< m, heights on the body, inclusive
+  std::vector<std::uint32_t> seams;  ///< indices into GarmentPattern::seams
+  double reach = 0;                  ///< m, from a seam, along a row in the flat pattern
+  double lowest = 0, highest = 0;    ///< m, heights on the body, inclusive
 };
 
 /// The rows of a panel next to its top boundary, which hold the garment on the body.
@@ -218,6 +221,7 @@ struct GarmentPattern {
   std::vector<PatternPanel> panels;
   std::vector<Seam> seams;
   CloseSeams close = {};
+  std::vector<std::uint32_t> crotch = {};  ///< indices of the seams of jeans that meet at the crotch
 };
 
 /// A garment built for simulation. Vectors over nodes are in the order of panels.

@@ -429,7 +429,8 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
       {"centre back", {"back left", at_right, back_crotch, 1}, {"back right", at_left, back_crotch, 1}},
   };
   constexpr double beside_the_seam = 0.05;  // m
-  pattern.close = {{"outer left", "outer right"},
+  pattern.crotch = {2, 3, 4, 5};
+  pattern.close = {{0, 1},
                    beside_the_seam,
                    measures.crotch_height - thigh_below_crotch,
                    std::max(measures.hip_height, measures.body_hip_height.value_or(0))};

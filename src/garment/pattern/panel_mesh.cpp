@@ -51,11 +51,6 @@ std::vector<Segment> outline_of(const PatternPiece& piece) {
   return outline;
 }
 
-/// Twice the area of the triangle; positive if it is counter-clockwise.
-double turn(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
 /// Whether both have a common point; if they are collinear, their boxes decide.
 bool intersect(const Segment& a, const Segment& b) {
   const auto apart = [](double a1, double a2, double b1, double b2) {
@@ -63,8 +58,11 @@ bool intersect(const Segment& a, const Segment& b) {
   };
   const auto one_side = [](double t1, double t2) { return (t1 > 0 && t2 > 0) || (t1 < 0 && t2 < 0); };
   if (apart(a.from.x, a.to.x, b.from.x, b.to.x) || apart(a.from.y, a.to.y, b.from.y, b.to.y)) return false;
-  return !one_side(turn(a.from, a.to, b.from), turn(a.from, a.to, b.to)) &&
-         !one_side(turn(b.from, b.to, a.from), turn(b.from, b.to, a.to));
+  // Positive left of the line.
+  const auto side = [](const Segment& of, const Vec3d& point) {
+    return cross(of.to - of.from, point - of.from).z;
+  };
+  return !one_side(side(a, b.from), side(a, b.to)) && !one_side(side(b, a.from), side(b, a.to));
 }
 
 [[noreturn]] void refuse(const PatternPiece& piece, const Segment& a, const Segment& b) {
@@ -98,12 +96,10 @@ void require_simple_boundary(const PatternPiece& piece) {
     }
 }
 
-constexpr std::uint32_t most_lines = 10'000;
-
 void require_lines(const PatternPiece& piece, std::uint32_t count, std::string_view what) {
-  if (count < 2 || count > most_lines)
+  if (count < 2 || count > most_panel_lines)
     throw InputError("{}: a panel cannot have {} {} of nodes; give a number from 2 to {}", piece.name, count,
-                     what, most_lines);
+                     what, most_panel_lines);
 }
 
 /// The ends of the grid lines of one direction.

@@ -110,8 +110,8 @@ struct AskedMeasures {
   OfHeight girth = remembered([&of = profile](double y) { return of.hull_girth(y); });
   /// In front of the middle of the legs, above which the side seams lie.
   OfHeight front_share = remembered(
-      [&of = profile](double y) { return of.front_share(y, of.leg_middle(of.crotch_height()).z); });
-  OfHeight leg_x = remembered([&of = profile](double y) { return of.leg_middle(y).x; });
+      [&of = profile](double y) { return of.front_share(y, of.leg_middle(of.crotch_height(), 1).z); });
+  OfHeight leg_x = remembered([&of = profile](double y) { return of.leg_middle(y, 1).x; });
   BodyDepth depth{remembered([&of = profile](double y) { return of.front(y); }),
                   remembered([&of = profile](double y) { return of.back(y); })};
 };
@@ -149,6 +149,20 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern
   }
 }
 
+/// Throws SceneError for a seam between layers that collide: they would keep its ends apart.
+void require_seams_within_layers(const SceneSpec& spec, const Garment& cut, const GarmentPattern& jeans) {
+  const GarmentSpec& garment = garment_of(spec);
+  if (!garment.layers) return;
+  for (const Joint& joint : cut.joints) {
+    const GarmentPanel &one = cut.panel_of(joint.node), &other = cut.panel_of(joint.edge_first);
+    if (one.layer == other.layer) continue;
+    refuse(spec.file, fmt::format("{}/seams/{}", pieces_pointer(garment), joint.seam - jeans.seams.size()),
+           fmt::format("sews {} in layer {} to {} in layer {}, which collide: give both panels one layer, or "
+                       "leave out \"layers\"",
+                       printable(one.name), one.layer, printable(other.name), other.layer));
+  }
+}
+
 FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, double body_offset) {
   const GarmentSpec& garment = garment_of(spec);
   GarmentPattern jeans;
@@ -161,6 +175,7 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, d
   GarmentPattern pattern = jeans;
   if (garment.pieces) append_pieces(*garment.pieces, garment.cloth, pattern);
   GarmentBuild build = cut_and_placed(spec, pattern, body, jeans);
+  require_seams_within_layers(spec, build.garment, jeans);
   const double cell = widest_mean_cell(pattern, build);
   // Distance of the maps from the body: skin, and the sagitta of a face as wide as a cell.
   return {std::move(build), garment.skin_m + cell * cell / (8 * least_curvature_radius_m)};
@@ -292,7 +307,8 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
 
   Garment dressed = build.garment;
   dressed.dressing = garment.dressing;
-  dressed.touching = garment.layers;
+  const auto [inner, outer] = std::ranges::minmax_element(dressed.panels, {}, &GarmentPanel::layer);
+  if (inner->layer < outer->layer) dressed.touching = garment.layers;
   const TrunkAndLegs& met = body->profile.trunk_and_legs();
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
   system.topology = std::move(dressed);
@@ -347,7 +363,8 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.object(
       {"layers",
        "Settings of collisions between layers of cloth; without this section, layers pass through each "
-       "other. For each layer, the maps of the body lie further out by the thickness."},
+       "other. For each layer, the maps of the body lie further out by the thickness. No seam may join two "
+       "layers."},
       Presence::optional, [&](FieldVisitor& section) {
         ClothClothSettings& layers = garment.layers.emplace();
         section.number({"thickness_m", "Distance that layers keep, m; more than they approach per step."},

@@ -6,7 +6,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::uint32_t most_panels = 64, most_seams = 256, most_lines = 10'000, most_layers = 8;
+constexpr std::uint32_t most_panels = 64, most_seams = 256, most_layers = 8;
 constexpr std::size_t most_points = 100;  // of a boundary: each is compared with each other one
 
 void visit_boundary(FieldVisitor& fields, const Field& field, BoundarySpec& boundary) {
@@ -27,9 +27,9 @@ void visit_boundary(FieldVisitor& fields, const Field& field, BoundarySpec& boun
 void visit_piece(FieldVisitor& fields, PieceSpec& piece) {
   fields.text({"name", "Unique name of the panel, to which seams refer."}, Presence::required, piece.name);
   fields.integer({"rows", "Rows of nodes, from the bottom boundary to the top one."}, piece.rows, 2,
-                 most_lines);
+                 most_panel_lines);
   fields.integer({"columns", "Columns of nodes, from the left boundary to the right one."}, piece.columns, 2,
-                 most_lines);
+                 most_panel_lines);
   fields.integer({"layer", "Layer of cloth; 0 lies on the body, as jeans do."}, piece.layer, 0,
                  most_layers - 1);
   constexpr std::array<std::string_view, panel_edge_names.size()> descriptions{

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <string_view>
-#include <vector>
 
 #include "backends/interface/backend.h"
 
@@ -39,13 +38,10 @@ std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, cons
 std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, const Integrator& integrator,
                                                          double dt_s);
 
-/// The instruction sets for which the vector code is compiled and that this processor has, the best first.
-std::vector<std::string_view> dressing_instruction_sets();
-
 /// Algorithm 1 in vectors along the rows of the panels, on `threads` threads; bitwise identical for every
-/// number of threads. An empty name selects the best instruction set. Throws Unsupported for an integrator
-/// other than semi-euler and for springs of one row and direction that differ in stiffness, and
-/// std::invalid_argument for an instruction set not in dressing_instruction_sets().
+/// number of threads. `instruction_set` is one of openmp_instruction_sets(); empty: the best. Throws
+/// Unsupported for an integrator other than semi-euler and for springs of one row and direction that differ
+/// in stiffness, and std::invalid_argument for another instruction set.
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, int threads,
                                                       std::string_view instruction_set = "");
@@ -61,8 +57,8 @@ struct DressingShape {
 
 /// Algorithm 1 on an OpenCL device (kernels/dressing_step.cl). All steps are queued at once: the host learns
 /// at the end of step() whether seams have closed. Throws Unsupported for an integrator other than
-/// semi-euler and if the device's memory is too small; Unavailable if its driver fails. It lets layers pass
-/// through each other.
+/// semi-euler and if the device's memory is too small; Unavailable if its driver fails. It ignores
+/// Garment::touching; make_dressing_backend refuses such a garment.
 std::unique_ptr<DressingBackend> make_opencl_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, const OpenclDevice& device,
                                                       DeviceMemory memory, const DressingShape& shape);

@@ -93,10 +93,6 @@ void close_sewn_joints(PanelDressing& dressing) {
     for (const std::size_t at : grid.held) grid.velocity.y.data()[at] = 0;
 }
 
-std::vector<std::string_view> dressing_instruction_sets() {
-  return instruction_sets_of(compiled_kernels<PanelDressing>());
-}
-
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, int threads,
                                                       std::string_view instruction_set) {

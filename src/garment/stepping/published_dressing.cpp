@@ -182,7 +182,8 @@ class PublishedLoops final : public DressingBackend {
       for_each(nodes_.size(), [&](std::size_t i) { add_external_forces(i, phase.damping, gravity); });
       for_each_of(joint_order_, [&](std::size_t i) { add_joint_force(joint_order_.things[i], time_s); });
       for_each(nodes_.size(), [&](std::size_t i) { update_velocity(i, phase.friction); });
-      for_each_of(spring_order_, [&](std::size_t i) { correct(springs_[i]); });
+      if (rules_.correction != VelocityCorrection::none)
+        for_each_of(spring_order_, [&](std::size_t i) { correct(springs_[i]); });
       for_each(nodes_.size(), [&](std::size_t i) { move(i); });
       end_step();
     }

@@ -27,8 +27,8 @@ namespace mssim {
 ///   Rows without threads use the same order, so that all are bitwise identical.
 /// - SIMD: a register holds one point. Without SIMD, the compiler gets plain floats, with the same options.
 /// - The correction: each of two ends of equal mass loses half of the velocity that lengthens a spring, as
-///   with `"correction": "published"` elsewhere. The threshold is the scene's. The paper refers to "Fast
-///   cloth animation on walking avatars" (2001), its [5].
+///   with `"correction": "published"` elsewhere. The threshold is the scene's; with `"correction": "none"`,
+///   there is no loop 5. The paper refers to "Fast cloth animation on walking avatars" (2001), its [5].
 /// - The body: planes of a pixel instead of its depth (BodyMaps). Velocity into the body is removed, and
 ///   friction is Coulomb's. The paper refers to [5] here, too.
 /// - Joints: the force on an open joint is the scene's; the paper gives none. The paper does not say what
@@ -52,8 +52,8 @@ inline constexpr auto published_dressings = std::to_array<PublishedDressing>({
     {"algorithm1-threads-simd", "algorithm1-threads with SIMD instructions", true, true},
 });
 
-/// Makes the loops of a row. Throws Unsupported for an integrator other than semi-euler. Layers that
-/// touch are left out, as in Vassilev's Figure 6.
+/// Makes the loops of a row. Throws Unsupported for an integrator other than semi-euler. The loops ignore
+/// Garment::touching; make_dressing_backend refuses such a garment.
 using MakePublishedDressing = std::unique_ptr<DressingBackend> (*)(const System& system,
                                                                    const Integrator& integrator, double dt_s,
                                                                    const ExecutionOptions& options);

@@ -70,7 +70,7 @@ class BenchGarment : public testing::Test {
     job_.rounds = 2;
     job_.sample_seconds = 1e-4;
     job_.garment.emplace(GarmentJob{
-        .body = nobody(), .bounds = {.upper_edge_shift = 10, .meeting_shift = 10, .rows_astray = 100}});
+        .body = nobody(), .bounds = {.upper_edge_shift = 10, .crotch_shift = 10, .rows_astray = 100}});
     steps_by_draped.clear();
   }
   std::vector<ResultRow> run() {

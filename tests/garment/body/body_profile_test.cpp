@@ -108,8 +108,8 @@ TEST(BodyProfile, TheCrotchIsWhereTheSectionFallsApart) {
   const Surface trunk = cylinder(0, 0.35, 0.2, 0.8, 1.4);
   EXPECT_NEAR(BodyProfile(both(legs, trunk)).crotch_height(), 0.8, 1e-12);
   for (const double y : {-0.1, 0.3, 0.795, 1.2}) {
-    EXPECT_NEAR(BodyProfile(both(legs, trunk)).leg_middle(y).x, 0.2, 1e-9) << y;
-    EXPECT_NEAR(BodyProfile(both(legs, trunk)).leg_middle(y).z, 0, 1e-9) << y;
+    EXPECT_NEAR(BodyProfile(both(legs, trunk)).leg_middle(y, 1).x, 0.2, 1e-9) << y;
+    EXPECT_NEAR(BodyProfile(both(legs, trunk)).leg_middle(y, 1).z, 0, 1e-9) << y;
   }
   const Surface plate = cylinder(0, 0.5, 0.5, -0.1, 0.02);
   const BodyProfile statue(both(both(legs, trunk), plate), "statue");
@@ -121,6 +121,24 @@ TEST(BodyProfile, TheCrotchIsWhereTheSectionFallsApart) {
   // Above the crotch it is that of the legs below.
   for (const auto& [y, apart] : {std::pair{0.01, false}, {0.5, true}, {1.2, true}})
     EXPECT_EQ(statue.legs_are_apart(y), apart) << y;
+}
+
+TEST(BodyProfile, EachLegHasItsMiddleAndIsAsLongAsItIs) {
+  // The right leg is behind the other and ends higher.
+  Surface right = cylinder(-0.25, 0.1, 0.1, 0.1, 0.9);
+  for (Vec3d& point : right.points) point.z -= 0.2;
+  const Surface legs = both(right, cylinder(0.2, 0.1, 0.1, 0, 0.9));
+  const BodyProfile body(both(legs, cylinder(0.1, 0.4, 0.4, 0.8, 1.4)));
+  for (const double y : {-0.1, 0.05, 0.5, 1.2}) {
+    ASSERT_TRUE(body.legs_are_apart(y)) << y;
+    EXPECT_NEAR(body.leg_middle(y, -1).x, -0.25, 1e-9) << y;
+    EXPECT_NEAR(body.leg_middle(y, -1).z, -0.2, 1e-9) << y;
+    EXPECT_NEAR(body.leg_middle(y, 1).x, 0.2, 1e-9) << y;
+    EXPECT_NEAR(body.leg_middle(y, 1).z, 0, 1e-9) << y;
+  }
+  EXPECT_NEAR(body.middle(1.2).x, 0.1, 1e-9);
+  EXPECT_NEAR(body.middle(0.5).x, -0.025, 1e-9);
+  EXPECT_NEAR(body.middle(0.5).z, -0.1, 1e-9);
 }
 
 TEST(BodyProfile, WhatIsNotThereIsNamed) {
@@ -208,6 +226,24 @@ TEST(Landmarks, WhatTheBodyDoesNotShowIsByProportion) {
   EXPECT_TRUE(found.waist.by_proportion);
   EXPECT_NEAR(found.hip.height, 1.12 * found.crotch_height, 1e-12);
   EXPECT_NEAR(found.waist.height, 1.35 * found.crotch_height, 1e-12);
+}
+
+TEST(Landmarks, AreNotWhereGirthsEnd) {
+  // A body that ends above its hip, where it still narrows.
+  Surface cut = mannequin({}, 48);
+  for (Vec3d& point : cut.points)
+    if (point.y > 0.95) point.y = 0.95 + 0.001 * (point.y - 0.95);
+  const BodyLandmarks of_cut = find_landmarks(BodyProfile(cut));
+  EXPECT_FALSE(of_cut.hip.by_proportion);
+  EXPECT_TRUE(of_cut.waist.by_proportion);
+  EXPECT_NEAR(of_cut.waist.height, 1.35 * of_cut.crotch_height, 1e-12);
+  EXPECT_FALSE(of_cut.waist.girth);
+  // Legs that touch from below the range of knees to within it.
+  const BodyLandmarks touching =
+      find_landmarks(BodyProfile(both(mannequin({}, 48), cylinder(0, 0.1, 0.03, 0.3, 0.5))));
+  EXPECT_TRUE(touching.knee.by_proportion);
+  EXPECT_NEAR(touching.knee.height, 0.6 * touching.crotch_height, 1e-12);
+  EXPECT_FALSE(touching.knee.girth);
 }
 
 TEST(JeansForBody, AreThoseOfTheReferenceBodyAndWideEnoughForAnyLeg) {

@@ -9,25 +9,39 @@
 namespace mssim {
 namespace {
 
-/// A tube of two half ones of 5 x 9 nodes, sewn to each other at both sides; its radius is 0.1 m. The pattern
-/// has every node at the height where it is.
-System tube() {
-  System system = garment_of({{5, 9, 0.04, {0, 0, 0}}, {5, 9, 0.04, {0, 0, 0}}});
+/// Tiers of tubes, one above the other and sewn to each other; their radius is 0.1 m. Each is of so many
+/// panels of 5 x 9 nodes, each sewn to the next. The pattern has every node at the height where it is.
+System tube(std::uint32_t panels_around = 2, std::uint32_t tiers = 1) {
+  System system = garment_of(std::vector<SquarePanel>(panels_around * tiers, {5, 9, 0.04, {0, 0, 0}}));
   Garment& garment = garment_in(system);
-  for (std::uint32_t half = 0; half < 2; ++half)
-    for (std::uint32_t row = 0; row < 5; ++row)
-      for (std::uint32_t column = 0; column < 9; ++column) {
-        const double angle = std::numbers::pi * (half + column / 8.0);
-        system.start.position[garment.panels[half].node(row, column)] = {0.1 * std::cos(angle), row * 0.04,
-                                                                         0.1 * std::sin(angle)};
-      }
-  const auto edge = [&](std::uint32_t half, std::uint32_t column) {
+  const auto panel = [&](std::uint32_t tier, std::uint32_t i) {
+    return garment.panels[panels_around * tier + i % panels_around];
+  };
+  const auto edge = [](const GarmentPanel& of, std::uint32_t column) {
     std::vector<std::uint32_t> nodes;
-    for (std::uint32_t row = 0; row < 5; ++row) nodes.push_back(garment.panels[half].node(row, column));
+    for (std::uint32_t row = 0; row < 5; ++row) nodes.push_back(of.node(row, column));
     return nodes;
   };
-  sew(system, edge(0, 0), edge(1, 8), 0.16);
-  sew(system, edge(0, 8), edge(1, 0), 0.16);
+  for (std::uint32_t tier = 0; tier < tiers; ++tier)
+    for (std::uint32_t i = 0; i < panels_around; ++i) {
+      const GarmentPanel here = panel(tier, i);
+      for (std::uint32_t row = 0; row < 5; ++row)
+        for (std::uint32_t column = 0; column < 9; ++column) {
+          const std::uint32_t node = here.node(row, column);
+          const double angle = 2 * std::numbers::pi * (i + column / 8.0) / panels_around;
+          garment.flat[node].y += 0.16 * tier;
+          system.start.position[node] = {0.1 * std::cos(angle), garment.flat[node].y, 0.1 * std::sin(angle)};
+        }
+      sew(system, edge(here, 8), edge(panel(tier, i + 1), 0), 0.16);
+      if (tier == 0) continue;
+      const GarmentPanel below = panel(tier - 1, i);
+      std::vector<std::uint32_t> lower, upper;
+      for (std::uint32_t column = 0; column < 9; ++column) {
+        lower.push_back(below.node(4, column));
+        upper.push_back(here.node(0, column));
+      }
+      sew(system, lower, upper, 0.32);
+    }
   return system;
 }
 
@@ -43,20 +57,46 @@ TEST(Fit, CountsRowsThatDoNotGoOnceAroundTheirLimb) {
   for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
     for (std::uint32_t column = 0; column < panel.columns; ++column) position[panel.node(2, column)].x += 0.3;
   EXPECT_EQ(fit_of(system, position, nobody(Vec3d{})).rows_astray, 1U);
+  // A row must go around each of several axes.
+  FitBody two_legs = nobody();
+  two_legs.limb_axes = [](const Vec3d& middle) {
+    return std::vector{Vec3d{-0.05, middle.y, 0}, Vec3d{0.05, middle.y, 0}};
+  };
+  EXPECT_EQ(fit_of(system, system.start.position, two_legs).rows_astray, 0U);
+  for (Vec3d& node : position) node.x += 0.08;
+  EXPECT_EQ(fit_of(system, position, two_legs).rows_astray, 5U);
 }
 
-TEST(Fit, TellsHowFarUpperEdgesAndMeetingSeamsHangFromThePattern) {
+TEST(Fit, FollowsRowsFromPanelToPanelAlongTheirSides) {
+  for (const std::uint32_t panels_around : {1U, 2U, 3U, 5U})
+    for (const std::uint32_t tiers : {1U, 2U}) {
+      const System system = tube(panels_around, tiers);
+      const Fit fit = fit_of(system, system.start.position, nobody(Vec3d{}));
+      EXPECT_EQ(fit.rows, 5 * tiers) << panels_around;
+      EXPECT_EQ(fit.rows_astray, 0U) << panels_around;
+    }
+}
+
+TEST(Fit, HasNoNumberOfRowsWithoutClosedRows) {
   System system = tube();
+  std::erase_if(garment_in(system).joints, [](const Joint& joint) { return joint.seam == 1; });
+  const Fit fit = fit_of(system, system.start.position, nobody(Vec3d{}));
+  EXPECT_FALSE(fit.rows || fit.rows_astray);
+  for (const FitCheck& check : fit_checks(fit, {})) EXPECT_THAT(check.name, Not(StartsWith("rows")));
+}
+
+TEST(Fit, TellsHowFarUpperEdgesAndTheCrotchHangFromThePattern) {
+  System system = tube(2, 2);
   Garment& garment = garment_in(system);
-  // A third seam meets the first at the lowest node of the first panel's left edge.
-  garment.seams.emplace_back("third");
-  garment.joints.push_back({garment.panels[0].node(0, 0), garment.panels[1].node(0, 7), 0, 0, 0.01, 1, 2});
+  EXPECT_FALSE(fit_of(system, system.start.position, nobody(Vec3d{})).crotch_rise)
+      << "seams that meet make no crotch";
+  garment.crotch = {garment.panels[0].node(0, 0)};
   std::vector<Vec3d> position = system.start.position;
   for (Vec3d& node : position) node.y += 0.005;
   position[garment.panels[0].node(0, 0)].y -= 0.025;
   const Fit fit = fit_of(system, position, nobody(Vec3d{}));
   EXPECT_NEAR(fit.upper_edge_rise, 0.005, 1e-12);
-  EXPECT_NEAR(fit.meeting_rise.value(), -0.02, 1e-12);
+  EXPECT_NEAR(fit.crotch_rise.value(), -0.02, 1e-12);
 }
 
 TEST(Fit, TellsHowFarCloseClothIsFromTheBodyAndAtWhichHeight) {
@@ -109,7 +149,7 @@ TEST(Fit, MeasuresGapsElongationsAndDepths) {
                          depths.push_back(point.x < 0.005 ? std::max(0.0, 0.002 - point.z) : 0);
                        return depths;
                      },
-                     [](const Vec3d& point) { return point; }};
+                     [](const Vec3d& middle) { return std::vector{middle}; }};
   const Fit fit = fit_of(system, position, body);
   EXPECT_NEAR(fit.largest_gap, 1.03 * 0.0125, 1e-9);
   for (const double elongation :
@@ -126,7 +166,7 @@ TEST(Fit, MeasuresGapsElongationsAndDepths) {
                          depths.push_back(std::max(0.0, 0.004 - std::abs(point.x)));
                        return depths;
                      },
-                     [](const Vec3d& point) { return point; }};
+                     [](const Vec3d& middle) { return std::vector{middle}; }};
   const Fit around_post = fit_of(system, spanned, post);
   EXPECT_EQ(around_post.nodes_inside, 0U);
   EXPECT_EQ(around_post.deepest_node, 0);
@@ -189,7 +229,7 @@ TEST(Fit, SamplesBothTrianglesOfEveryCell) {
 
 TEST(FitBounds, StandBesideTheNumbersInTheirUnits) {
   const std::vector<FitCheck> checks =
-      fit_checks({.largest_gap = 0.0005, .meeting_rise = 0, .elongation_99 = 0.07}, {});
+      fit_checks({.largest_gap = 0.0005, .crotch_rise = 0, .elongation_99 = 0.07}, {});
   const auto find = [&](const std::string& name) {
     return *std::ranges::find(checks, name, &FitCheck::name);
   };
@@ -209,7 +249,7 @@ TEST(FitBounds, TellSlidingDownFromBeingPushedUp) {
   result.settled = true;
   EXPECT_THAT(misfits(result, {.upper_edge_rise = 0.021}, {}),
               ElementsAre(StartsWith("the garment was pushed up: ")));
-  EXPECT_THAT(misfits(result, {.meeting_rise = -0.031}, {}),
+  EXPECT_THAT(misfits(result, {.crotch_rise = -0.031}, {}),
               ElementsAre(StartsWith("the crotch hangs low: ")));
 }
 
@@ -226,7 +266,7 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
          .deepest_face_sample = 0.002,
          .side_distance = 0.0125,
          .upper_edge_rise = -0.021,
-         .meeting_rise = 0.031,
+         .crotch_rise = 0.031,
          .rows = 3,
          .rows_astray = 1,
          .elongation_50 = 0,

@@ -243,15 +243,12 @@ TEST(ClothContactSearch, FindsANodeOnTheTriangleItselfAndNoneThatIsNowhere) {
   EXPECT_EQ(contacts_of(cloth).size(), 0U);
 }
 
-TEST(LayerPairs, AreThoseOfDifferentLayersThatNoSeamJoins) {
+TEST(LayerPairs, AreThoseOfDifferentLayers) {
   Garment garment;
   for (const std::uint32_t layer : {1U, 0U, 0U, 1U})
     garment.panels.push_back({"", 2, 2, static_cast<std::uint32_t>(4 * garment.panels.size()), layer});
   EXPECT_THAT(layer_pairs(garment),
               ElementsAre(PanelPair{1, 0}, PanelPair{1, 3}, PanelPair{2, 0}, PanelPair{2, 3}));
-  garment.joints.push_back({.node = 3, .edge_first = 8, .edge_second = 9});
-  garment.joints.push_back({.node = 5, .edge_first = 8, .edge_second = 8});
-  EXPECT_THAT(layer_pairs(garment), ElementsAre(PanelPair{1, 0}, PanelPair{1, 3}, PanelPair{2, 3}));
 }
 
 /// A level unit square grid of cells, and an upright sheet of one cell across it at an x, from one z to the
@@ -273,6 +270,26 @@ TEST(CountCrossings, CountsEdgesThroughTriangles) {
   // Half of it inside: its side at z = -0.6 and the level sheet's border at z = -1. Its diagonal passes the
   // level of the sheet at z = -0.9.
   EXPECT_EQ(crossings(level_and_upright(1, 0.4, -0.6, -1.2)), 2U + 1U);
+}
+
+TEST(CountCrossings, CountsNothingThatEndsAtASeamOfTheTwoPanels) {
+  // Edges of a row of the outer sheet run through the inner one, in each of its columns.
+  LayeredCloth cloth;
+  cloth.add(0, 5, 5, level(0, 1));
+  cloth.add(1, 2, 5, [](double row, double column) { return Vec3d{column + 0.3, row - 0.5, -1.4}; });
+  const std::size_t all = crossings(cloth);
+  Joint joint{.node = cloth.garment.panels[1].node(0, 4), .edge_first = 4, .edge_second = 4};
+  cloth.garment.joints.push_back(joint);
+  const std::size_t beside_the_seam = crossings(cloth);
+  EXPECT_LT(beside_the_seam, all);
+  EXPECT_GT(beside_the_seam, 0U);
+  for (std::uint32_t column = 0; column < 4; ++column) {
+    joint.node = cloth.garment.panels[1].node(0, column);
+    cloth.garment.joints.push_back(joint);
+  }
+  EXPECT_EQ(crossings(cloth), 0U);
+  for (Joint& within : cloth.garment.joints) within.edge_first = within.edge_second = within.node;
+  EXPECT_EQ(crossings(cloth), all) << "no seam of the two";
 }
 
 TEST(CountCrossings, FindsNoneBetweenSheetsThatAreApart) {

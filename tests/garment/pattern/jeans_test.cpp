@@ -317,6 +317,23 @@ TEST(Jeans, LieCloseAsFarUpAsTheBodyIsWidestWhateverTheirOwnHip) {
   EXPECT_EQ(highest(0.88), 0.88);
 }
 
+TEST(Jeans, HaveACrotchOfFourNodesWhateverElseIsSewn) {
+  const JeansBody body;
+  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  const Garment alone = build_garment(pattern, body.depths()).garment;
+  ASSERT_EQ(alone.crotch.size(), 4U);
+  for (const std::uint32_t node : alone.crotch)
+    EXPECT_NEAR(alone.flat[node].y, JeansBody::crotch - body.measures().crotch_ease, 0.05);
+  // A seam of the user's, with the name of one of theirs, that meets a side seam.
+  pattern.panels.push_back(pattern.panels[0]);
+  pattern.panels.back().piece.name = "patch";
+  pattern.seams.push_back(
+      {"outer left", {"front left", PanelEdge::bottom, 0, 1}, {"patch", PanelEdge::bottom, 0, 1}});
+  const Garment patched = build_garment(pattern, body.depths()).garment;
+  EXPECT_EQ(patched.crotch, alone.crotch);
+  EXPECT_EQ(patched.close.nodes, alone.close.nodes);
+}
+
 TEST(Jeans, TheWaistbandsJointsPullHarder) {
   PanelMaterial cloth;
   cloth.waistband.height = 0.035;

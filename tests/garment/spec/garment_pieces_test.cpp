@@ -67,10 +67,16 @@ const std::string two_pieces = R"({
       "seam_force_n_per_m": 4, "seam_force_doubling_s": 0.5, "seaming_damping_per_s": 8, "seaming_gravity": 0,
       "longest_seaming_s": 1, "sewn_gap_m": 0.01, "closing_share": 0.2, "closing_speed_m_per_s": 0.5,
       "friction": 0.5, "push_speed_m_per_s": 1, "correction": "none", "none": {}
-    },
-    "layers": {"thickness_m": 0.004, "friction": 0.2, "push_speed_m_per_s": 0.7, "sweeps": 3}
+    }
   }
 })";
+
+/// The end of two_pieces, and with layers that collide.
+const char* const dressing_end = R"("none": {}
+    })";
+const char* const with_layers = R"("none": {}
+    },
+    "layers": {"thickness_m": 0.004, "friction": 0.2, "push_speed_m_per_s": 0.7, "sweeps": 3})";
 
 System built(const std::string& text) { return build_system(parse_scene("pieces.json", text)); }
 
@@ -132,13 +138,16 @@ TEST(GarmentPieces, AreSewnWhereTheSeamsSay) {
 }
 
 TEST(GarmentPieces, TouchOnlyWhereLayersAreAskedFor) {
-  const Garment garment = garment_in(built(two_pieces));
+  std::string unsewn = two_pieces;
+  const std::size_t seams = unsewn.find(",\n      \"seams\"");
+  unsewn.erase(seams, unsewn.find(']', seams) + 1 - seams);
+  const Garment garment = garment_in(built(with_change(unsewn, dressing_end, with_layers)));
   ASSERT_TRUE(garment.touching);
   EXPECT_EQ(garment.touching->thickness, 0.004);
   EXPECT_EQ(garment.touching->friction, 0.2);
   EXPECT_EQ(garment.touching->push_speed, 0.7);
   EXPECT_EQ(garment.touching->sweeps, 3U);
-  EXPECT_THAT(layer_pairs(garment), IsEmpty()) << "sewn panels would repel each other";
+  EXPECT_THAT(layer_pairs(garment), ElementsAre(PanelPair{0, 1}));
   // In front of the belly the outer layer meets the body 4 mm before the inner one.
   ASSERT_EQ(garment.body_maps.size(), 2U);
   const auto distance = [&](std::size_t layer) {
@@ -146,10 +155,10 @@ TEST(GarmentPieces, TouchOnlyWhereLayersAreAskedFor) {
   };
   EXPECT_NEAR(distance(0) - distance(1), 0.004, 6e-4);  // the pixels are large
 
-  const std::string apart = with_change(two_pieces, R"(,
-    "layers": {"thickness_m": 0.004, "friction": 0.2, "push_speed_m_per_s": 0.7, "sweeps": 3})",
-                                        "");
-  const Garment loose = garment_in(built(apart));
+  const Garment one_layer = garment_in(built(
+      with_change(with_change(two_pieces, dressing_end, with_layers), R"("layer": 1)", R"("layer": 0)")));
+  EXPECT_FALSE(one_layer.touching) << "there is nothing to collide";
+  const Garment loose = garment_in(built(two_pieces));
   EXPECT_FALSE(loose.touching);
   EXPECT_EQ(loose.body_maps.size(), 1U);
 }
@@ -168,9 +177,9 @@ TEST(GarmentPieces, GoWithJeans) {
   EXPECT_EQ(garment.panels[5].name, "seat");
   ASSERT_EQ(garment.seams.size(), 8U);
   EXPECT_EQ(garment.seams[6], "side left");
-  // The seat is over the jeans, of the apron's layer.
-  EXPECT_THAT(layer_pairs(garment),
-              ElementsAre(PanelPair{0, 5}, PanelPair{1, 5}, PanelPair{2, 5}, PanelPair{3, 5}));
+  // The seat is over the jeans, and over the apron, which is of their layer.
+  EXPECT_THAT(layer_pairs(garment), ElementsAre(PanelPair{0, 5}, PanelPair{1, 5}, PanelPair{2, 5},
+                                                PanelPair{3, 5}, PanelPair{4, 5}));
 
   // What does not fit is told from what does not fit of the jeans.
   const auto error_of = [](const std::string& scene) {
@@ -181,6 +190,8 @@ TEST(GarmentPieces, GoWithJeans) {
   EXPECT_THAT(error_of(with_change(text, "\"tolerance\": 0.02,\n         \"first\": {\"panel\": \"apron\"",
                                    "\"tolerance\": 0.02,\n         \"first\": {\"panel\": \"front right\"")),
               HasSubstr("/garment/outfit/seams/1 does not fit: seam side right: "));
+  EXPECT_THAT(error_of(with_change(text, dressing_end, with_layers)),
+              HasSubstr("/garment/outfit/seams/0 sews apron in layer 0 to seat in layer 1"));
   EXPECT_THAT(error_of(with_change(text, "\"hip_height_m\": 0.86", "\"hip_height_m\": 1.5")),
               HasSubstr("/garment/outfit/jeans does not fit: jeans: the waist's height"));
 }
@@ -239,8 +250,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "/garment/pieces/seams/0/first/edge", "is the text \"rihgt\"", "perhaps right"},
         BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0, "to": 1.1})",
                   "/garment/pieces/seams/0/first/to", "is 1.1", "from 0 to 1"},
-        BadPieces{R"("thickness_m": 0.004)", R"("thickness_m": 0)", "/garment/layers/thickness_m", "is 0",
-                  "from 1e-06 to 10"},
+        BadPieces{dressing_end,
+                  R"("none": {}},
+    "layers": {"thickness_m": 0, "friction": 0.2, "push_speed_m_per_s": 0.7, "sweeps": 3})",
+                  "/garment/layers/thickness_m", "is 0", "from 1e-06 to 10"},
         // What cutting, sewing and placing see.
         BadPieces{R"("name": "seat")", R"("name": "apron")", "/garment/pieces/panels/1",
                   "two panels have this name", "rename one of them"},
@@ -249,7 +262,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadPieces{first_stretch, R"("first": {"panel": "aprn", "edge": "right", "from": 0, "to": 1})",
                   "/garment/pieces/seams/0", "there is no panel aprn", "use one of apron, seat"},
         BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0.4, "to": 1})",
-                  "/garment/pieces/seams/0", "is 0.15 m long", "raise the seam's tolerance of 0.03"}));
+                  "/garment/pieces/seams/0", "is 0.15 m long", "raise the seam's tolerance of 0.03"},
+        BadPieces{dressing_end, with_layers, "/garment/pieces/seams/0", "apron in layer 0 to seat in layer 1",
+                  "leave out \"layers\""}));
 
 TEST(GarmentPieces, NeedABodyAtTheirHeights) {
   std::string text = two_pieces;
