@@ -37,9 +37,9 @@ class SecondsAdded {
   Stopwatch watch_;
 };
 
-/// Longest wait for a message of another rank, s. All ranks do the same work at the same time, so a rank that
-/// is silent for so long has ended, or its host has. Only meshes may take longer: a host may have them
-/// already, and TetGen has limits of its own.
+/// Longest wait for a message of another rank, s. Ranks meet after a few seconds of steps, however unequal
+/// their work (StepCosts::steps_to_meeting), so a rank that is silent for so long has ended, or its host has.
+/// Only meshes may take longer: a host may have them already, and TetGen has limits of its own.
 inline constexpr double longest_silence_s = 20, longest_meshing_s = 3600;
 
 /// An MPI session: the rank of this process, and waiting for other ranks. One thread at a time may call it.

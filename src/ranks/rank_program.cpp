@@ -147,8 +147,15 @@ Wish wish_of(const std::string& line) {
 void serve(const Session& session, Piece& piece, std::optional<Requests>& requests,
            const std::filesystem::path& state_file) {
   StepCosts costs(measure_links(session));
+  Wish wish;
+  int steps_left = 0;  // of mssim's request, on rank 0
   for (;;) {
-    Wish wish = requests ? wish_of(requests->next()) : Wish{};
+    if (requests && steps_left == 0) {
+      wish = wish_of(requests->next());
+      steps_left = wish.count;
+    }
+    wish.count = std::min(steps_left, costs.steps_to_meeting());
+    steps_left -= wish.count;
     MPI_Request request = MPI_REQUEST_NULL;
     check_mpi(MPI_Ibcast(&wish, sizeof wish, MPI_BYTE, 0, MPI_COMM_WORLD, &request), "sharing a request");
     Session::wait_idle(request);
@@ -162,7 +169,7 @@ void serve(const Session& session, Piece& piece, std::optional<Requests>& reques
       for (const std::string& line : costs.tell(session, piece))
         if (requests) requests->answer(line);
     if (wish.kind != Wish::step) session.meet();
-    if (requests) requests->answer("done");
+    if (requests && steps_left == 0) requests->answer("done");
   }
 }
 
