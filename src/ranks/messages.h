@@ -58,8 +58,7 @@ class Session {
   /// "rank 3 on HOST".
   std::string name_of(int rank) const;
   const std::vector<std::string>& hosts() const { return hosts_; }  ///< [ranks]
-  int rank_on_host() const { return rank_on_host_; }
-  int ranks_on_host() const { return ranks_on_host_; }  ///< on this rank's host
+  int ranks_on_host() const { return ranks_on_host_; }              ///< on this rank's host
   /// Whether waits yield the CPU to other ranks: if a host's ranks have more threads than it has CPUs.
   void share_processors(bool share) { shares_ = share; }
   bool shares_processors() const { return shares_; }
@@ -86,7 +85,7 @@ class Session {
 
   int rank_ = 0;
   std::vector<std::string> hosts_;
-  int rank_on_host_ = 0, ranks_on_host_ = 1;
+  int ranks_on_host_ = 1;
   mutable double longest_wait_s_ = longest_silence_s;
   bool shares_ = false;
 };
