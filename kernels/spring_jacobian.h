@@ -26,22 +26,36 @@ MSSIM_VECTOR_LAW block_times(MSSIM_OF(SymmetricBlock) block, Vector p) {
   return product;
 }
 
+MSSIM_GIVES(SymmetricBlock) block_scaled(Real factor, MSSIM_OF(SymmetricBlock) block) {
+  MSSIM_OF(SymmetricBlock) scaled;
+  scaled.xx = factor * block.xx;
+  scaled.xy = factor * block.xy;
+  scaled.xz = factor * block.xz;
+  scaled.yy = factor * block.yy;
+  scaled.yz = factor * block.yz;
+  scaled.zz = factor * block.zz;
+  return scaled;
+}
+
 /* Inverts by cofactors. The block must be positive definite; in single precision its eigenvalues may differ
- * by a factor of 1e5. */
+ * by a factor of 1e5, and its trace must be between 2^-100 and 2^110. */
 MSSIM_GIVES(SymmetricBlock) block_inverse(MSSIM_OF(SymmetricBlock) block) {
-  MSSIM_OF(SymmetricBlock) inverse;
+  MSSIM_OF(SymmetricBlock) cofactors;
   Real one = block.xx - block.xx + 1.0f;
-  Real xx = block.yy * block.zz - block.yz * block.yz;
-  Real xy = block.xz * block.yz - block.xy * block.zz;
-  Real xz = block.xy * block.yz - block.xz * block.yy;
-  Real scale = one / mul_add(block.xx, xx, mul_add(block.xy, xy, block.xz * xz));
-  inverse.xx = scale * xx;
-  inverse.xy = scale * xy;
-  inverse.xz = scale * xz;
-  inverse.yy = scale * (block.xx * block.zz - block.xz * block.xz);
-  inverse.yz = scale * (block.xy * block.xz - block.xx * block.yz);
-  inverse.zz = scale * (block.xx * block.yy - block.xy * block.xy);
-  return inverse;
+  /* Single precision can only hold the determinant of a block near 1. A power of two changes no digit. */
+  Real trace = block.xx + block.yy + block.zz;
+  Real least = one * 0x1p-30f, most = one * 0x1p40f;
+  Real unit = where_less(trace, least, one * 0x1p70f, where_less(most, trace, one * 0x1p-70f, one));
+  block = block_scaled(unit, block);
+  cofactors.xx = block.yy * block.zz - block.yz * block.yz;
+  cofactors.xy = block.xz * block.yz - block.xy * block.zz;
+  cofactors.xz = block.xy * block.yz - block.xz * block.yy;
+  cofactors.yy = block.xx * block.zz - block.xz * block.xz;
+  cofactors.yz = block.xy * block.xz - block.xx * block.yz;
+  cofactors.zz = block.xx * block.yy - block.xy * block.xy;
+  Real determinant =
+      mul_add(block.xx, cofactors.xx, mul_add(block.xy, cofactors.xy, block.xz * cofactors.xz));
+  return block_scaled(unit, block_scaled(one / determinant, cofactors));
 }
 
 /* [along n n^T + across (I - n n^T)] p; n: a unit vector. */

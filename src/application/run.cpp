@@ -205,6 +205,12 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   return backend;
 }
 
+/// Prints the backend's note on its steps.
+void tell_note(const RunOptions& options, const Backend& backend) {
+  if (const std::string note = backend.note(); !note.empty())
+    std::cerr << "mssim: " << options.backend << ": " << note << '\n';
+}
+
 /// Warns if accounting takes long.
 void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, const Integrator& integrator) {
   constexpr double passes_for_energies = 4;
@@ -299,6 +305,7 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
         recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
     seconds = watch.seconds();
   });
+  tell_note(options, *backend);
   const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.body));
   Table dressing, fitting;
   dressing.add({{"scene", scene.spec.name},
@@ -360,6 +367,7 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
               }});
     seconds = watch.seconds();
   });
+  tell_note(options, *backend);
 
   const std::vector<EnergySample>& curve = recorder.energies();
   const auto loss = [&](double EnergyLosses::*kind) { return losses ? Cell(*losses.*kind) : Cell(); };

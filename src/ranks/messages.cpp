@@ -128,7 +128,6 @@ Session::Session(int* argc, char*** argv) {
   hosts_ = gather(host_name());
   const std::string& own = hosts_[static_cast<std::size_t>(rank_)];
   ranks_on_host_ = static_cast<int>(std::ranges::count(hosts_, own));
-  rank_on_host_ = static_cast<int>(std::count(hosts_.begin(), hosts_.begin() + rank_, own));
 }
 
 Session::~Session() {

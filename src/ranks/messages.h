@@ -37,9 +37,9 @@ class SecondsAdded {
   Stopwatch watch_;
 };
 
-/// Longest wait for a message of another rank, s. All ranks do the same work at the same time, so a rank that
-/// is silent for so long has ended, or its host has. Only meshes may take longer: a host may have them
-/// already, and TetGen has limits of its own.
+/// Longest wait for a message of another rank, s. Ranks meet after a few seconds of steps, however unequal
+/// their work (StepCosts::steps_to_meeting), so a rank that is silent for so long has ended, or its host has.
+/// Only meshes may take longer: a host may have them already, and TetGen has limits of its own.
 inline constexpr double longest_silence_s = 20, longest_meshing_s = 3600;
 
 /// An MPI session: the rank of this process, and waiting for other ranks. One thread at a time may call it.
@@ -58,8 +58,7 @@ class Session {
   /// "rank 3 on HOST".
   std::string name_of(int rank) const;
   const std::vector<std::string>& hosts() const { return hosts_; }  ///< [ranks]
-  int rank_on_host() const { return rank_on_host_; }
-  int ranks_on_host() const { return ranks_on_host_; }  ///< on this rank's host
+  int ranks_on_host() const { return ranks_on_host_; }              ///< on this rank's host
   /// Whether waits yield the CPU to other ranks: if a host's ranks have more threads than it has CPUs.
   void share_processors(bool share) { shares_ = share; }
   bool shares_processors() const { return shares_; }
@@ -86,7 +85,7 @@ class Session {
 
   int rank_ = 0;
   std::vector<std::string> hosts_;
-  int rank_on_host_ = 0, ranks_on_host_ = 1;
+  int ranks_on_host_ = 1;
   mutable double longest_wait_s_ = longest_silence_s;
   bool shares_ = false;
 };

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -245,8 +246,16 @@ void StepCosts::step(const Session& session, Piece& piece, int count) {
   const Stopwatch stepped;
   session.meet();
   met_s_ += stepped.seconds();
-  seconds_ += all.seconds();
+  const double seconds = all.seconds();
+  seconds_ += seconds;
   steps_ += count;
+  last_step_s_ = seconds / count;
+}
+
+int StepCosts::steps_to_meeting() const {
+  constexpr double seconds = 2;
+  if (last_step_s_ == 0) return 1;
+  return static_cast<int>(std::clamp<double>(seconds / last_step_s_, 1, std::numeric_limits<int>::max()));
 }
 
 std::vector<std::string> StepCosts::tell(const Session& session, const Piece& piece) {

@@ -136,6 +136,8 @@ class StepCosts {
 
   /// Takes steps with the piece, until all ranks have finished.
   void step(const Session& session, Piece& piece, int count);
+  /// Number of steps that take about two seconds, judged by the last ones; 1 before the first.
+  int steps_to_meeting() const;
   /// The lines of the answer, on all ranks, which call this together.
   std::vector<std::string> tell(const Session& session, const Piece& piece);
 
@@ -145,6 +147,7 @@ class StepCosts {
   double seconds_ = 0;  ///< of the steps since then
   double met_s_ = 0;    ///< of these, waiting for others at their end
   double steps_ = 0;
+  double last_step_s_ = 0;  ///< seconds per step of the last ones; 0 before them
 };
 
 }  // namespace mssim

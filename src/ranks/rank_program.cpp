@@ -1,3 +1,4 @@
+#include <omp.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -64,31 +66,41 @@ RankJob job_of(const std::string& text) {
   return job;
 }
 
+/// "2 threads", or "1 to 3 threads" if these ranks differ.
+std::string threads_in_words(const std::vector<int>& threads) {
+  const auto [fewest, most] = std::ranges::minmax(threads);
+  return (fewest < most ? fmt::format("{} to ", fewest) : "") +
+         pluralize(static_cast<std::uint64_t>(most), "thread");
+}
+
 /// Binds the ranks of a host to CPUs of their own, one per thread, if there are enough and the ranks are not
-/// yet bound. Returns a description if they have to share CPUs; empty otherwise.
-std::string take_processors(const Session& session, int threads) {
+/// yet bound. `threads`: [ranks] of each; this one has started `started` of its own. Returns a description if
+/// they have to share CPUs; empty otherwise.
+std::string take_processors(const Session& session, const std::vector<int>& threads, int started = 1) {
   const std::vector<int> cpus = process_cpus();
   std::string own;
   for (const int cpu : cpus) own += fmt::format("{} ", cpu);
   const std::vector<std::string> all = session.gather(own);
+  const auto self = static_cast<std::size_t>(session.rank());
   bool same = true;
-  for (int rank = 0; rank < session.ranks(); ++rank) {
-    const auto r = static_cast<std::size_t>(rank);
-    if (session.hosts()[r] == session.hosts()[static_cast<std::size_t>(session.rank())])
-      same = same && all[r] == own;
+  int first = 0;          // CPU of this rank
+  std::vector<int> here;  // threads of the ranks on these CPUs
+  for (std::size_t rank = 0; rank < all.size(); ++rank) {
+    if (session.hosts()[rank] != session.hosts()[self]) continue;
+    same = same && all[rank] == own;
+    if (rank < self) first += threads[rank];
+    here.push_back(threads[rank]);
   }
-  const auto each = static_cast<std::size_t>(threads);
-  const int ranks = same ? session.ranks_on_host() : 1;
-  if (cpus.size() < each * static_cast<std::size_t>(ranks))
-    return fmt::format("{} of {} on {} of {}", pluralize(static_cast<std::uint64_t>(ranks), "rank"),
-                       pluralize(each, "thread"), pluralize(cpus.size(), "processor"),
-                       session.hosts()[static_cast<std::size_t>(session.rank())]);
+  if (!same) here = {threads[self]};
+  if (std::ssize(cpus) < std::reduce(here.begin(), here.end()))
+    return fmt::format("{} of {} on {} of {}", pluralize(here.size(), "rank"), threads_in_words(here),
+                       pluralize(cpus.size(), "processor"), session.hosts()[self]);
   if (!same) return "";
   cpu_set_t set;
   CPU_ZERO(&set);
-  for (std::size_t i = 0; i < each; ++i)
-    CPU_SET(static_cast<std::size_t>(cpus[each * static_cast<std::size_t>(session.rank_on_host()) + i]),
-            &set);
+  for (int i = first; i < first + threads[self]; ++i)
+    CPU_SET(static_cast<std::size_t>(cpus[static_cast<std::size_t>(i)]), &set);
+#pragma omp parallel num_threads(started)
   ::sched_setaffinity(0, sizeof set, &set);
   return "";
 }
@@ -99,8 +111,9 @@ std::string first_of(const std::vector<std::string>& texts) {
   return found == texts.end() ? "" : *found;
 }
 
-/// Rank 0's answers for all ranks before "ready 1".
-void introduce(const Session& session, const Piece& piece, const std::string& crowded, Requests& requests) {
+/// Rank 0's answers for all ranks before "ready 1". `threads`: [ranks] of each.
+void introduce(const Session& session, const Piece& piece, const std::vector<int>& threads,
+               const std::string& crowded, Requests& requests) {
   std::vector<std::string> hosts = session.hosts();
   std::ranges::sort(hosts);
   const auto host_count = static_cast<std::uint64_t>(std::unique(hosts.begin(), hosts.end()) - hosts.begin());
@@ -111,13 +124,12 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   library = library.substr(0, library.find(','));
   requests.answer("device " + (host_count > 1 ? pluralize(host_count, "host") + " of " : "") +
                   piece.device());
-  requests.answer(fmt::format("threads {}", session.ranks() * piece.threads()));
+  requests.answer(fmt::format("threads {}", std::reduce(threads.begin(), threads.end())));
   if (piece.steps_per_pass() > 0) requests.answer(fmt::format("pass {}", piece.steps_per_pass()));
   requests.answer("precision single");
   requests.answer("tells costs");
-  requests.answer(fmt::format(
-      "note {}, {} of {}, {}", library, pluralize(static_cast<std::uint64_t>(session.ranks()), "rank"),
-      pluralize(static_cast<std::uint64_t>(piece.threads()), "thread"), piece.note()));
+  requests.answer(fmt::format("note {}, {} of {}, {}", library, pluralize(threads.size(), "rank"),
+                              threads_in_words(threads), piece.note()));
   if (!crowded.empty()) requests.answer("untimed " + crowded);
   requests.answer("ready 1");
 }
@@ -147,8 +159,15 @@ Wish wish_of(const std::string& line) {
 void serve(const Session& session, Piece& piece, std::optional<Requests>& requests,
            const std::filesystem::path& state_file) {
   StepCosts costs(measure_links(session));
+  Wish wish;
+  int steps_left = 0;  // of mssim's request, on rank 0
   for (;;) {
-    Wish wish = requests ? wish_of(requests->next()) : Wish{};
+    if (requests && steps_left == 0) {
+      wish = wish_of(requests->next());
+      steps_left = wish.count;
+    }
+    wish.count = std::min(steps_left, costs.steps_to_meeting());
+    steps_left -= wish.count;
     MPI_Request request = MPI_REQUEST_NULL;
     check_mpi(MPI_Ibcast(&wish, sizeof wish, MPI_BYTE, 0, MPI_COMM_WORLD, &request), "sharing a request");
     Session::wait_idle(request);
@@ -162,7 +181,7 @@ void serve(const Session& session, Piece& piece, std::optional<Requests>& reques
       for (const std::string& line : costs.tell(session, piece))
         if (requests) requests->answer(line);
     if (wish.kind != Wish::step) session.meet();
-    if (requests) requests->answer("done");
+    if (requests && steps_left == 0) requests->answer("done");
   }
 }
 
@@ -178,14 +197,22 @@ void work(Session& session, bool copies) {
   }
   try {
     const RankJob job = job_of(session.share(text));
-    const std::string crowded = take_processors(session, job.threads);
+    std::vector<int> threads(session.hosts().size(), job.threads);
+    std::string crowded = take_processors(session, threads);
     session.share_processors(!crowded.empty());
     const std::string shortage =
         first_of(session.gather(thread_shortage(job.threads, ThreadStack::openmp).value_or("")));
     if (!shortage.empty()) throw Unavailable(shortage);
     const std::unique_ptr<Piece> piece = make_piece(session, job);
-    const std::string where_crowded = first_of(session.gather(crowded));
-    if (requests) introduce(session, *piece, where_crowded, *requests);
+    std::ranges::transform(session.gather(std::to_string(piece->threads())), threads.begin(),
+                           [](const std::string& number) { return std::stoi(number); });
+    std::string where_crowded = first_of(session.gather(crowded));
+    if (!where_crowded.empty()) {  // pieces that are too small for all their threads may leave CPUs enough
+      crowded = take_processors(session, threads, piece->threads());
+      session.share_processors(!crowded.empty());
+      where_crowded = first_of(session.gather(crowded));
+    }
+    if (requests) introduce(session, *piece, threads, where_crowded, *requests);
     serve(session, *piece, requests, introduction["state"]);
   } catch (const Unsupported& unsupported) {  // thrown by all ranks
     if (requests) requests->answer(std::string("unsupported ") + unsupported.what());
@@ -197,6 +224,7 @@ void work(Session& session, bool copies) {
 }  // namespace
 
 int run_rank(int argc, char** argv) {
+  omp_set_dynamic(0);  // as mssim does: OMP_DYNAMIC would take threads away
   std::optional<Session> session;
   try {
     session.emplace(&argc, &argv);

@@ -39,7 +39,7 @@ class Filling {
       give(bodies[i], static_cast<std::size_t>(rank_of[i]), weights[i]);
   }
   /// Fills the ranks up to one level, those with most room first: a body continues in the next rank when one
-  /// is full. No part is too small.
+  /// is full. No part is too small, so one on an idle rank may rise above the level.
   void divide(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
     std::size_t together = 0;
     for (const std::size_t body : bodies) together += nodes[body];
@@ -57,7 +57,7 @@ class Filling {
     for (const std::size_t body : bodies)
       for (std::size_t rest = nodes[body]; rest > 0;) {
         const std::size_t least = std::min(rest, least_share);
-        while (rank != order.end() && room() < static_cast<double>(least)) leave();
+        while (rank != order.end() && loads[*rank] > 0 && room() < static_cast<double>(least)) leave();
         if (rank == order.end()) {
           give_rest(body, rest);
           break;

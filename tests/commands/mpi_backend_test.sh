@@ -34,6 +34,15 @@ same_bits cloth4900 2 2 semi-euler,rk4 2
 grep ',mpi,' bits/timings.csv | grep -q 'not timed: 2 ranks of 2 threads on [1-3] processor' || [ "$(nproc)" -ge 4 ] ||
   fail "ranks that share processors are timed: $(cat bits/timings.csv)"
 
+# Pieces that are too small for all of their threads: those that step are told and counted, and only they need processors.
+sed 's/"rows": 50/"rows": 20/; s/"columns": 50/"columns": 120/' "$2/scenes/cloth2500.json" >wide.json
+ends 0 bench --scene ./wide.json --backend mpi:3 --integrator rk4 --threads 2 --rounds 1 --out wide
+grep -q ', 3 ranks of 1 to 2 threads, ' wide/timings.csv || fail "threads of the ranks: $(cat wide/timings.csv)"
+[ "$(column_of wide/timings.csv threads)" -eq 5 ] || fail "threads of all ranks: $(cat wide/timings.csv)"
+sed 's/"rows": 50/"rows": 5/; s/"columns": 50/"columns": 6/' "$2/scenes/cloth2500.json" >tiny.json
+ends 0 bench --scene ./tiny.json --backend mpi:1 --integrator semi-euler --threads $(($(nproc) + 1)) --rounds 1 --out tiny
+! grep 'not timed' tiny/timings.csv || fail "one thread shares a processor"
+
 # What a step spends on messages, and copies that send none.
 ends 0 bench --scene cloth4900 --backend mpi:1,mpi:2,mpi-copies:2 --integrator semi-euler --threads 1 --rounds 2 --out costs
 sed 's/"[^"]*"//' costs/timings.csv >bare.csv  # notes have commas

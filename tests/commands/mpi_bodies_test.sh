@@ -52,6 +52,13 @@ for integrator in semi-euler rk4; do
   rm ./*.h5
 done
 
+# A rank with a small body waits through most of a request for half a minute, and is not taken for lost.
+bodies_scene two.json 0 "$(box 2 0 0 0.3 0)" "$(box 1 0 0.3 0.3 0)"
+ends 0 run --scene ./two.json --backend mpi:2 --threads 1 --duration 50 --fps 0.02
+half_a_minute=$(awk -v wall="$(value wall_s)" 'BEGIN { print 50 * 30 / wall }')
+ends 0 run --scene ./two.json --backend mpi:2 --threads 1 --duration "$half_a_minute" --fps "$(awk -v s="$half_a_minute" 'BEGIN { print 1 / s }')"
+echo "the long request took $(value wall_s) s"
+
 # More ranks than parts.
 ends 3 bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 9 --threads 1 --rounds 1 --out nine
 fails_with 'unsupported: 1 body cannot be cut for 9 ranks: a part of a body has at least 16 nodes, so give at most --ranks 4"' nine

@@ -104,5 +104,16 @@ TEST(SymmetricBlock, TimesItsInverseIsOne) {
   }
 }
 
+TEST(SymmetricBlock, HasAnInverseInSinglePrecisionFarFromOne) {
+  const SymmetricBlock<float> block{2, 0.5, -0.25, 1, 0.125, 3}, inverse = block_inverse(block);
+  for (const float factor : {0x1p-100F, 0x1p-45F, 0x1p-31F, 0x1p39F, 0x1p45F, 0x1p105F}) {
+    const SymmetricBlock<float> scaled = block_inverse(block_scaled(factor, block)),
+                                expected = block_scaled(1 / factor, inverse);
+    EXPECT_TRUE(scaled.xx == expected.xx && scaled.xy == expected.xy && scaled.xz == expected.xz &&
+                scaled.yy == expected.yy && scaled.yz == expected.yz && scaled.zz == expected.zz)
+        << factor;
+  }
+}
+
 }  // namespace
 }  // namespace mssim

@@ -85,6 +85,13 @@ TEST(BodyShares, CutsAsLongAsPartsHaveNodesEnough) {
   EXPECT_EQ(most_ranks({76, 76, 76}, 1000), 12);
 }
 
+TEST(BodyShares, GivesIdleRanksAPartThoughTheMeanIsLess) {
+  EXPECT_THAT(*body_shares({4, 4, 44}, 4),
+              ElementsAre(ElementsAre(BodyShare{0, 4}), ElementsAre(BodyShare{1, 4}),
+                          ElementsAre(BodyShare{2, 16}, BodyShare{3, 28})));
+  EXPECT_EQ(most_ranks({4, 4, 44}, 1000), 4);
+}
+
 TEST(BodyShares, GivesManySmallBodiesBesideALargeOne) {
   std::vector<std::size_t> nodes(40, 10);
   nodes.push_back(1000);

@@ -277,11 +277,15 @@ void BandGridOf<Real>::fill_partition(Partition& partition, const State& state) 
 
 template <class Real>
 void BandGridOf<Real>::set_state(const State& state) {
-#pragma omp parallel for num_threads(static_cast <int>(partitions.size())) schedule(static, 1)
-  for (std::size_t p = 0; p < partitions.size(); ++p) {
+  const auto fill = [&](std::size_t p) {
     fill_partition(partitions[p], state);
     fill_edges(p);
-  }
+  };
+#pragma omp parallel for num_threads(static_cast <int>(threads)) schedule(static, 1)
+  for (std::size_t p = first_inner; p < first_inner + threads; ++p) fill(p);
+  // The edges, which the first thread walks.
+  for (std::size_t p = 0; p < partitions.size(); ++p)
+    if (p < first_inner || p >= first_inner + threads) fill(p);
 }
 
 template <class Real>

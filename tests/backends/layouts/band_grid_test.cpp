@@ -190,6 +190,23 @@ State state_of_pieces(const SceneSpec& spec, const Integrator& integrator, const
   return all;
 }
 
+TEST(BandGrid, IsFilledByNoMoreThreadsThanWalkIt) {
+  const System system = cloth_system(40, 60);
+  const auto fill = [&] {
+    BandGrid bands(system, std::get<GridPatch>(system.topology), *find_integrator("semi-euler"), backend_dt_s,
+                   8, 1, {.steps_per_pass = 1, .piece = ColumnRange{10, 40}});
+    EXPECT_EQ(bands.threads, 1U);
+    EXPECT_EQ(bands.partitions.size(), 3U);  // two are edges
+    const auto running = [] {
+      return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
+    };
+    const auto before = running();
+    bands.set_state(system.start);
+    EXPECT_EQ(running(), before);
+  };
+  std::thread(fill).join();  // it has no threads of an earlier team
+}
+
 class EachIntegratorInPieces : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(EachIntegratorInPieces, GivesTheBitsOfTheWhole) {

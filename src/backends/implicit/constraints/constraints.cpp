@@ -256,7 +256,7 @@ State QuarteredRows::state() const {
 
 SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane_count,
                              std::size_t thread_count)
-    : SmallSteps(system, dt_s), lanes(lane_count), threads(std::max<std::size_t>(1, thread_count)) {
+    : SmallSteps(system, dt_s), lanes(lane_count) {
   const std::vector<std::uint32_t> node_at = reverse_cuthill_mckee(system.nodes(), system.springs);
   const std::vector<std::uint32_t> place = places_in(node_at);
   const std::vector<std::size_t> ends = part_ends(system, place);
@@ -273,6 +273,7 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
     slots = round_up(slots, lanes);
     parts.push_back({first / lanes, slots / lanes, 0, 0});
   }
+  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slots / lanes));
   nodes = AlignedArray(slots * record_floats);
   rest = AlignedArray(slots * 3);
   free = AlignedArray(slots);

@@ -179,7 +179,7 @@ struct SpringBatches : SmallSteps {
 
   TeamGain team_gain;  ///< for the threads that share parts
 
-  /// Set a state before the first step.
+  /// With at most `thread_count` threads. Set a state before the first step.
   SpringBatches(const System& system, double dt_s, std::size_t lane_count, std::size_t thread_count);
   void set_state(const State& state);
   State state() const;

@@ -40,7 +40,7 @@ struct LocalGlobalNodes {
   AlignedArray e;       ///< field: the residual of w - v = dt a(y, w), m/s
   AlignedArray fronts;  ///< [parts][3][rows], each at its BlockFactor::Block::front
 
-  /// Set a state before the first step.
+  /// With at most `thread_count` threads. Set a state before the first step.
   LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
       : LocalGlobalNodes(system, {system, dt_s}, dt_s, lanes, thread_count) {}
   void set_state(const State& state) { write_fields(nodes, state, x, v); }

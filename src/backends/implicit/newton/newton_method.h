@@ -126,8 +126,8 @@ struct Solution {
 };
 
 /// Solves A s = e by preconditioned conjugate gradients from s = 0, until sqrt(e . P e) has decreased to
-/// `tolerance` of its initial value. Not solved if that takes more than most_gradient_iterations, or if A is
-/// not positive definite in its precision.
+/// `tolerance` of its initial value. Not solved if that takes more than most_gradient_iterations, or if A or
+/// P is not positive definite in its precision.
 template <BackwardEulerEquation Equation>
 Solution conjugate_gradients(Equation& equation, double tolerance, SolverWork& work) {
   double left = equation.start_solving();
@@ -144,7 +144,7 @@ Solution conjugate_gradients(Equation& equation, double tolerance, SolverWork& w
     factor = next / left;
     left = next;
   }
-  return {true, along};
+  return {left >= 0 && left <= goal && std::isfinite(goal), along};
 }
 
 /// A step by one Newton iteration from the state, with its linear system solved to `tolerance`.
@@ -193,7 +193,9 @@ void newtons_method(Equation& equation, const SolverGoal& goal, SolverWork& work
     if (!(next < norm)) {
       const double rounding =
           roundings_of_force * goal.rounding + goal.rounding_of_motion * std::sqrt(equation.motion());
-      if (next <= rounding * rounding) {
+      const bool is_rounding = next <= rounding * rounding;
+      if (is_rounding || !(descent > 0)) {  // s is 0: it would stay so
+        if (!is_rounding) ++work.unfinished_steps;
         equation.add(-part);
         break;
       }

@@ -364,6 +364,12 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
     }
 }
 
+TEST_P(EachXpbdKernel, TakesNoMoreThreadsThanBodiesHaveVectors) {
+  const StepKernel<SpringBatches> kernel = compiled_kernels<SpringBatches>()[GetParam()];
+  const SpringBatches bodies(solid_block(2, 2, 2), backend_dt_s, kernel.lanes, 16);
+  EXPECT_EQ(bodies.threads, (8 + kernel.lanes - 1) / kernel.lanes);
+}
+
 TEST_P(EachXpbdKernel, TreatsTheFloorLikeTheReference) {
   const System sheet = sliding_sheet(20, 37);
   System block = solid_block(3, 4, 5, 0.02);

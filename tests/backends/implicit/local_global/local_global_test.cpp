@@ -107,6 +107,10 @@ TEST(FastSprings, GivesTheSameBitsAtEveryNumberOfThreads) {
   }
 }
 
+TEST(FastSprings, TakesNoMoreThreadsThanAClothHasRows) {
+  EXPECT_EQ(make_vectors(cloth_system(2, 40), 5e-4, 16)->threads(), 2);
+}
+
 TEST(FastSprings, TakeFewerThreadsWhereOpenMpGivesFewer) {
   for (const System& system : {cloth_system(41, 67), solid_block(9, 9, 9)}) {
     const auto alone = make_vectors(system, 5e-4, 1), asks_for_three = make_vectors(system, 5e-4, 3);

@@ -152,6 +152,25 @@ TEST_P(NewtonOnThePlainList, FollowsTheReferenceInSinglePrecision) {
     }
 }
 
+TEST_P(NewtonOnThePlainList, TakesTheSameStepsInAnyUnitOfMass) {
+  for (const System& system : small_systems()) {
+    const auto expected = make_serial_newton(system, *GetParam(), 2e-3);
+    expected->step(5);
+    for (const double unit : {0x1p-40, 0x1p60}) {
+      System other = system;
+      for (double& mass : other.node_mass) mass *= unit;
+      for (SpringMaterial& material : other.materials) {
+        material.stiffness *= unit;
+        material.damping *= unit;
+      }
+      const auto serial = make_serial_newton(other, *GetParam(), 2e-3);
+      serial->step(5);
+      EXPECT_TRUE(same_state(serial->state(), expected->state())) << system.nodes() << " nodes, " << unit;
+      EXPECT_EQ(serial->note(), "");
+    }
+  }
+}
+
 TEST_P(NewtonOnThePlainList, HoldsPinsExactly) {
   for (const System& system : small_systems()) {
     const auto serial = make_serial_newton(system, *GetParam(), 2e-3);
@@ -275,6 +294,9 @@ class TwoUnknowns {
   double motion() { return w_[0] * w_[0] + w_[1] * w_[1]; }
   double change() { return motion(); }
   void end() {}
+  void scale_left(double factor) {
+    for (double& left : left_) left *= factor;
+  }
 
  private:
   double square_of_left() const { return left_[0] * left_[0] + left_[1] * left_[1]; }
@@ -291,6 +313,24 @@ TEST(NewtonEuler, SolvesLinearSystemsToAHundredthOfWhatIsLeft) {
     newtons_method(equation, {.rounding = 0.1}, work);
     EXPECT_EQ(work.newton_iterations, 1U);
     EXPECT_EQ(work.products, products) << spread;
+  }
+}
+
+TEST(NewtonEuler, EndsAStepThatIsNotFinite) {
+  TwoUnknowns equation(NAN);
+  SolverWork work;
+  newtons_method(equation, {.rounding = 0.1}, work);
+  EXPECT_EQ(work.newton_iterations, 1U);
+  EXPECT_EQ(work.unfinished_steps, 1U);
+}
+
+TEST(ConjugateGradients, DoNotSolveWhatIsNotFinite) {
+  for (const double infinite : {HUGE_VAL, double{NAN}}) {
+    TwoUnknowns equation(0);
+    SolverWork work;
+    equation.linearise();
+    equation.scale_left(infinite);
+    EXPECT_FALSE(conjugate_gradients(equation, 0.01, work).solved);
   }
 }
 
