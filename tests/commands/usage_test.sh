@@ -49,6 +49,11 @@ expect 2 '^mssim: --scene NAME|FILE is missing: give .*list scenes.*; see mssim 
 expect 2 '^mssim: --scene needs a value: give --scene NAME|FILE; see mssim run --help$' run --scene
 expect 2 '^mssim: --integrator: "," names nothing: give a value' bench --scene cloth2500 --integrator , --dry-run
 expect 2 '^mssim: SCENE: "," names nothing' check ,
+expect 2 '^mssim: --out: "" is empty: give a value.*mssim report --help' report f1 --out= --no-runs
+expect 2 '^mssim: --integrator: "" is empty: give a value' bench --scene cloth2500 --integrator= --dry-run
+expect 2 '^mssim: --threads: "" is not a whole number' run --scene cloth2500 --threads= --losses
+expect 2 'mssim bench has no option "--fsp" (did you mean --fps?)' bench --scene cloth2500 --fsp= --dry-run
+expect 2 'there is no folder --out=' report -- --out=
 ends 0 help report
 says '^Usage: mssim report DIR\.\.\. \['
 expect 2 '^mssim: --scene is given 2 times: give it once;' run --scene cloth2500 --scene cloth4900
