@@ -64,6 +64,7 @@ expect 2 'mssim has no option "-v" (did you mean --version?)' -v
 expect 2 'unknown command "version" (did you mean --version?)' version
 expect 2 'mssim run has no option "--suite", which is one of mssim bench;' run --suite table1
 expect 2 '^mssim: unexpected argument "cloth350k" of mssim bench (did you mean --scene cloth350k?);' bench cloth350k
+expect 2 '^mssim: unexpected argument "--scene" of mssim bench behind "--": .*before "--"; see mssim bench --help$' bench -- --scene cloth2500
 expect 2 '^mssim: "jeans4k" is a scene, not a trace: did you mean --scene jeans4k?' render jeans4k
 expect 2 '^mssim: WHAT is missing: give what to list: scenes, ' list
 expect 2 '^mssim: unexpected argument "twice" of mssim list: ' list scenes twice

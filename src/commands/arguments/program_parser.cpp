@@ -71,6 +71,12 @@ std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord&
   const auto option =
       std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   if (option != rest.end()) return unknown_option(*option, command);
+  // The program keeps what its command has not taken of the words behind "--".
+  if (rest.empty() && command.get_parent())
+    if (const std::vector<std::string> behind = command.get_parent()->remaining(); !behind.empty())
+      return fmt::format(
+          "unexpected argument \"{}\" of {} behind \"--\": leave it out, or put an option before \"--\"",
+          printable(behind.front()), typed_name(command));
   if (rest.empty()) return std::nullopt;
   const std::string word = printable(rest.front()), forgotten = option_of(rest.front());
   return "unexpected argument \"" + word + "\" of " + typed_name(command) +
