@@ -236,11 +236,10 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
   Provenance provenance = run_provenance(backend.threads(), info.uses_device);
   add_programs(provenance, {&info}, complete(options.execution));
   add_scene(provenance, scene.spec.name, scene.spec.source);
-  FileHeaders headers{trace_header(scene, backend, std::string(info.name), integrator, provenance),
-                      command_line(provenance), options.pictures};
+  FileHeaders headers{trace_header(scene, backend, info, integrator, provenance), command_line(provenance),
+                      options.pictures};
   headers.pictures.threads = complete(options.execution).threads;
   headers.trace.with_losses = options.losses;
-  headers.trace.in_double = info.in_double;
   return headers;
 }
 
