@@ -79,16 +79,18 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
   }
 }
 
-void require_distinct(const RunFiles& files, const SceneSpec& scene) {
-  std::vector<NamedFile> written, read;
-  if (!files.trace.empty()) {
-    written.push_back({"--trace", files.trace});
-    written.push_back({"the XDMF beside --trace", xdmf_of(files.trace)});
+std::vector<NamedFile> files_read(const SceneSpec& scene, const BackendInfo& backend) {
+  std::vector<NamedFile> files;
+  for (const std::filesystem::path& file : files_of(scene)) files.push_back({"a file of the scene", file});
+  if (const BackendProgram* program = backend.program) {
+    files.push_back({"the program of the backend", program->program});
+    const std::string before_ranks = program->name.substr(0, program->name.find(':'));
+    files.push_back({"the description of the backend", program->folder / (before_ranks + ".json")});
+    for (const std::string& word : program->command)
+      if (std::error_code error; std::filesystem::is_regular_file(program->folder / word, error))
+        files.push_back({"a file of the backend's command", program->folder / word});
   }
-  if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
-  if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
-  for (const std::filesystem::path& file : files_of(scene)) read.push_back({"a file of the scene", file});
-  require_distinct(written, read);
+  return files;
 }
 
 RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers)
@@ -172,6 +174,19 @@ std::string RunRecorder::kept() {
 }
 
 namespace {
+
+/// Throws UsageError if two of these are the same file: the files, the XDMF of the trace, and those that are
+/// read.
+void require_distinct(const RunFiles& files, const std::vector<NamedFile>& read) {
+  std::vector<NamedFile> written;
+  if (!files.trace.empty()) {
+    written.push_back({"--trace", files.trace});
+    written.push_back({"the XDMF beside --trace", xdmf_of(files.trace)});
+  }
+  if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
+  if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
+  require_distinct(written, read);
+}
 
 /// Throws UsageError if the backend is to step in double precision and does not do so here.
 void require_precision(const RunOptions& options, const BackendInfo& info, const System& system,
@@ -409,7 +424,7 @@ int run_scene(RunOptions options) {
   require_device(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
-  require_distinct(options.files, scene.spec);
+  require_distinct(options.files, files_read(scene.spec, info));
   if (options.dt_s) scene.dt_s = *options.dt_s;
   // By default 60 frames per simulated second, or one per step if steps are longer.
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),

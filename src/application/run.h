@@ -9,6 +9,7 @@
 
 #include "application/choices.h"
 #include "application/console.h"
+#include "application/outputs.h"
 #include "application/prepared_scene.h"
 #include "backends/interface/backend.h"
 #include "model/system.h"
@@ -75,9 +76,9 @@ struct FileHeaders {
   PictureOptions pictures;
 };
 
-/// Throws UsageError if two of these are the same file: the files, the XDMF of the trace, and the files of
-/// the scene.
-void require_distinct(const RunFiles& files, const SceneSpec& scene);
+/// The files that a run reads: those of the scene, and the program of the backend, its description and the
+/// files of its command.
+std::vector<NamedFile> files_read(const SceneSpec& scene, const BackendInfo& backend);
 
 /// Writes the frames of a run into its files while the simulation continues, because compressing a large
 /// frame takes as long as many steps. Also keeps their energies.

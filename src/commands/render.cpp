@@ -179,10 +179,8 @@ int render(const RenderOptions& options) {
     trace = temporary_folder_of_process() / "scene.h5";
     run.files.trace = trace.string();
     run.files.temporary = true;
-    std::vector<NamedFile> read;
-    for (const fs::path& file : files_of(find_scene(run.scene)))
-      read.push_back({"a file of the scene", file});
-    require_distinct({{"--out", out}}, read);
+    BackendChoice choice(with_garment_backends(table_backends()), run.own_backends, {run.scene});
+    require_distinct({{"--out", out}}, files_read(find_scene(run.scene), choice.require(run.backend)));
     AtomicFile(out).remove();  // finds an unwritable file before anything is simulated
     code = run_scene(run);
   } else {
