@@ -284,6 +284,14 @@ class MeshedShapes {
     return counts;
   }
 
+  /// Hash of all meshes.
+  std::uint64_t hash() const {
+    std::uint64_t all = fnv1a_64("");
+    for (const MeshedShape& shape : shapes_)
+      all = fnv1a_64(bytes_of(shape.mesh.tetrahedra), fnv1a_64(bytes_of(shape.mesh.nodes), all));
+    return all;
+  }
+
   /// How the meshes were made, if a reader should know: sentences, or empty.
   std::string note() const {
     std::string all;
@@ -447,7 +455,8 @@ SceneParts read(const SceneSpec& spec) {
           stated_counts_of(spec, [&](std::size_t body) { return shapes->of_body(body).own; }),
           [shapes](const SceneSpec& of) {
             return BuiltScene{build_bodies(of, *shapes), shapes->note()};
-          }};
+          },
+          files(spec).empty() ? std::nullopt : std::optional(shapes->hash())};
 }
 
 }  // namespace

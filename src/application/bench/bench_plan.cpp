@@ -250,8 +250,9 @@ BenchPlan plan_of(const BenchOptions& options) {
   add_programs(plan.provenance, plan.backends.own(), plan.settings.execution);
   plan.provenance.device_memory = name_of(plan.settings.execution.memory);
   for (const UnbuiltScene& scene : plan.described)
-    add_scene(plan.provenance, scene.spec.name, scene.spec.source);
-  for (const SceneSpec& spec : timed) add_scene(plan.provenance, spec.name, spec.source);
+    add_scene(plan.provenance, scene.spec.name, scene.spec.source, scene.parts.files_fnv1a_64);
+  for (const SceneSpec& spec : timed)
+    add_scene(plan.provenance, spec.name, spec.source, parts_of(spec).files_fnv1a_64);
   if (!options.verified.empty()) plan.settings.verified = verified_rows(options.verified, plan.provenance);
   for (SceneSpec& spec : timed) {
     SceneParts parts = parts_of(spec);

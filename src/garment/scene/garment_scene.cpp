@@ -381,6 +381,11 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
   return expected ? std::optional(SceneCounts{expected->nodes, expected->springs}) : std::nullopt;
 }
 
+std::vector<std::string> files(const SceneSpec& spec) {
+  const auto* body = std::get_if<BodyFile>(&garment_of(spec).body);
+  return body ? std::vector{body->file} : std::vector<std::string>();
+}
+
 /// Measures the body and cuts the garment for it. Throws SceneError if the body cannot be measured or the
 /// pattern does not fit together.
 ///
@@ -390,9 +395,12 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
+  const Surface& surface = body->surface;
+  const std::uint64_t hash = fnv1a_64(bytes_of(surface.triangles), fnv1a_64(bytes_of(surface.points)));
   return {{cut->build.placed.size(), cut->build.springs.size()},
           stated(spec),
-          [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
+          [body, cut](const SceneSpec& of) { return built(of, body, *cut); },
+          files(spec).empty() ? std::nullopt : std::optional(hash)};
 }
 
 }  // namespace
@@ -403,11 +411,7 @@ extern const SceneKind garment_kind{
     .visit_fields = visit_fields,
     .check = check,
     .published_per_spring = {},
-    .files =
-        [](const SceneSpec& spec) {
-          const auto* body = std::get_if<BodyFile>(&garment_of(spec).body);
-          return body ? std::vector{body->file} : std::vector<std::string>();
-        },
+    .files = files,
     .stated = stated,
     .read = read,
 };

@@ -148,6 +148,8 @@ struct SceneParts {
   std::optional<SceneCounts> stated;  ///< nodes and springs that the files state; nothing if they state none
   /// Builds the scene for whose spec they were read. Throws SceneError for inconsistent content.
   std::function<BuiltScene(const SceneSpec& spec)> build;
+  /// Hash of the meshes or of the body that the files made; nothing if the scene file names none.
+  std::optional<std::uint64_t> files_fnv1a_64 = {};
 };
 
 class FieldVisitor;
