@@ -143,6 +143,18 @@ bool has_threads(const BackendInfo& info, const ExecutionOptions& execution) {
   }
 }
 
+/// What says that number of threads: `asked`, or else --threads.
+std::string shown_request(int threads, std::string_view asked) {
+  return asked.empty() ? fmt::format("--threads {}", threads) : printable(asked);
+}
+
+/// Throws UsageError for more threads than OpenMP would make.
+void require_within_limit(int threads, std::string_view asked = {}) {
+  if (const int limit = omp_get_thread_limit(); threads > limit)
+    throw UsageError("{} is more than OMP_THREAD_LIMIT allows, {}; give fewer, or unset it",
+                     shown_request(threads, asked), limit);
+}
+
 }  // namespace
 
 const Integrator& require_integrator(const std::string& name) {
@@ -175,18 +187,17 @@ std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ?
 
 void require_few_threads(int threads, std::string_view asked) {
   if (const auto excess = thread_excess(threads))
-    throw UsageError("{} is {}", asked.empty() ? fmt::format("--threads {}", threads) : printable(asked),
-                     *excess);
+    throw UsageError("{} is {}", shown_request(threads, asked), *excess);
+  require_within_limit(threads, asked);
 }
 
 ExecutionOptions complete(ExecutionOptions options) {
-  const int limit = omp_get_thread_limit();
   options.threads_given = options.threads > 0;
-  if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
-  if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
-  if (options.threads > limit)
-    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; give fewer, or unset it",
-                     options.threads, limit);
+  if (!options.threads_given) options.threads = std::min(usable_processors(), omp_get_thread_limit());
+  if (options.launcher.empty())
+    require_few_threads(options.threads);
+  else  // its hosts may have more processors
+    require_within_limit(options.threads);
   if (!options.instruction_set.empty())
     options.instruction_set = require_instruction_set(options.instruction_set);
   omp_set_dynamic(0);

@@ -36,14 +36,14 @@ std::string_view require_instruction_set(const std::string& name);
 /// The value of --memory.
 std::string name_of(DeviceMemory memory);
 
-/// Throws UsageError if thread_excess() does not allow so many. `asked`: what says the number, if it is not
-/// --threads.
+/// Throws UsageError if thread_excess() or OMP_THREAD_LIMIT does not allow so many. `asked`: what says the
+/// number, if it is not --threads.
 void require_few_threads(int threads, std::string_view asked = {});
 
 /// Completes the options. An `instruction_set` becomes Highway's name (require_instruction_set). If `threads`
 /// is 0, takes one thread per processor that this process may use, within a container's quota, and has OpenMP
-/// provide as many, regardless of OMP_DYNAMIC. Throws UsageError if OMP_THREAD_LIMIT is lower, like
-/// require_instruction_set and, unless a launcher starts the processes elsewhere, like require_few_threads.
+/// provide as many, regardless of OMP_DYNAMIC. Throws like require_instruction_set and require_few_threads;
+/// if a launcher starts the processes elsewhere, there may be more threads than thread_excess() allows.
 ExecutionOptions complete(ExecutionOptions options);
 
 /// Command-line options for programs that are backends.

@@ -28,8 +28,8 @@ namespace {
 /// With that many nodes along a side; its text says so too.
 SceneSpec with_side(SceneSpec spec, std::uint32_t side) {
   auto& cloth = std::get<ClothSpec>(spec.content);
-  const double height = cloth.ceiling_height_m - spec.floor.height;
-  cloth.ceiling_height_m = spec.floor.height + height * (side - 1) / (cloth.rows - 1);
+  const double lowest = spec.floor.height + cloth.ripple.height_m;  // the cloth starts above the floor
+  cloth.ceiling_height_m = lowest + (cloth.ceiling_height_m - lowest) * (side - 1) / (cloth.rows - 1);
   cloth.rows = cloth.columns = side;
   if (cloth.pins) cloth.pins->row = 0;
   nlohmann::json text = nlohmann::json::parse(spec.source);
@@ -41,8 +41,9 @@ SceneSpec with_side(SceneSpec spec, std::uint32_t side) {
   return spec;
 }
 
-/// Makes square cloths of the same springs, masses, spacing, pins and ripple as this one, which hang as high
-/// above the floor as it does in lengths of a side. None where the scene is no cloth.
+/// Makes square cloths of the same springs, masses, spacing, pins and ripple as this one. In lengths of a
+/// side, the lowest points of their ripples are as high above the floor as its. None where the scene is no
+/// cloth.
 ClothMaker cloth_family(const SceneSpec& spec) {
   const auto* cloth = std::get_if<ClothSpec>(&spec.content);
   if (cloth == nullptr || cloth->rows < 2) return {};

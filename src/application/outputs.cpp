@@ -95,15 +95,16 @@ std::string command_line(const Provenance& provenance) {
   return text;
 }
 
-TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
+TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const BackendInfo& info,
                          const Integrator& integrator, const Provenance& provenance) {
   TraceHeader header;
   header.creator_version = build_info().version;
   header.scene_json = scene.spec.source;
   header.provenance_json = provenance_text(provenance);
-  header.backend = fmt::format("{} on {}", backend_name, backend.device());
+  header.backend = fmt::format("{} on {}", info.name, backend.device());
   header.integrator = integrator.name;
   header.dt_s = scene.dt_s;
+  header.in_double = info.in_double;
   return header;
 }
 

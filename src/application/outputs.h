@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "application/prepared_scene.h"
-#include "backends/interface/backend.h"
+#include "backends/backends.h"
 #include "bench/machine/provenance.h"
 #include "output/traces/h5md_trace.h"
 
@@ -37,9 +37,9 @@ Provenance run_provenance(int threads, bool uses_device);
 /// The command line of the run in one line, quoted for a shell if necessary.
 std::string command_line(const Provenance& provenance);
 
-/// The header of a trace of `scene`, stepped by `backend` in the run of that provenance. `backend_name`: its
-/// name in the table.
-TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
+/// The header of a trace of `scene`, stepped by `backend`, which is of the row `info`, in the run of that
+/// provenance.
+TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const BackendInfo& info,
                          const Integrator& integrator, const Provenance& provenance);
 
 }  // namespace mssim

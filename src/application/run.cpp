@@ -78,19 +78,6 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
   }
 }
 
-void require_distinct(const RunFiles& files, const PreparedScene& scene) {
-  std::vector<NamedFile> written, read;
-  if (!files.trace.empty()) {
-    written.push_back({"--trace", files.trace});
-    written.push_back({"the XDMF beside --trace", xdmf_of(files.trace)});
-  }
-  if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
-  if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
-  if (files.later) written.push_back(*files.later);
-  for (const std::filesystem::path& file : scene.files) read.push_back({"a file of the scene", file});
-  require_distinct(written, read);
-}
-
 RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers)
     : temporary_(files.temporary) {
   if (!files.energy_curve.empty()) {
@@ -173,6 +160,36 @@ std::string RunRecorder::kept() {
 
 namespace {
 
+/// The files that a run reads: those of the scene, and the program of the backend, its description and the
+/// files of its command.
+std::vector<NamedFile> files_read(const PreparedScene& scene, const BackendInfo& backend) {
+  std::vector<NamedFile> files;
+  for (const std::filesystem::path& file : scene.files) files.push_back({"a file of the scene", file});
+  if (const BackendProgram* program = backend.program) {
+    files.push_back({"the program of the backend", program->program});
+    const std::string before_ranks = program->name.substr(0, program->name.find(':'));
+    files.push_back({"the description of the backend", program->folder / (before_ranks + ".json")});
+    for (const std::string& word : program->command)
+      if (std::error_code error; std::filesystem::is_regular_file(program->folder / word, error))
+        files.push_back({"a file of the backend's command", program->folder / word});
+  }
+  return files;
+}
+
+/// Throws UsageError if two of these are the same file: the files, the XDMF of the trace, and those that are
+/// read.
+void require_distinct(const RunFiles& files, const std::vector<NamedFile>& read) {
+  std::vector<NamedFile> written;
+  if (!files.trace.empty()) {
+    written.push_back({"--trace", files.trace});
+    written.push_back({"the XDMF beside --trace", xdmf_of(files.trace)});
+  }
+  if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
+  if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
+  if (files.later) written.push_back(*files.later);
+  require_distinct(written, read);
+}
+
 /// Throws UsageError if the backend is to step in double precision and does not do so here.
 void require_precision(const RunOptions& options, const BackendInfo& info, const System& system,
                        const Integrator& integrator) {
@@ -242,11 +259,10 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
   Provenance provenance = run_provenance(backend.threads(), info.uses_device);
   add_programs(provenance, {&info}, complete(options.execution));
   add_scene(provenance, scene.spec.name, scene.spec.source);
-  FileHeaders headers{trace_header(scene, backend, std::string(info.name), integrator, provenance),
-                      command_line(provenance), options.pictures};
+  FileHeaders headers{trace_header(scene, backend, info, integrator, provenance), command_line(provenance),
+                      options.pictures};
   headers.pictures.threads = complete(options.execution).threads;
   headers.trace.with_losses = options.losses;
-  headers.trace.in_double = info.in_double;
   return headers;
 }
 
@@ -418,7 +434,7 @@ int run_scene(RunOptions options) {
   require_device(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
-  require_distinct(options.files, scene);
+  require_distinct(options.files, files_read(scene, info));
   // Finds an unwritable file before anything is simulated.
   if (options.files.later) AtomicFile(options.files.later->path).remove();
   if (options.dt_s) scene.dt_s = *options.dt_s;

@@ -78,10 +78,6 @@ struct FileHeaders {
   PictureOptions pictures;
 };
 
-/// Throws UsageError if two of these are the same file: the files, the XDMF of the trace, and the files of
-/// the scene.
-void require_distinct(const RunFiles& files, const PreparedScene& scene);
-
 /// Writes the frames of a run into its files while the simulation continues, because compressing a large
 /// frame takes as long as many steps. Also keeps their energies.
 class RunRecorder {

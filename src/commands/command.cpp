@@ -59,9 +59,10 @@ constexpr auto table = std::to_array<Command>({
 
 constexpr std::string_view exit_codes =
     "Exit codes: 0 success; 1 a row is not verified, a simulation blew up, a garment\n"
-    "does not fit, or a comparison or a history shows a regression; 2 bad usage or\n"
-    "input; 3 a requested device or program is missing; 4 a file could not be\n"
-    "written, or a trace could not be read.";
+    "does not fit, a guide had too little time, a measured body takes no jeans, or a\n"
+    "comparison or a history shows a regression; 2 bad usage or input; 3 a requested\n"
+    "device or program is missing; 4 a file could not be written, or a trace could\n"
+    "not be read.";
 
 /// mssim's first argument when a shell asks what may stand in the place of the last of the words that follow
 /// (src/completion).

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -55,6 +56,19 @@ std::vector<std::size_t> exported_frames(const FrameOptions& options, const std:
   return frames;
 }
 
+/// Throws UsageError if the file exists and no mssim export wrote it. Nobody has named it: it may be the
+/// surface that the scene of the trace reads.
+void require_own(const fs::path& file) {
+  constexpr std::string_view mark = "mssim, time ";  // in a comment of obj_of and ply_of
+  std::string beginning(64, '\0');
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return;
+  in.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  if (beginning.find(mark) == std::string::npos)
+    throw UsageError("{} already exists, and mssim did not write it: name another file with --out",
+                     printable(file.string(), 1000));
+}
+
 /// The files for these frames: one per frame if the format has no times.
 std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<std::size_t>& frames) {
   const fs::path out =
@@ -72,6 +86,8 @@ int run(const ExportOptions& options) {
   for (const fs::path& file : files)
     require_distinct({{"--out", file}},
                      {{"the trace", options.trace}, {"the XDMF beside the trace", xdmf_of(options.trace)}});
+  if (options.out.empty() && options.format != ExportFormat::vtkhdf)
+    std::ranges::for_each(files, require_own);
   const bool solid = options.format == ExportFormat::vtkhdf;
   const ExportMesh mesh = solid ? solid_mesh(trace.content()) : surface_mesh(trace.content());
   if (mesh.triangles.empty() && mesh.tetrahedra.empty())

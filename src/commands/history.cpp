@@ -93,7 +93,7 @@ std::function<int()> declare_history(Arguments& arguments) {
            "add: append a result folder to the file; show: list levels and changes of every series",
            one_of("action", {"add", "show"}))
       .required();
-  arguments.add("FOLDER", options->folder,
+  arguments.add("FOLDER FOLDER|FILE", options->folder,
                 "With add: a folder that mssim bench --out wrote, or a file in it");
   arguments.add("--file FILE", options->file, "The history, a JSON object per line (default: history.jsonl)");
   arguments.add("--commit TEXT", options->commit,

@@ -1,5 +1,6 @@
 #include "mesh/tetgen.h"
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 
 #include "geometry/geometry.h"
+#include "geometry/surface.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "platform/process.h"
@@ -273,15 +275,24 @@ class Run {
     return std::nullopt;
   }
 
-  /// TetGen fills everything inside the outermost triangles, including holes and inner parts.
+  /// TetGen fills everything inside the outermost triangles, including holes and inner parts, and joins
+  /// triangles that are within about 0.1 degrees of one plane.
   void require_volume(const TetMesh& mesh) const {
-    const double enclosed = volume_of(surface_);
-    const double filled = volume_of(mesh);
-    constexpr double rounding = 1e-6;
-    if (std::abs(filled - enclosed) > rounding * enclosed)
-      throw InputError(
-          "the surface encloses " + shown(enclosed) + " m^3 but TetGen filled " + shown(filled) +
-          " m^3: a closed part lies inside another one; remove the inner part, since bodies are solid");
+    const double enclosed = volume_of(surface_), filled = volume_of(mesh);
+    const double difference = std::abs(filled - enclosed);
+    constexpr double rounding = 1e-6, of_joined = 1e-3;
+    if (difference <= rounding * enclosed) return;
+    const std::vector<Surface> parts = closed_parts(surface_);
+    const bool has_inner_part = parts.size() > 1 && std::ranges::any_of(parts, [&](const Surface& part) {
+                                  return difference > 0.5 * volume_of(part);
+                                });
+    if (!has_inner_part && difference <= of_joined * enclosed) return;
+    throw InputError(
+        "the surface encloses {} m^3 but TetGen filled {} m^3: {}", shown(enclosed), shown(filled),
+        has_inner_part
+            ? "a closed part lies inside another one; remove the inner part, since bodies are solid"
+            : "it joined triangles that are almost in one plane; put them into one plane, or make "
+              "the body thicker");
   }
 
   const TetgenProgram& program_;

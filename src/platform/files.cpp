@@ -242,6 +242,12 @@ AtomicFile::AtomicFile(fs::path file) : name_(std::move(file)) {
   require_replaceable(name_);
   part_ = open_locked(name_);
   if (::ftruncate(part_.get(), 0) != 0) fail(name_, "emptying " + temporary_of(name_).string());
+  struct stat old {};
+  if (::lstat(name_.c_str(), &old) == 0 && S_ISREG(old.st_mode)) {
+    // Some file systems have no permissions. This writer may need to open the file again.
+    constexpr mode_t permissions = 0777, of_writer = 0600;
+    static_cast<void>(::fchmod(part_.get(), (old.st_mode & permissions) | of_writer));
+  }
 }
 
 void AtomicFile::remove() {

@@ -60,9 +60,10 @@ std::filesystem::path target_of(const std::filesystem::path& file);
 void require_replaceable(const std::filesystem::path& file);
 
 /// A file that one writer at a time writes as FILE.part and renames when complete: at every moment, even
-/// after a crash of the machine, FILE is either the whole old or the whole new file. A link in the place of
-/// FILE is replaced, not followed, so the content of a folder cannot redirect writes outside. For a file that
-/// the user names, target_of() follows links first.
+/// after a crash of the machine, FILE is either the whole old or the whole new file. The new file has the
+/// permissions of the old one, and its owner may write it. A link in the place of FILE is replaced, not
+/// followed, so the content of a folder cannot redirect writes outside. For a file that the user names,
+/// target_of() follows links first.
 class AtomicFile {
  public:
   /// Creates or empties FILE.part and locks it for this writer. Throws WriteError if another writer of any

@@ -95,7 +95,8 @@ std::string provenance_of(const ReportFolder& folder) {
   std::vector<std::string> environment, scenes, load;
   for (const auto& [name, value] : provenance.thread_environment) environment.push_back(name + "=" + value);
   for (const SceneHash& scene : provenance.scenes)
-    scenes.push_back(scene.name + " " + to_hex(scene.fnv1a_64));
+    scenes.push_back(fmt::format("{} {}{}", scene.name, to_hex(scene.fnv1a_64),
+                                 scene.files_fnv1a_64 ? " with files " + to_hex(*scene.files_fnv1a_64) : ""));
   for (const double average : machine.load_average) load.push_back(fmt::format("{:.2f}", average));
   const auto or_nothing = [](const std::string& text) { return text.empty() ? Cell() : Cell(text); };
   Table table{{{"what"}, {"value"}}, {}};

@@ -299,6 +299,14 @@ class MeshedShapes {
     return files;
   }
 
+  /// Hash of all meshes.
+  std::uint64_t hash() const {
+    std::uint64_t all = fnv1a_64("");
+    for (const MeshedShape& shape : shapes_)
+      all = fnv1a_64(bytes_of(shape.mesh.tetrahedra), fnv1a_64(bytes_of(shape.mesh.nodes), all));
+    return all;
+  }
+
   /// How the meshes were made, if a reader should know: sentences, or empty.
   std::string note() const {
     std::string all;
@@ -438,6 +446,14 @@ void check(const SceneSpec& spec) {
       refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
 }
 
+/// Whether the scene file names other files, also another scene's.
+bool names_files(const SceneSpec& spec) {
+  return std::ranges::any_of(bodies_of(spec).list, [](const BodySpec& body) {
+    if (const auto* other = std::get_if<ShapeOfScene>(&body.shape)) return is_path_of_scene(other->name);
+    return std::holds_alternative<SurfaceFile>(body.shape) || std::holds_alternative<MeshFiles>(body.shape);
+  });
+}
+
 /// Meshes every shape once.
 ///
 /// The scene has its bodies one after the other, each in its mesh's node order; its springs are the edges of
@@ -451,7 +467,7 @@ SceneParts read(const SceneSpec& spec) {
           [shapes](const SceneSpec& of) {
             return BuiltScene{build_bodies(of, *shapes), shapes->note()};
           },
-          shapes->files()};
+          shapes->files(), names_files(spec) ? std::optional(shapes->hash()) : std::nullopt};
 }
 
 }  // namespace

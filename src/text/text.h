@@ -83,6 +83,16 @@ void add_once(std::vector<Value>& values, const std::type_identity_t<Value>& val
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
 }
 
+/// The bytes of a value without pointers, or of a vector of such values, for hashes and files.
+template <class Value>
+requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const Value& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+template <class Value>
+requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const std::vector<Value>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
+}
+
 /// FNV-1a of the text's bytes, 64 bits: detects accidental, not deliberate, differences between files.
 /// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm, IETF
 /// draft. `hash`: the hash of the preceding text.

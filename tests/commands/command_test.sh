@@ -9,6 +9,7 @@ column() { column_of "$work/results/timings.csv" "$1"; }
 # Usage.
 expect 2 'nothing to measure' bench
 OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;' run --threads 2 --scene cloth2500
+OMP_THREAD_LIMIT=1 expect 2 'openmp:2 is more than OMP_THREAD_LIMIT allows, 1; give fewer' bench --scene cloth2500 --backend openmp:2
 expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
 expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
 expect 2 "known are $(names_of backends | paste -sd, | sed 's/,/, /g; s/\(.*\), /\1 and /')" bench --scene cloth2500 --backend cuda

@@ -60,6 +60,7 @@ are "$(printf '%s\n' backend-schema backends)" list back
 are "$(printf '%s\n' few few.json fewer.json fewer-folders)" run --trace few
 are "$(printf '%s\n' few fewer-folders)" bench --out few
 are "$(printf '%s\n' few few.json fewer.json fewer-folders)" report few few
+are "$(printf '%s\n' few few.json fewer.json fewer-folders)" history add few
 are "$(printf 'cloth2500,%s\n' few few.json fewer.json fewer-folders)" bench --scene cloth2500,few
 # Words are as they were typed, with quotes.
 are "$(printf 'few.json,%s\n' few few.json fewer.json fewer-folders)" bench --scene 'few.json\,few'

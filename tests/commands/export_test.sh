@@ -55,6 +55,15 @@ head -c 5000 cloth.h5 >cut.h5
 expect 2 'cut.h5' export cut.h5 --format ply --out never/a.ply
 [ -z "$(ls never)" ] || fail "left: $(ls never)"
 
+# A file that nobody has named stays, unless it is an export: it may be the surface of the scene.
+for format in obj ply; do
+  printf 'v 0 0 0\n' >"cloth.$format"
+  expect 2 "cloth.$format already exists, .*--out" export cloth.h5 --format $format
+  [ "$(cat "cloth.$format")" = "v 0 0 0" ] || fail "export replaces cloth.$format"
+  ends 0 export cloth.h5 --format $format --out "cloth.$format"
+  ends 0 export cloth.h5 --format $format
+done
+
 # A disk that is full, as a limit on the size of files: what stood there before stays.
 for format in obj ply vtkhdf; do
   echo before >"full.$format"

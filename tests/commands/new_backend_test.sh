@@ -31,6 +31,8 @@ status=0
 'a folder/mine' 2>err || status=$?
 [ "$status" -eq 2 ] && grep -q 'mssim bench --scene' err || fail "run by hand, it exits with $status and says $(cat err)"
 verified_everywhere 'a folder/mine' mine
+ends 0 bench --scene cloth2500 --backend './a folder/mine' --integrator semi-euler --rounds 1 --threads 2 --out one-thread
+[ "$(column_of one-thread/timings.csv threads)" = 1 ] || fail "mine has another number of threads: $(cat one-thread/timings.csv)"
 
 # A second one beside it takes the header that is there.
 ends 0 new-backend other --language c++ --out 'a folder'

@@ -50,6 +50,15 @@ ends 1 bench --scene ./x.json,./x-y.json,"./$long.json" --backend serial,./z,./y
   fail "long names: $(ls "$work"/colliding/*)"
 rm -r "$work/colliding"
 
+# The traces of a bench have names that readers of an XDMF file take, and the precision of their backend.
+ends 0 bench --scene cloth2500 --backend serial,serial:double --integrator semi-euler --rounds 1 --trace --out precise
+ends 0 export precise/traces/cloth2500-serial_double-semi-euler.h5 --format ply --out double.ply
+ends 0 export precise/traces/cloth2500-serial-semi-euler.h5 --format ply --out single.ply
+grep -qa 'property double x' double.ply && grep -qa 'property float x' single.ply || fail "traces have another precision than their backends"
+grep -q 'cloth2500-serial_double-semi-euler.h5:/' precise/traces/cloth2500-serial_double-semi-euler.xdmf || fail "the XDMF has another name"
+ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --overwrite --out precise
+[ ! -e precise/traces ] || fail "traces of earlier rows are left: $(ls precise/traces)"
+
 # Commas.
 cp "$source/scenes/cloth2500.json" "$work/a,b.json"
 ends 0 bench --scene "$work/a,b.json,cloth4900" --dry-run

@@ -41,6 +41,16 @@ sed 's/^mssim_backend.serve.*/mssim_backend.serve(prepare, note="", device="", p
 chmod +x described/silent.py
 printf '{"command": ["./silent.py"], "environment": {"PYTHONPATH": "/nowhere"}}' >described/silent.json
 ends 0 bench --scene cloth2500 --backend silent --backend-folder described --integrator semi-euler --rounds 1
+# The examples use one thread, whatever is requested.
+ends 0 bench --scene cloth2500 --backend ./mine.py --integrator semi-euler --rounds 1 --threads 2 --out one-thread
+[ "$(column_of one-thread/timings.csv threads)" = 1 ] || fail "mine.py has another number of threads: $(cat one-thread/timings.csv)"
+# A module that is missing is what the system lacks, not a mistake of the program.
+for module in numpy h5py; do
+  mkdir "no-$module"
+  echo "raise ModuleNotFoundError('No module named $module', name='$module')" >"no-$module/$module.py"
+  PYTHONPATH=$work/no-$module ends 3 bench --scene cloth2500 --backend ./mine.py --integrator semi-euler --rounds 1
+  says "unavailable: .* has no module $module: install python3-$module"
+done
 # Run by hand it says what it is.
 status=0
 PYTHONPATH=$2/src/starters/python ./mine.py >out 2>err || status=$?

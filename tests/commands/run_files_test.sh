@@ -51,6 +51,21 @@ for file in one.node one.ele one.json; do
     run --scene ./same-shape.json --energy-curve "other/$file"
   [ "$(<"other/$file")" = "$before" ] || fail "$file of another scene was overwritten"
 done
+# The user's program, its description and what its command names.
+mkdir own
+printf '#!/bin/sh\nexit 3\n' | tee own/prog >own/script
+chmod +x own/prog
+echo '{"command": ["./prog", "script"]}' >own/mine.json
+before=$(cat own/*)
+by_own=("${fall[@]}" --duration 0.001 --backend)
+expect 2 '--energy-curve and the program of the backend are the same file' "${by_own[@]}" ./own/prog --energy-curve own/prog
+expect 2 '--energy-curve and the program of the backend are the same file' "${by_own[@]}" own/mine.json --energy-curve own/prog
+expect 2 '--energy-curve and the description of the backend are the same file' "${by_own[@]}" own/mine.json --energy-curve own/mine.json
+expect 2 "--energy-curve and a file of the backend's command are the same file" "${by_own[@]}" mine --backend-folder own --energy-curve own/script
+cp own/prog own/prog.png
+expect 2 '--out and the program of the backend are the same file' render --scene cloth2500 --backend ./own/prog.png --out own/prog.png
+rm own/prog.png
+[ "$(cat own/*)" = "$before" ] || fail "a file of the backend was overwritten"
 expect 2 '--trace and --pictures are the same file, x.h5' "${fall[@]}" --trace x.h5 --pictures x.h5
 [ -z "$(find . -name 'x.*')" ] || fail "a refused run leaves a file"
 

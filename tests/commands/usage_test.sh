@@ -49,6 +49,11 @@ expect 2 '^mssim: --scene NAME|FILE is missing: give .*list scenes.*; see mssim 
 expect 2 '^mssim: --scene needs a value: give --scene NAME|FILE; see mssim run --help$' run --scene
 expect 2 '^mssim: --integrator: "," names nothing: give a value' bench --scene cloth2500 --integrator , --dry-run
 expect 2 '^mssim: SCENE: "," names nothing' check ,
+expect 2 '^mssim: --out: "" is empty: give a value.*mssim report --help' report f1 --out= --no-runs
+expect 2 '^mssim: --integrator: "" is empty: give a value' bench --scene cloth2500 --integrator= --dry-run
+expect 2 '^mssim: --threads: "" is not a whole number' run --scene cloth2500 --threads= --losses
+expect 2 'mssim bench has no option "--fsp" (did you mean --fps?)' bench --scene cloth2500 --fsp= --dry-run
+expect 2 'there is no folder --out=' report -- --out=
 ends 0 help report
 says '^Usage: mssim report DIR\.\.\. \['
 expect 2 '^mssim: --scene is given 2 times: give it once;' run --scene cloth2500 --scene cloth4900
@@ -59,6 +64,7 @@ expect 2 'mssim has no option "-v" (did you mean --version?)' -v
 expect 2 'unknown command "version" (did you mean --version?)' version
 expect 2 'mssim run has no option "--suite", which is one of mssim bench;' run --suite table1
 expect 2 '^mssim: unexpected argument "cloth350k" of mssim bench (did you mean --scene cloth350k?);' bench cloth350k
+expect 2 '^mssim: unexpected argument "--scene" of mssim bench behind "--": .*before "--"; see mssim bench --help$' bench -- --scene cloth2500
 expect 2 '^mssim: "jeans4k" is a scene, not a trace: did you mean --scene jeans4k?' render jeans4k
 expect 2 '^mssim: WHAT is missing: give what to list: scenes, ' list
 expect 2 '^mssim: unexpected argument "twice" of mssim list: ' list scenes twice

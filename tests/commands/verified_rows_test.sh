@@ -64,3 +64,24 @@ rm -rf "$work/untimed"
 ends 0 "${asked[@]}" --verified "$work/doctored" --out "$work/untimed"
 [ "$(only untimed verified)" = true ] || fail "what was verified is not"
 [ -z "$(only untimed ms_per_step)" ] || fail "what was not to be timed is timed"
+
+# A file that the scene names, or that the scene of its shape names, and that was replaced by another one, makes another scene.
+# solid HEIGHT: the files of a tetrahedron that is so high
+solid() {
+  printf '4 3 0 0\n1 0 0 0\n2 0.1 0 0\n3 0 0 0.1\n4 0 %s 0\n' "$1" >"$work/solid.node"
+  printf '1 4 0\n1 1 3 2 4\n' >"$work/solid.ele"
+}
+start='"centre_m": [0, 1, 0], "velocity_m_per_s": [0, 0, 0], "spin_rad_per_s": [0, 0, 0], "swell_per_s": 1'
+bodies_scene "$work/by-file.json" 0 '{"shape": "tetgen", "tetgen": {"node_file": "solid.node", "ele_file": "solid.ele", "unit_m": 1}, '"$start}"
+bodies_scene "$work/by-scene.json" 0 '{"shape": "scene", "scene": {"name": "./by-file.json"}, '"$start}"
+for scene in by-file by-scene; do
+  solid 0.1
+  asked=(bench --scene "$work/$scene.json" --backend serial --integrator semi-euler)
+  ends 0 "${asked[@]}" --rounds 1 --out "$work/$scene"
+  solid 0.2
+  refuse "the hash of the files of scene $scene was" "$work/$scene"
+  expect 2 "the hash of the files of scene $scene was" "${asked[@]}" --rounds 2 --out "$work/$scene" --resume
+  solid 0.1
+  ends 0 "${asked[@]}" --rounds 2 --out "$work/$scene" --resume
+  ends 0 "${asked[@]}" --rounds 1 --verified "$work/$scene"
+done

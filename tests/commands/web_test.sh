@@ -60,7 +60,7 @@ fi
 python3 "$2/tests/commands/web.py" "$chromium" page.html . || fail "the page in the browser"
 
 /usr/bin/python3 -W ignore "$2/tests/support/check_json.py" "$2/docs/schemas/web-results.schema.json" result.json \
-  --maps environment,backend_programs,scenes_fnv1a_64 --wrong mssim_web_results=2 || fail "result.json by its schema"
+  --maps environment,backend_programs,scenes_fnv1a_64,scene_files_fnv1a_64 --wrong mssim_web_results=2 || fail "result.json by its schema"
 
 # What it saved, beside a folder.
 ends 0 report result.json lost.json failed.json without.json "$2/results/table1/zen5" --no-runs --out report.html

@@ -95,6 +95,28 @@ TEST_F(TetgenTest, APartInsideAnotherIsRefused) {
   EXPECT_THAT(complaint_about(both(unit_cube(), inner)), HasSubstr("a closed part lies inside another one"));
 }
 
+TEST_F(TetgenTest, TrianglesThatAreAlmostInOnePlaneAreJoined) {
+  // A point above the middle of the cube's top, so that four triangles are 0.03 degrees from it.
+  const auto with_low_roof = [](double rise) {
+    Surface cube = unit_cube();
+    std::erase_if(cube.triangles, [&](const auto& triangle) {
+      return std::ranges::all_of(triangle, [&](std::uint32_t point) { return cube.points[point].y == 1; });
+    });
+    const std::size_t count = cube.points.size();
+    cube.points.push_back({0.5, 1 + rise, 0.5});
+    std::vector<std::uint32_t> ring;
+    for (const Vec3d corner : {Vec3d{0, 1, 0}, {0, 1, 1}, {1, 1, 1}, {1, 1, 0}})
+      ring.push_back(
+          static_cast<std::uint32_t>(std::ranges::find(cube.points, corner) - cube.points.begin()));
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      cube.triangles.push_back({ring[i], ring[(i + 1) % ring.size()], static_cast<std::uint32_t>(count)});
+    return cube;
+  };
+  const double rise = 2.5e-4;
+  EXPECT_NEAR(volume_of(with_low_roof(rise)), 1 + rise / 3, 1e-12);
+  EXPECT_NEAR(volume_of(tetrahedralise(with_low_roof(rise), {}, keep_surface)), 1, 1e-3);
+}
+
 TEST_F(TetgenTest, PartsBesideEachOtherAreFilled) {
   EXPECT_NEAR(volume_of(tetrahedralise(both(unit_cube(), unit_cube({1.5, 0, 0})), {}, keep_surface)), 2,
               1e-12);

@@ -25,6 +25,20 @@ TEST_F(AtomicFileTest, ReplacesTheOldTextAndLeavesNothingElse) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
 }
 
+TEST_F(AtomicFileTest, KeepsThePermissionsOfTheOldFile) {
+  using std::filesystem::perms;
+  const auto file = put("history.jsonl", "old"), fresh = folder() / "fresh";
+  std::filesystem::permissions(file, perms::owner_read | perms::owner_write);
+  write_file_atomically(file, "new");
+  EXPECT_EQ(std::filesystem::status(file).permissions(), perms::owner_read | perms::owner_write);
+  std::filesystem::permissions(file, perms::owner_read | perms::group_exec);
+  write_file_atomically(file, "newer");
+  EXPECT_EQ(std::filesystem::status(file).permissions(),
+            perms::owner_read | perms::owner_write | perms::group_exec);
+  write_file_atomically(fresh, "new");
+  EXPECT_NE(std::filesystem::status(fresh).permissions() & perms::owner_write, perms::none);
+}
+
 TEST(XdgFolder, IsThatOfTheVariableOrInTheHomeFolder) {
   const KeptVariables kept{"HOME", "XDG_CONFIG_HOME"};
   ::setenv("HOME", "/home/jane", 1);

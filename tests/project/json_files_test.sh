@@ -24,7 +24,7 @@ done
 bench=(bench --scene cloth2500 --backend "serial,openmp" --integrator semi-euler --threads 1 --rounds 6)
 ends 0 "${bench[@]}" --format json --out base
 valid bench out --wrong 0/nodes=-1
-valid provenance base/provenance.json --maps environment,backend_programs,scenes_fnv1a_64 \
+valid provenance base/provenance.json --maps environment,backend_programs,scenes_fnv1a_64,scene_files_fnv1a_64 \
   --wrong format_version=2 --wrong 'started_utc="today"' --wrong cpu/logical_cpus=-1 --wrong 'scenes_fnv1a_64/cloth2500="x"'
 valid benchmark base/benchmark.json --wrong 'benchmarks/0/run_type="warm-up"' --wrong 'benchmarks/0/time_unit="ms"'
 ends 0 "${bench[@]}" --format github --verified base --out next
@@ -48,7 +48,7 @@ rm next/provenance.json
 ends 0 report base "$source/results/guide/zen4" next --history times --no-runs --out page.html
 data page.html >page.json
 valid report page.json --optional guide,history,ms_per_step,ms_per_step_low,ms_per_step_high \
-  --maps environment,backend_programs,scenes_fnv1a_64 --wrong 'folders/0/claims/0/outcome="maybe"' --wrong 'folders/0/timings/0/state_hash="x"'
+  --maps environment,backend_programs,scenes_fnv1a_64,scene_files_fnv1a_64 --wrong 'folders/0/claims/0/outcome="maybe"' --wrong 'folders/0/timings/0/state_hash="x"'
 
 valid ../../results/published/claims "$source/results/published/claims.json" \
   --optional needs,test,integrators,slow_integrator,gains_more_than,device,of --wrong 'claims/0/test/device="phone"'

@@ -43,13 +43,24 @@ std::uint64_t window_memory(const BenchSettings& settings, const GridWindow& win
   return static_cast<std::uint64_t>(most) * static_cast<std::uint64_t>(settings.execution.threads);
 }
 
+/// The scene's time step. If it is `auto`, builds some nodes of a cloth, and the whole of another scene.
+double dt_of(const SceneSpec& spec, const SceneParts& parts) {
+  if (spec.dt_s) return *spec.dt_s;
+  const auto* cloth = std::get_if<ClothSpec>(&spec.content);
+  if (cloth == nullptr) return prepare_scene(spec, parts).dt_s;
+  // Nodes of all kinds, and around some of them every spring that a node has.
+  constexpr std::uint32_t all_kinds = 9;
+  return auto_dt(mode_bound(build_window(
+      spec, {.rows = std::min(cloth->rows, all_kinds), .columns = std::min(cloth->columns, all_kinds)})));
+}
+
 /// A cloth whose backends all have windows gets some if they are requested, or if the whole does not fit.
 /// Throws UsageError if they are requested and cannot be had. Throws SceneError if the scene needs more
 /// memory than there is: nobody should wait for a scene only to see the program killed.
 PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
   const SceneCounts counts = scene.parts.counts;
   SceneSize size = size_of(scene.spec, counts);
-  if (settings.fps && scene.spec.dt_s) size.frame_steps = steps_of_frame(*settings.fps, *scene.spec.dt_s);
+  if (settings.fps) size.frame_steps = steps_of_frame(*settings.fps, dt_of(scene.spec, scene.parts));
   std::uint64_t memory_bytes = bench_memory_needed(settings, size);
   const bool can = size.grid && std::ranges::all_of(settings.backends, [](const BackendInfo* backend) {
                      return has_windows(*backend);
@@ -180,15 +191,7 @@ PreparedScene outline_of(const PlannedScene& planned) {
   scene.system = outline_of_cloth(scene.spec);
   round_start_to_single(scene.system);
   scene.counts = planned.parts.counts;
-  if (scene.spec.dt_s) {
-    scene.dt_s = *scene.spec.dt_s;
-    return scene;
-  }
-  // Nodes of all kinds, and around some of them every spring that a node has.
-  constexpr std::uint32_t all_kinds = 9;
-  const auto& cloth = std::get<ClothSpec>(scene.spec.content);
-  scene.dt_s = auto_dt(mode_bound(build_window(
-      scene.spec, {.rows = std::min(cloth.rows, all_kinds), .columns = std::min(cloth.columns, all_kinds)})));
+  scene.dt_s = dt_of(scene.spec, planned.parts);
   return scene;
 }
 
@@ -250,8 +253,9 @@ BenchPlan plan_of(const BenchOptions& options) {
   add_programs(plan.provenance, plan.backends.own(), plan.settings.execution);
   plan.provenance.device_memory = name_of(plan.settings.execution.memory);
   for (const UnbuiltScene& scene : plan.described)
-    add_scene(plan.provenance, scene.spec.name, scene.spec.source);
-  for (const SceneSpec& spec : timed) add_scene(plan.provenance, spec.name, spec.source);
+    add_scene(plan.provenance, scene.spec.name, scene.spec.source, scene.parts.files_fnv1a_64);
+  for (const SceneSpec& spec : timed)
+    add_scene(plan.provenance, spec.name, spec.source, parts_of(spec).files_fnv1a_64);
   if (!options.verified.empty()) plan.settings.verified = verified_rows(options.verified, plan.provenance);
   for (SceneSpec& spec : timed) {
     SceneParts parts = parts_of(spec);

@@ -43,7 +43,7 @@ void write_trace(const std::filesystem::path& file, const SceneJob& job, const P
   const Integrator& integrator = *find_integrator(row.integrator);
   const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
   const auto backend = make_backend(info, scene.system, integrator, scene.dt_s, job.execution);
-  H5mdTrace trace(file, scene.system, trace_header(scene, *backend, row.backend, integrator, provenance));
+  H5mdTrace trace(file, scene.system, trace_header(scene, *backend, info, integrator, provenance));
   simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s},
            {[&](const Frame& frame) {
              trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);

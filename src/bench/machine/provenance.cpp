@@ -308,8 +308,9 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
   std::ranges::sort(provenance.backend_programs, {}, &BackendProgramRecord::name);
 }
 
-void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text) {
-  provenance.scenes.push_back({std::string(name), fnv1a_64(file_text)});
+void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text,
+               std::optional<std::uint64_t> files_fnv1a_64) {
+  provenance.scenes.push_back({std::string(name), fnv1a_64(file_text), files_fnv1a_64});
 }
 
 std::vector<std::string> noise_of(const Provenance& provenance) {

@@ -84,6 +84,8 @@ Machine read_machine(const std::filesystem::path& root = "/");
 struct SceneHash {
   std::string name;
   std::uint64_t fnv1a_64 = 0;
+  /// Of what the files made that it names (SceneParts); none if it names none, or if it is not known.
+  std::optional<std::uint64_t> files_fnv1a_64 = {};
 };
 
 /// A file that a program was run from, named as in its command.
@@ -155,8 +157,9 @@ inline AskedProcessors asked_processors(const Provenance& provenance, std::strin
 void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
                  const std::filesystem::path& folder);
 
-/// Adds the hash of a scene file's text.
-void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);
+/// Adds the hash of a scene file's text, and that of the files that it names.
+void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text,
+               std::optional<std::uint64_t> files_fnv1a_64 = {});
 
 /// Conditions that make times on this machine longer or less repeatable: one sentence each, with a remedy.
 /// Considers load, governor and turbo of the machine, the requested threads, and the CPUs where they may run.

@@ -85,8 +85,12 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
   add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
   for (const SceneHash& scene : before.scenes)
     if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);
-        same != now.scenes.end())
+        same != now.scenes.end()) {
       add(sentences, "the hash of scene " + scene.name, to_hex(scene.fnv1a_64), to_hex(same->fnv1a_64));
+      if (scene.files_fnv1a_64 && same->files_fnv1a_64)  // earlier programs did not record it
+        add(sentences, "the hash of the files of scene " + scene.name, to_hex(*scene.files_fnv1a_64),
+            to_hex(*same->files_fnv1a_64));
+    }
   return sentences;
 }
 

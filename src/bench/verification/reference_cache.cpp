@@ -19,16 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <class Value>
-requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const Value& value) {
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
-template <class Value>
-requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const std::vector<Value>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
-}
-
 /// Hash of everything that a reference of a cloth or bodies depends on.
 std::uint64_t hash_of(const System& system) {
   // Names all members, so that a new one cannot be forgotten.

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -70,6 +71,12 @@ std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord&
   const auto option =
       std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   if (option != rest.end()) return unknown_option(*option, command);
+  // The program keeps what its command has not taken of the words behind "--".
+  if (rest.empty() && command.get_parent())
+    if (const std::vector<std::string> behind = command.get_parent()->remaining(); !behind.empty())
+      return fmt::format(
+          "unexpected argument \"{}\" of {} behind \"--\": leave it out, or put an option before \"--\"",
+          printable(behind.front()), typed_name(command));
   if (rest.empty()) return std::nullopt;
   const std::string word = printable(rest.front()), forgotten = option_of(rest.front());
   return "unexpected argument \"" + word + "\" of " + typed_name(command) +
@@ -130,6 +137,23 @@ std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app, co
   return fmt::format("{}; see {} --help", surplus.value_or(problem(error, command)), typed_name(command));
 }
 
+/// The words of a command line, last first, as CLI11 takes them. `--NAME=` becomes `--NAME` and an empty
+/// value: CLI11 would take the next word for the value.
+std::vector<std::string> words_from_last(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  bool options_end = false;
+  for (const std::string word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
+    options_end |= word == "--";
+    const bool lacks_value = word.starts_with("--") && word.find('=') == word.size() - 1;
+    if (options_end || !lacks_value)
+      words.push_back(word);
+    else
+      words.insert(words.end(), {word.substr(0, word.size() - 1), ""});
+  }
+  std::ranges::reverse(words);
+  return words;
+}
+
 /// Layout of --help: usage, then commands or options with the word for their value.
 class HelpPage final : public CLI::Formatter {
  public:
@@ -183,7 +207,7 @@ void ProgramParser::end_help_with(const std::string& text) { program_->footer(te
 ProgramParser::Request ProgramParser::parse(int argc, const char* const* argv,
                                             const OptionOfWord& option_of) {
   try {
-    program_->parse(argc, argv);
+    program_->parse(words_from_last(argc, argv));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return {"", usage_sentence(error, *program_, option_of), ""};
     std::ostringstream page;  // --help, --version

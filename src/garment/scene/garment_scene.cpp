@@ -410,8 +410,11 @@ SceneParts read(const SceneSpec& spec) {
   SceneParts parts{{cut->build.placed.size(), cut->build.springs.size()},
                    stated(spec),
                    [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
-  if (const auto* scan = std::get_if<BodyFile>(&garment_of(spec).body))
+  if (const auto* scan = std::get_if<BodyFile>(&garment_of(spec).body)) {
+    const Surface& surface = body->surface;
     parts.files.push_back(spec.file.parent_path() / scan->file);
+    parts.files_fnv1a_64 = fnv1a_64(bytes_of(surface.triangles), fnv1a_64(bytes_of(surface.points)));
+  }
   return parts;
 }
 

@@ -168,12 +168,15 @@ json variables_json(const std::vector<std::pair<std::string, std::string>>& vari
   return environment;
 }
 
+std::vector<FileHash> read_hashes(const Place& hashes) {
+  return hashes.members([](const std::string& name, const Place& value) {
+    return FileHash{name, value.hash()};
+  });
+}
+
 BackendProgramRecord read_program(const std::string& name, const Place& program) {
-  BackendProgramRecord record{
-      name, program["command"].list([](const Place& word) { return word.text(); }),
-      program["files_fnv1a_64"].members([](const std::string& file, const Place& value) {
-        return FileHash{file, value.hash()};
-      })};
+  BackendProgramRecord record{name, program["command"].list([](const Place& word) { return word.text(); }),
+                              read_hashes(program["files_fnv1a_64"])};
   if (const auto environment = program.find("environment")) record.environment = read_variables(*environment);
   if (const auto processes = program.find("processes")) {
     record.ranks = (*processes)["ranks"].count<int>();
@@ -211,9 +214,12 @@ Provenance read_document(const Place& document) {
   if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
   if (const auto program = document.known("program_fnv1a_64")) provenance.program_fnv1a_64 = program->hash();
   if (const auto memory = document.known("device_memory")) provenance.device_memory = memory->text();
-  provenance.scenes = document["scenes_fnv1a_64"].members([](const std::string& name, const Place& value) {
-    return SceneHash{name, value.hash()};
-  });
+  for (const FileHash& scene : read_hashes(document["scenes_fnv1a_64"]))
+    provenance.scenes.push_back({scene.name, scene.fnv1a_64});
+  if (const auto files = document.find("scene_files_fnv1a_64"))
+    for (const FileHash& of_scene : read_hashes(*files))
+      for (SceneHash& scene : provenance.scenes)
+        if (scene.name == of_scene.name) scene.files_fnv1a_64 = of_scene.fnv1a_64;
   provenance.command_line = document["command_line"].list(text_of);
   provenance.started_utc = document["started_utc"].text();
   if (const auto noise = document.find("noise")) provenance.noise = noise->list(text_of);
@@ -227,8 +233,11 @@ Provenance read_document(const Place& document) {
 json to_json(const Provenance& provenance) {
   const BuildInfo& build = provenance.build;
   const Machine& machine = provenance.machine;
-  json scenes = json::object();
-  for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = to_hex(scene.fnv1a_64);
+  json scenes = json::object(), scene_files = json::object();
+  for (const SceneHash& scene : provenance.scenes) {
+    scenes[scene.name] = to_hex(scene.fnv1a_64);
+    if (scene.files_fnv1a_64) scene_files[scene.name] = to_hex(*scene.files_fnv1a_64);
+  }
   return {
       {"format_version", folder_format_version},
       {"started_utc", provenance.started_utc},
@@ -267,7 +276,8 @@ json to_json(const Provenance& provenance) {
       {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
       {"backend_programs", programs_json(provenance.backend_programs)},
       {"noise", provenance.noise},
-      {"scenes_fnv1a_64", scenes}};
+      {"scenes_fnv1a_64", scenes},
+      {"scene_files_fnv1a_64", scene_files}};
 }
 
 }  // namespace

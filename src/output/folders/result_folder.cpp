@@ -78,6 +78,8 @@ std::vector<std::string> file_stems(std::span<const ResultRow> rows) {
   std::set<std::string> taken;
   for (const ResultRow& row : rows) {
     std::string stem = row.scene + '-' + row.backend + '-' + row.integrator;
+    // Characters that no trace may have in its name (trace_name_problem), as in openmp:1.
+    for (const char misread : {':', '|', '\\'}) std::ranges::replace(stem, misread, '_');
     if (stem.size() > longest || stem.find('/') != std::string::npos || taken.contains(stem)) {
       const std::string hash = to_hex(fnv1a_64(row.scene + '/' + row.backend + '/' + row.integrator));
       std::ranges::replace(stem, '/', '_');

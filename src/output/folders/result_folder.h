@@ -21,8 +21,9 @@ inline constexpr const char* programs_name = "programs";
 /// Subfolder with the traces of a bench, of each row one named by file_stems() and .h5, and its .xdmf.
 inline constexpr const char* traces_name = "traces";
 
-/// Names of each row's files without extension: SCENE-BACKEND-INTEGRATOR. If an earlier row has that name, or
-/// it is too long or not a valid file name, it is shortened and ends in a hash of the three.
+/// Names of each row's files without extension: SCENE-BACKEND-INTEGRATOR, with _ in the place of characters
+/// that no trace may have in its name. If an earlier row has that name, or it is too long or not a valid file
+/// name, it is shortened and ends in a hash of the three.
 std::vector<std::string> file_stems(std::span<const ResultRow> rows);
 
 /// The results of one run of `mssim bench`: timings.csv, samples.csv, garment.csv for garments,

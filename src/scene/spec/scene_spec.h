@@ -149,6 +149,8 @@ struct SceneParts {
   /// Builds the scene for whose spec they were read. Throws SceneError for inconsistent content.
   std::function<BuiltScene(const SceneSpec& spec)> build;
   std::vector<std::filesystem::path> files = {};  ///< all that were read, with the scene's own
+  /// Hash of the meshes or of the body that the files made; nothing if the scene file names none.
+  std::optional<std::uint64_t> files_fnv1a_64 = {};
 };
 
 class FieldVisitor;

@@ -138,7 +138,7 @@ struct Method {
 
 /// Description of the program for mssim.
 struct About {
-  std::string device = "cpu";        ///< device it runs on; unless it begins with cpu, no roofline comparison
+  std::string device = "cpu";        ///< "cpu", or "cpu " and a text; for others no roofline comparison
   std::string precision = "double";  ///< "single", "double", ...
   std::string note;                  ///< for readers of its times: version, settings
   int threads = 0;                   ///< CPUs that it uses; 0: the number requested

@@ -30,6 +30,8 @@ int main() {
         }
       }
     };
-    return mssim_backend::stepped_by(system, method, acceleration);
+    auto backend = mssim_backend::stepped_by(system, method, acceleration);
+    backend->about.threads = 1;
+    return backend;
   });
 }

@@ -24,4 +24,4 @@ def prepare(system, method):
     return step
 
 
-mssim_backend.serve(prepare, precision="double", note="NumPy " + np.__version__)
+mssim_backend.serve(prepare, threads=1, precision="double", note="NumPy " + np.__version__)

@@ -23,7 +23,12 @@ import sys
 import traceback
 from types import SimpleNamespace
 
-import numpy as np
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    if "MSSIM_SOCKET" not in os.environ:
+        raise
+    np = None  # the end of this file tells mssim
 
 __all__ = ["Method", "System", "Unavailable", "Unsupported", "say", "serve"]
 
@@ -128,7 +133,7 @@ class Method:
 def say(*, device=None, threads=None, precision=None, note=None):
     """Tells mssim more about the program. `prepare` may call it; the last value counts.
 
-    device      device it runs on (default: cpu; a value that does not begin with cpu disables the roofline comparison)
+    device      device it runs on (default: cpu; others than "cpu" and "cpu ..." disable the roofline comparison)
     threads     CPUs that it uses (default: the number requested)
     precision   "single", "double", ...
     note        for readers of its times: version, settings
@@ -298,9 +303,12 @@ class _StepFunction:
 
 def _read_system(path, scene, dt, threads):
     try:
+        import numpy  # noqa: F401  h5py would fail without a name
         import h5py
-    except ModuleNotFoundError:
-        raise Unavailable(f"{sys.executable} has no module h5py: install python3-h5py, or h5py with pip") from None
+    except ModuleNotFoundError as missing:
+        raise Unavailable(
+            f"{sys.executable} has no module {missing.name}: install python3-{missing.name}, or {missing.name} with pip"
+        ) from None
     with h5py.File(path, "r") as file:
         return System(file, scene, dt, threads)
 
@@ -338,3 +346,8 @@ def _described(error):
     program = getattr(sys.modules.get("__main__"), "__file__", None)
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == program]
     return f"line {lines[-1]}: {text}" if lines else text
+
+
+if np is None:  # the program itself would fail at its import
+    serve(None)
+    sys.exit()

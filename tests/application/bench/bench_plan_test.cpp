@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "application/bench/suites.h"
@@ -42,6 +43,19 @@ TEST_F(BenchPlanTest, HoldsWhatABenchOfItsScenesTakes) {
   EXPECT_EQ(scene.memory_bytes, bench_memory_needed(plan.settings, scene.size));
   EXPECT_EQ(scene.time.round, expected_time(plan.settings, scene.size).round);
   EXPECT_FALSE(plan.uses_device);
+}
+
+TEST_F(BenchPlanTest, ExpectsTheFramesOfAScenesAutomaticStep) {
+  options_.fps = 60;
+  for (const char* shipped : {"scenes/cloth2500.json", "scenes/box-small.json"}) {
+    nlohmann::json scene = nlohmann::json::parse(text_of(source_file(shipped)));
+    scene["dt_s"] = "auto";
+    const auto file = put("auto.json", scene.dump());
+    options_.scenes = {file.string()};
+    const int steps = steps_of_frame(60, prepare_scene(load_scene(file)).dt_s);
+    EXPECT_GT(steps, 1);
+    EXPECT_EQ(plan_of(options_).timed.front().size.frame_steps, steps) << shipped;
+  }
 }
 
 TEST_F(BenchPlanTest, ExpectsOfABackendItsOwnTime) {

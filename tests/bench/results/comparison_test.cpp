@@ -166,6 +166,18 @@ TEST(Comparability, OfARunWithItselfIsGiven) {
   EXPECT_THAT(differences(table_rows(), table_rows()), IsEmpty());
 }
 
+TEST(Comparability, DependsOnTheFilesOfASceneWhereBothAreKnown) {
+  Provenance one = made_up_provenance(), other = one, unknown = one;
+  add_scene(one, "mine", "text", 1);
+  add_scene(other, "mine", "text", 2);
+  add_scene(unknown, "mine", "text");
+  EXPECT_THAT(differences(one, one), IsEmpty());
+  EXPECT_THAT(differences(one, unknown), IsEmpty());
+  EXPECT_THAT(differences(one, other),
+              ElementsAre("the hash of the files of scene mine was 0000000000000001 and is "
+                          "0000000000000002"));
+}
+
 TEST(Comparability, DoesNotDependOnWhatAMachineDoesFromDayToDay) {
   Provenance later = made_up_provenance();
   later.machine.load_average = {7, 7, 7};

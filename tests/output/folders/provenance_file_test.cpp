@@ -36,7 +36,7 @@ Provenance full_provenance() {
       {"mine.py", {"./mine.py"}, {{"./mine.py", 2}}},
       {"mpi", {"mssim-mpi"}, {{"mssim-mpi", 5}}, {{"A", "b"}, {"C", ""}}, 4, 2, "srun"},
       {"numba", {"python3", "numba.py", "-v"}, {{"numba.py", 0xfedcba9876543210}, {"python3", 3}}}};
-  provenance.scenes = {{"cloth2500", 0xfedcba9876543210}, {"mine", 1}};
+  provenance.scenes = {{"cloth2500", 0xfedcba9876543210}, {"mine", 1, 0x1234}};
   return provenance;
 }
 
@@ -136,7 +136,7 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
     const json::json_pointer place(pointer);
     if (document[place.parent_pointer()].is_array() || pointer.starts_with("/scenes_fnv1a_64/") ||
         pointer.find("/environment/") != std::string::npos ||
-        pointer.find("/files_fnv1a_64/") != std::string::npos || pointer == "/cpu/turbo" ||
+        pointer.find("files_fnv1a_64/") != std::string::npos || pointer == "/cpu/turbo" ||
         pointer == "/cpu/smt" || pointer == "/cpu/numa_nodes" || pointer == "/cpu/generation" ||
         pointer == "/program_fnv1a_64" || pointer == "/device_memory" || pointer == "/cpu/cpu_quota" ||
         pointer == "/memory_limit_bytes" || pointer == "/format_version")
@@ -151,7 +151,7 @@ TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   json document = json_of(full_provenance());
   for (const char* later : {"turbo", "smt", "numa_nodes", "generation"}) document["cpu"].erase(later);
   for (const char* later : {"format_version", "noise", "earlier_starts_utc", "program_fnv1a_64",
-                            "device_memory", "backend_programs"})
+                            "device_memory", "backend_programs", "scene_files_fnv1a_64"})
     document.erase(later);
   const Provenance old = read_provenance(put("old.json", document.dump()));
   EXPECT_EQ(old.machine.turbo, std::nullopt);
@@ -160,6 +160,7 @@ TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   EXPECT_EQ(old.machine.cpu_generation, "");
   EXPECT_EQ(old.program_fnv1a_64, std::nullopt);
   EXPECT_TRUE(old.noise.empty() && old.earlier_starts_utc.empty() && old.backend_programs.empty());
+  EXPECT_EQ(old.scenes.back().files_fnv1a_64, std::nullopt);
   EXPECT_EQ(old.started_utc, full_provenance().started_utc);
 }
 

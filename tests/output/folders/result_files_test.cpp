@@ -263,11 +263,15 @@ TEST(FileStems, AreTheNamesOfARowAndUnambiguousAndShortEnough) {
   for (int i = 0; i < 100; ++i) letters += "\xc3\xa4";
   const std::vector<std::string> stems = file_stems(std::vector{
       row("box-small", "threads-mutex"), row("x", "y-z"), row("x-y", "z"), row(letters, letters.substr(2)),
-      row(letters.substr(2), letters), row("../../etc", "serial")});
+      row(letters.substr(2), letters), row("../../etc", "serial"), row("x", "openmp:1"), row("x", "openmp_1"),
+      row("x", "a|b\\c")});
   EXPECT_EQ(stems[0], "box-small-threads-mutex-semi-euler");
   EXPECT_EQ(stems[1], "x-y-z-semi-euler");
   EXPECT_THAT(stems[2], testing::MatchesRegex("x-y-z-semi-euler-[0-9a-f]{16}"));
   EXPECT_THAT(stems[5], AllOf(StartsWith(".._.._etc-"), Not(HasSubstr("/"))));
+  EXPECT_EQ(stems[6], "x-openmp_1-semi-euler");
+  EXPECT_THAT(stems[7], testing::MatchesRegex("x-openmp_1-semi-euler-[0-9a-f]{16}"));
+  EXPECT_EQ(stems[8], "x-a_b_c-semi-euler");
   EXPECT_EQ(std::set<std::string>(stems.begin(), stems.end()).size(), stems.size());
   for (const std::string& stem : stems) {
     EXPECT_LE(stem.size(), 240U);
