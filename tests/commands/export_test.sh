@@ -42,7 +42,7 @@ expect 2 'cloth.vtkhdf: .*H5MD' export cloth.vtkhdf --format obj --out never/a.o
 expect 2 'the same file' export cloth.h5 --format vtkhdf --out ./cloth.h5
 cp cloth.h5 same-000001.ply
 expect 2 'the same file' export same-000001.ply --format ply --frames 0,1 --out same.ply
-expect 2 '--out is never/a.ply, .*OBJ: give a.obj' export cloth.h5 --format obj --out never/a.ply
+expect 2 '--out is never/a.ply, .*OBJ: give never/a.obj' export cloth.h5 --format obj --out never/a.ply
 expect 2 '--out is cloth.xdmf, .*VTKHDF: give cloth.vtkhdf' export cloth.h5 --format vtkhdf --out cloth.xdmf
 expect 4 'cannot write no/such/a.ply' export cloth.h5 --format ply --out no/such/a.ply
 expect 4 'cannot write no/such/a.vtkhdf' export cloth.h5 --format vtkhdf --out no/such/a.vtkhdf
