@@ -484,23 +484,20 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
   }
 }
 
-void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
-  const std::string option = given.ranks > 0 ? "--ranks" : "--launcher";
-  if (given.ranks == 0 && given.launcher.empty()) return;
+void require_use_of_options(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
+  const auto require = [&](std::string_view option, bool is_given, std::string_view backends,
+                           std::string_view one, const auto& uses) {
+    if (is_given && std::ranges::none_of(rows, uses))
+      throw UsageError("{} is for backends {}, and none of these does: add --backend {}, or leave it out",
+                       option, backends, one);
+  };
   const auto in_ranks = [](const BackendInfo* info) { return info->program && info->program->in_ranks; };
-  if (std::ranges::none_of(rows, in_ranks))
-    throw UsageError(option +
-                     " is for backends that run in several processes, and none of these does: add --backend "
-                     "mpi, or leave it out");
-}
-
-void require_device(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
-  if (given.device.empty()) return;
-  if (std::ranges::none_of(rows, &BackendInfo::uses_device))
-    throw UsageError(
-        "--device is for backends that use OpenCL, and none of these does: add --backend opencl, or leave it "
-        "out");
-  find_opencl_device(given.device);
+  require("--ranks", given.ranks > 0, "that run in several processes", "mpi", in_ranks);
+  require("--launcher", !given.launcher.empty(), "that run in several processes", "mpi", in_ranks);
+  require("--device", !given.device.empty(), "that use OpenCL", "opencl", &BackendInfo::uses_device);
+  require("--instruction-set", !given.instruction_set.empty(), "that have vector code per set", "openmp",
+          [&](const BackendInfo* info) { return info->has_vectors || in_ranks(info); });
+  if (!given.device.empty()) find_opencl_device(given.device);
 }
 
 int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution) {

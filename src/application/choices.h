@@ -150,13 +150,9 @@ class BackendChoice {
 void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
                   const ExecutionOptions& execution);
 
-/// Throws UsageError if --ranks or --launcher is given but would be ignored, because none of these rows runs
-/// in processes.
-void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
-
-/// If --device is given, throws UsageError if none of these rows needs a device, and Unavailable if no device
-/// has that name.
-void require_device(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
+/// Throws UsageError if --ranks, --launcher, --device or --instruction-set is given but none of these rows
+/// uses it, and Unavailable if no device has the name that --device gives.
+void require_use_of_options(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
 
 /// Largest number of processes of any of these rows.
 int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution);

@@ -226,8 +226,7 @@ int run_guide(const GuideOptions& options) {
   GuidePlan plan;
   BackendChoice choice(table_backends(), options.own_backends, options.scenes);
   plan.backends = options.backends.empty() ? guide_backends() : choice.require_all(options.backends);
-  require_use_of_ranks(options.execution, plan.backends);
-  require_device(options.execution, plan.backends);
+  require_use_of_options(options.execution, plan.backends);
   plan.integrators = chosen_integrators(options.integrators, every_integrator);
   plan.scenes = asked_scenes(options);
   plan.execution = complete(options.execution);

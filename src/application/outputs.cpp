@@ -57,9 +57,9 @@ void require_extension(const NamedFile& file, const std::string& content,
                        const std::vector<std::string_view>& extensions) {
   const std::string extension = file.path.extension().string();
   if (extension.empty() || std::ranges::find(extensions, to_lower(extension)) != extensions.end()) return;
-  throw UsageError("{} is {}, but what is written is {}: give {}{}", file.role,
-                   printable(file.path.string(), 1000), content, printable(file.path.stem().string(), 1000),
-                   extensions.front());
+  throw UsageError("{} is {}, but what is written is {}: give {}", file.role,
+                   printable(file.path.string(), 1000), content,
+                   printable(fs::path(file.path).replace_extension(extensions.front()).string(), 1000));
 }
 
 void require_distinct(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read) {

@@ -426,12 +426,13 @@ int run_scene(RunOptions options) {
   const Integrator& integrator = require_integrator(options.integrator);
   BackendChoice choice(with_garment_backends(table_backends()), options.own_backends, {options.scene});
   BackendInfo info = choice.require(options.backend);
-  if (info.in_double && options.precision == "single")
-    throw UsageError("--precision single cannot be used with --backend {}: leave one of them out",
-                     options.backend);
+  const bool chooses_itself =
+      info.program && !is_shipped(std::string(info.name.substr(0, info.name.find(':'))));
+  if ((info.in_double || chooses_itself) && options.precision == "single")
+    throw UsageError("--precision single cannot be used with --backend {}{}: leave one of them out",
+                     options.backend, chooses_itself ? ", which chooses its precision itself" : "");
   info.in_double |= options.precision == "double";
-  require_use_of_ranks(options.execution, {&info});
-  require_device(options.execution, {&info});
+  require_use_of_options(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
   require_distinct(options.files, files_read(scene, info));

@@ -97,8 +97,12 @@ std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
   return text_of(structure_rows(rows), format);
 }
 
-/// Throws UsageError for a plan of two tables in a format of one.
-void require_one_table(const BenchPlan& plan, SummaryFormat format) {
+/// Throws UsageError for a plan of two tables in a format of one, and for one without times in a format of
+/// times.
+void require_table_for(const BenchPlan& plan, SummaryFormat format, bool dry_run) {
+  if (plan.timed.empty() && (format == SummaryFormat::github || (dry_run && format != SummaryFormat::table)))
+    throw UsageError("{} is of scenes that are timed, and there are none: leave it out, or name a --scene",
+                     dry_run ? "--format with --dry-run" : "--format github");
   if (format != SummaryFormat::csv && format != SummaryFormat::json) return;
   if (plan.described.empty() || plan.timed.empty()) return;
   throw UsageError(
@@ -227,7 +231,7 @@ int run_guide_suite(const BenchRequest& options) {
 int run(const BenchRequest& options) {
   if (options.suite == guide_suite) return run_guide_suite(options);
   BenchPlan plan = plan_of(options);
-  require_one_table(plan, options.format);
+  require_table_for(plan, options.format, options.dry_run);
   TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
   if (options.dry_run) {
     tell_plan(plan, options.format);

@@ -180,7 +180,7 @@ int run_list(const ListOptions& options) {
                  {{"--format", subject.schema && options.format != ListingFormat::table},
                   {"--device", no_backends && !options.execution.device.empty()},
                   {"--backend-folder", no_backends && !options.own_backends.folders.empty()}});
-  require_device(options.execution, table_backends());
+  require_use_of_options(options.execution, table_backends());
   std::cout << (subject.schema ? subject.schema() : to_text(subject.list(options), options.format));
   return exit_ok;
 }

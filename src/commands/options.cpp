@@ -113,9 +113,9 @@ void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::st
 PictureOptions picture_options(const PictureChoice& choice, const std::string& usual_size, int threads) {
   const auto view = view_direction(choice.view);
   if (!view)
-    throw UsageError(
-        "--view: \"" + printable(choice.view) +
-        "\" is not a view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
+    throw UsageError("--view: \"" + printable(choice.view) +
+                     "\" is not a view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in "
+                     "degrees, up to 360 and 90");
   const auto size = two_numbers(choice.size.empty() ? usual_size : choice.size, most_picture_pixels);
   if (!size)
     throw UsageError("--size: \"{}\" is not a size; give WIDTHxHEIGHT, up to {} pixels each",

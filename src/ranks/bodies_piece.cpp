@@ -54,10 +54,9 @@ std::string bodies_in_words(std::size_t count) {
 
 std::vector<std::vector<BodyShare>> shares_for(int ranks, const std::vector<std::size_t>& nodes) {
   if (auto shares = body_shares(nodes, ranks)) return std::move(*shares);
-  throw Unsupported(
-      "{} cannot be cut for {}: a part of a body has at least {} nodes, so give at most --ranks {}",
-      bodies_in_words(nodes.size()), pluralize(static_cast<std::uint64_t>(ranks), "rank"), least_share,
-      most_ranks(nodes, ranks));
+  throw Unsupported("{} cannot be cut for {}: a part of a body has at least {} nodes, so give at most {}",
+                    bodies_in_words(nodes.size()), pluralize(static_cast<std::uint64_t>(ranks), "rank"),
+                    least_share, pluralize(static_cast<std::uint64_t>(most_ranks(nodes, ranks)), "rank"));
 }
 
 std::vector<std::size_t> nodes_of(const std::vector<SceneCounts>& bodies) {

@@ -198,10 +198,9 @@ class ClothPiece final : public Piece {
 void require_columns(std::size_t columns, const Integrator& integrator, int ranks) {
   const std::size_t least = ghost_columns(integrator, 1);
   if (ranks > 1 && columns / static_cast<std::size_t>(ranks) < least)
-    throw Unsupported(
-        "{} cannot be cut for {}: a step of {} needs {} columns in each, so give at most --ranks {}",
-        pluralize(columns, "column"), pluralize(static_cast<std::uint64_t>(ranks), "rank"), integrator.name,
-        least, std::max<std::size_t>(1, columns / least));
+    throw Unsupported("{} cannot be cut for {}: a step of {} needs {} columns in each, so give at most {}",
+                      pluralize(columns, "column"), pluralize(static_cast<std::uint64_t>(ranks), "rank"),
+                      integrator.name, least, pluralize(std::max<std::size_t>(1, columns / least), "rank"));
 }
 
 std::unique_ptr<Piece> make_cloth_piece(const Session& session, const RankJob& job) {

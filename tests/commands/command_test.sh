@@ -98,6 +98,15 @@ for command in 'bench --scene cloth2500' 'bench --scene cloth2500 --dry-run' 'be
 done
 # A list that would not use an option refuses it.
 expect 2 'list devices takes no --device' list devices --device 0
+expect 2 '--instruction-set is for backends that have vector code .*leave it out' run --scene cloth2500 --backend serial --instruction-set AVX2
+printf '#!/bin/sh\nexit 3\n' >"$work/own-program" && chmod +x "$work/own-program"
+expect 2 'precision single cannot be used with --backend .*own-program, which chooses its precision itself' \
+  run --scene cloth2500 --backend "$work/own-program" --precision single
+for arguments in "--format github" "--dry-run --format json" "--dry-run --format csv"; do
+  # shellcheck disable=SC2086 # words of their own
+  expect 2 '--format.* is of scenes that are timed, and there are none: leave it out' bench --suite table2 $arguments --out "$work/never"
+done
+expect 2 '--view: "361,0" is not a view; .*up to 360 and 90' render --scene cloth2500 --view 361,0
 expect 2 '--device is for backends that use OpenCL' run --scene cloth2500 --device 0
 expect 2 'list scenes takes no --backend-folder' list scenes --backend-folder "$work"
 expect 2 'list schema takes no --format' list schema --format csv

@@ -46,7 +46,7 @@ cp cloth.h5 fall.vtkhdf.part
 expect 2 'temporary file of --out and the trace .*fall.vtkhdf.part; give them different names' \
   export fall.vtkhdf.part --format vtkhdf --out fall.vtkhdf
 cmp -s cloth.h5 fall.vtkhdf.part || fail "export has replaced the trace that it reads"
-expect 2 '--out is never/a.ply, .*OBJ: give a.obj' export cloth.h5 --format obj --out never/a.ply
+expect 2 '--out is never/a.ply, .*OBJ: give never/a.obj' export cloth.h5 --format obj --out never/a.ply
 expect 2 '--out is cloth.xdmf, .*VTKHDF: give cloth.vtkhdf' export cloth.h5 --format vtkhdf --out cloth.xdmf
 expect 4 'cannot write no/such/a.ply' export cloth.h5 --format ply --out no/such/a.ply
 expect 4 'cannot write no/such/a.vtkhdf' export cloth.h5 --format vtkhdf --out no/such/a.vtkhdf

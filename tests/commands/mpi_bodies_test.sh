@@ -61,6 +61,6 @@ echo "the long request took $(value wall_s) s"
 
 # More ranks than parts.
 ends 3 bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 9 --threads 1 --rounds 1 --out nine
-fails_with 'unsupported: 1 body cannot be cut for 9 ranks: a part of a body has at least 16 nodes, so give at most --ranks 4"' nine
+fails_with 'unsupported: 1 body cannot be cut for 9 ranks: a part of a body has at least 16 nodes, so give at most 4 ranks"' nine
 
 mixed_processors ./unequal.json 3 ./one.json

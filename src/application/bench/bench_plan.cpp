@@ -138,8 +138,7 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   settings.backends = choice.with_fewer_threads(settings.backends, options.threads, settings.execution);
   if (has_variants(options))
     settings.backends = choice.with_variants(settings.backends, variants_of_suite(options.suite));
-  require_use_of_ranks(options.execution, settings.backends);
-  require_device(options.execution, settings.backends);
+  require_use_of_options(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.windows = options.windows;
   settings.fps = options.fps;
