@@ -114,6 +114,7 @@ for number in rest_length stiffness damping; do
 done
 
 # On a terminal a run says how far it is, and takes the line away; elsewhere it says nothing.
+export TERM=xterm
 script -qec "'$mssim' run --scene cloth2500 --threads 1 --duration 1" /dev/null </dev/null >terminal
 grep -q 'cloth2500  \[.*\]  about 0:[0-9][0-9] left  step [0-9]* of 20000' terminal || fail "no progress: $(head -c 500 terminal)"
 script -qec "'$mssim' run --scene jeans1k --threads 1" /dev/null </dev/null >terminal
