@@ -178,11 +178,13 @@ void expect_same_measures(const BodyProfile& profile, const BodyProfile& expecte
     EXPECT_NEAR(profile.back(y), expected.back(y), 0.006) << y;
   }
   for (const double y : {0.09, 0.46, 0.62, 0.70}) {
-    EXPECT_NEAR(profile.leg_middle(y).x, expected.leg_middle(y).x, 0.004) << y;
-    for (const int side : {-1, 1})
+    for (const int side : {-1, 1}) {
+      EXPECT_NEAR(profile.leg_middle(y, side).x, expected.leg_middle(y, side).x, 0.004)
+          << y << " side " << side;
       EXPECT_NEAR(profile.leg_girth(y, side), expected.leg_girth(y, side),
                   fraction * expected.leg_girth(y, side))
           << y << " side " << side;
+    }
   }
 }
 
