@@ -52,8 +52,8 @@ fit | cmp - alone || fail "other frames change the dressing"
 few=$(numbers /particles/garment/position/step few.h5)
 [ "${few##* "$iterations" }" = "" ] && [ "$(wc -w <<<"$few")" -lt 10 ] || fail "7 frames a second are at $few"
 for vector in position velocity; do
-  last "$vector" few.h5 $(($(wc -w <<<"$few") - 1)) >few
-  [ "$(wc -w <few)" -eq 3000 ] && last "$vector" jeans.h5 $((frames - 1)) | cmp - few || fail "the last ${vector}s differ"
+  last "$vector" few.h5 $(($(wc -w <<<"$few") - 1)) >numbers
+  [ "$(wc -w <numbers)" -eq 3000 ] && last "$vector" jeans.h5 $((frames - 1)) | cmp - numbers || fail "the last ${vector}s differ"
 done
 
 # What does not go, in a sentence, and nothing is written.

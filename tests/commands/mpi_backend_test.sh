@@ -168,4 +168,5 @@ ends 0 bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ran
 nothing_left "the end of all"
 segments=$(find /dev/shm -maxdepth 1 -name '*_segment.*' -newer begun)
 [ -z "$segments" ] || fail "ranks leave shared memory behind: $segments"
-[ -z "$(ls tmp tmp1 tmp2 tmp3 tmp4 | grep -v :)" ] || fail "folders stay behind: $(ls tmp tmp1 tmp2 tmp3 tmp4)"
+left=$(find tmp tmp1 tmp2 tmp3 tmp4 -mindepth 1)
+[ -z "$left" ] || fail "folders stay behind: $left"

@@ -36,6 +36,7 @@ expect 4 'no/f' bench --scene cloth2500 --backend serial --out "$work/two"$'\n'"
 grep -q $'\x1b' "$work/err" && fail "a terminal would take what is said for a command"
 
 # Names that would make one file of two rows, or that no file can have.
+# shellcheck disable=SC2016 # the program expands it
 printf '#!/bin/sh\necho "${0##*/}"\nexit 3\n' >"$work/z"
 chmod +x "$work/z"
 cp "$work/z" "$work/y-z"

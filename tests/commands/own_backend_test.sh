@@ -89,7 +89,7 @@ expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend s
 mkdir again/programs/mine
 echo mine | tee again/programs/mine/file >again/notes.txt
 ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --overwrite
-[ "$(find again/programs again/notes.txt -type f | xargs)" = 'again/programs/mine/file again/notes.txt' ] || fail "--overwrite leaves, of programs and the user: $(find again/programs)"
+[ "$(find again/programs again/notes.txt -type f -printf '%p ')" = 'again/programs/mine/file again/notes.txt ' ] || fail "--overwrite leaves, of programs and the user: $(find again/programs)"
 
 # Ctrl-C and Ctrl-\ end a wait, without --backend-limit of two minutes, and leave nothing; nor does SIGKILL.
 describe hangs

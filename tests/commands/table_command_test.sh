@@ -191,10 +191,12 @@ typeset "$work/both"
 
 # Names with what LaTeX takes for its own, on rows that are not verified, too.
 cp -r "$results/table1/zen4" "$work/odd"
+# shellcheck disable=SC2016 # a dollar sign
 name='a_b%c\&d#e$f{g}~h^i\\jЖ[k'
 sed -i "s/^cloth2500,/$name,/" "$work/odd/timings.csv" "$work/odd/samples.csv"
 sed -i '/^cloth4900,.*,openmp,.*,rk4,/s/,true,ok,/,false,ok,/' "$work/odd/timings.csv"
 ends 0 table "$work/odd" --format latex --out "$work/odd-paper"
+# shellcheck disable=SC2016
 escaped='a\_b\%c\&d\#e\$f\{g\}\textasciitilde{}h\textasciicircum{}i\textbackslash{}j{[}U+0416]{[}k'
 for file in times.tex methods.tex; do grep -qF "$escaped" "$work/odd-paper/$file" || fail "$file does not have $escaped"; done
 grep -F 'cloth4900' "$work/odd-paper/times.tex" | grep 'openmp & rk4' | grep -q '& -- &.*\\textbf{no}' || fail "a row that is not verified is not marked"

@@ -35,6 +35,7 @@ units=$(column_of whole/timings.csv threads | sed -n 3p)
 legend="(!) on more processors than requested: hybrid ($units instead of 1), opencl ($units instead of 1)"
 grep -qxF "$legend" out || fail "the table does not say what the mark means: $(cat out)"
 grep -qxF "$legend." whole/table1.md || fail "table1.md does not say what the mark means: $(cat whole/table1.md)"
+# shellcheck disable=SC2016 # Markdown's code
 [ "$(grep -Ec '^\| `(opencl|hybrid)`.*\*\* \(!\)' whole/table1.md)" -eq 2 ] || fail "table1.md marks no rows: $(cat whole/table1.md)"
 ends 0 run --scene cloth2500 --backend opencl --threads 1 --duration 0.01
 grep -q "^mssim: opencl runs on $units processors instead of 1: the driver of .* cannot divide it$" err || fail "run says: $(cat err)"
