@@ -2,6 +2,13 @@
 # Shared functions of the scripts: help, packages and builds. Sourced, with `set -euo pipefail`. Messages go to stderr; without work to do,
 # nothing is printed.
 
+# The numbers of mssim and of results have a decimal point, also for awk, sort and printf of a user whose language has a comma.
+[[ ! ${LC_ALL-} ]] || export LANG=$LC_ALL
+unset LC_ALL
+export LC_NUMERIC=C
+# cd would print folders that it finds with it.
+unset CDPATH
+
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." >/dev/null && pwd -P)
 
 # Exit code of mssim for a missing device or program.

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "application/prepared_scene.h"
@@ -34,11 +36,16 @@ using namespace mssim;
 class Thieves {
  public:
   explicit Thieves(int count) {
-    for (int i = 0; i < count; ++i)
-      if (const pid_t child = fork(); child == 0)
-        steal(i);
-      else
-        children_.push_back(child);
+    for (int i = 0; i < count; ++i) {
+      const pid_t child = fork();
+      if (child == 0) steal(i);
+      // kill() would take -1 for every process.
+      if (child < 0) {
+        send(SIGKILL);
+        throw std::system_error(errno, std::generic_category(), "a process cannot be made");
+      }
+      children_.push_back(child);
+    }
   }
   ~Thieves() { send(SIGKILL); }
   bool none() const { return children_.empty(); }

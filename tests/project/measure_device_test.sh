@@ -36,8 +36,15 @@ runs 2 'exists; name another pack' "${pack_it[@]}" "$pack"
 
 runs 0 '' "$measure" --help
 grep -q '^  ./measure \[OPTIONS\]$' "$place/out" || fail 'its help shows how to call it'
-runs 2 'no part table9' "$measure" --parts races,table9
+runs 2 'no part "table9"' "$measure" --parts races,table9
 runs 2 '^measure: --minutes takes a number' "$measure" --minutes soon
+runs 2 '^measure: --minutes takes a number above 0' "$measure" --minutes 0.0
+runs 2 'there is no part "";' "$measure" --parts races,,table1
+runs 2 '--parts names none' "$measure" --parts ''
+runs 2 'names races twice' "$measure" --parts races,table1,races
+# cd prints folders that it finds with CDPATH.
+(cd "$place" && CDPATH=.:/tmp runs 3 'there is no OpenCL driver here' \
+  env OPENCL_VENDOR_PATH="$place/none" LD_LIBRARY_PATH= "a pack/measure" --out "$place/without")
 runs 3 '^measure: there is no OpenCL driver here: .*/none registers none, .*LD_LIBRARY_PATH$' \
   env OPENCL_VENDOR_PATH="$place/none" LD_LIBRARY_PATH= "$measure"
 [[ $(wc -l <"$place/err") == 1 && ! -s $place/out ]] || fail 'the refusal is one sentence'
