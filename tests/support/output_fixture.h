@@ -53,6 +53,13 @@ inline int status_in_child(const std::function<int()>& body) {
   return status;
 }
 
+/// Takes from root what it may do with every file; false if the system refuses. For a child: there is no way
+/// back.
+inline bool become_nobody() {
+  constexpr uid_t nobody = 65534;
+  return ::geteuid() != 0 || ::seteuid(nobody) == 0;
+}
+
 /// The exit status of `body`, or -1 when it did not exit.
 inline int exit_of_child(const std::function<int()>& body) {
   const int status = status_in_child(body);

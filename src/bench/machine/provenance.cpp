@@ -221,12 +221,26 @@ std::string now_utc() {
 /// Smallest load of other programs, as an average of the last minute, that is worth a warning.
 constexpr double least_load = 0.25;
 
+/// Whether the variables let OpenMP keep threads on their CPUs. A list of words has one for each level of
+/// nested regions, and only the first counts. A word that is none of OpenMP's says nothing.
 bool binds_threads(const Provenance& provenance) {
-  return std::ranges::any_of(provenance.thread_environment, [](const auto& variable) {
-    const auto& [name, value] = variable;
-    return name == "GOMP_CPU_AFFINITY" || name == "OMP_PLACES" ||
-           (name == "OMP_PROC_BIND" && value != "false" && value != "FALSE");
-  });
+  bool has_places = false;
+  for (const auto& [name, value] : provenance.thread_environment) {
+    std::string word = to_lower(value);
+    word.erase(0, word.find_first_not_of(' '));
+    word.erase(std::min(word.size(), word.find_first_of(" ,(")));
+    const auto is_one_of = [&](std::initializer_list<std::string_view> words) {
+      return std::ranges::find(words, word) != words.end();
+    };
+    const char first = word.empty() ? ' ' : word[0];
+    if (name == "OMP_PROC_BIND" && word == "false") return false;
+    if (name == "OMP_PROC_BIND" && is_one_of({"true", "close", "spread", "master", "primary"})) return true;
+    if (name == "OMP_PLACES" && (first == '{' || first == '!' ||
+                                 is_one_of({"threads", "cores", "sockets", "ll_caches", "numa_domains"})))
+      has_places = true;
+    if (name == "GOMP_CPU_AFFINITY" && first >= '0' && first <= '9') has_places = true;
+  }
+  return has_places;
 }
 
 }  // namespace

@@ -30,6 +30,7 @@
 #include <exception>
 #include <fstream>
 #include <functional>
+#include <locale>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -372,6 +373,15 @@ inline Slot slot_named(const std::string& name) {
   return static_cast<Slot>(found - slot_names.begin());
 }
 
+/// A number in the words of mssim, which has a decimal point in every locale of the program.
+inline double number_of(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double number = 0;
+  if (!(stream >> number)) throw std::runtime_error("mssim sends \"" + text + "\" for a number");
+  return number;
+}
+
 /// "v_next 1 0 v 1 1 a"
 inline Assignment assignment_of(std::istream& words) {
   Assignment assignment;
@@ -379,7 +389,7 @@ inline Assignment assignment_of(std::istream& words) {
   words >> slot;
   assignment.out = slot_named(slot);
   while (words >> coefficient >> power >> slot)
-    assignment.terms.push_back({std::stod(coefficient), std::stoi(power), slot_named(slot)});
+    assignment.terms.push_back({number_of(coefficient), std::stoi(power), slot_named(slot)});
   return assignment;
 }
 
@@ -397,7 +407,7 @@ struct Introduction {
       if (word == "mssim-backend" && rest != protocol)
         throw std::runtime_error("mssim speaks protocol " + rest + ", mssim_backend.h " + protocol);
       if (word == "scene") system.scene = rest;
-      if (word == "dt") system.dt = std::stod(rest);
+      if (word == "dt") system.dt = number_of(rest);
       if (word == "threads") system.threads = std::stoi(rest);
       if (word == "integrator") method.name = rest;
       if (word == "assign")

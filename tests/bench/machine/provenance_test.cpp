@@ -241,8 +241,26 @@ TEST(Noise, ComesFromThreadsThatMayMove) {
   EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")));
   provenance.thread_environment = {};
   EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")));
-  provenance.thread_environment = {{"OMP_PLACES", "cores"}};
-  EXPECT_THAT(noise_of(provenance), ElementsAre());
+  using Variables = std::vector<std::pair<std::string, std::string>>;
+  for (const Variables& binds : {Variables{{"OMP_PLACES", "cores"}},
+                                 {{"OMP_PLACES", " {0}:4:1"}},
+                                 {{"GOMP_CPU_AFFINITY", "0-3"}},
+                                 {{"OMP_PROC_BIND", "Spread, close"}},
+                                 {{"OMP_PLACES", "LL_CACHES(2)"}, {"OMP_PROC_BIND", "nonsense"}}}) {
+    provenance.thread_environment = binds;
+    EXPECT_THAT(noise_of(provenance), ElementsAre()) << binds[0].first << '=' << binds[0].second;
+  }
+  for (const Variables& moves : {Variables{{"OMP_PROC_BIND", " False"}},
+                                 {{"OMP_PROC_BIND", ""}},
+                                 {{"OMP_PROC_BIND", "nonsense"}},
+                                 {{"OMP_PLACES", "nonsense"}},
+                                 {{"GOMP_CPU_AFFINITY", ""}},
+                                 {{"OMP_PLACES", "cores"}, {"OMP_PROC_BIND", "FALSE"}},
+                                 {{"GOMP_CPU_AFFINITY", "0-1"}, {"OMP_PROC_BIND", "false"}}}) {
+    provenance.thread_environment = moves;
+    EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")))
+        << moves[0].first << '=' << moves[0].second;
+  }
   provenance.thread_environment = {};
   provenance.threads = 1;
   EXPECT_THAT(noise_of(provenance), ElementsAre());

@@ -226,8 +226,7 @@ TEST_F(Trace, CannotBeginInAFolderThatIsMissingOrMayNotBeWritten) {
   EXPECT_THAT([&] { begin(file()); }, ThrowsMessage<WriteError>(HasSubstr("is a folder")));
   EXPECT_EQ(exit_of_child([&] {
               std::filesystem::permissions(folder(), std::filesystem::perms{0555});
-              constexpr uid_t nobody = 65534;
-              if (::geteuid() == 0 && ::seteuid(nobody) != 0) return 2;
+              if (!become_nobody()) return 2;
               EXPECT_THAT([&] { begin(folder() / "other.h5"); },
                           ThrowsMessage<WriteError>(AllOf(HasSubstr("Permission denied"),
                                                           HasSubstr("a folder that you may write to"))));
