@@ -54,6 +54,13 @@ TEST(Table, AsTextIsAligned) {
   EXPECT_EQ(to_text({}), "");
 }
 
+TEST(Table, AsTextHasNoControlCharacters) {
+  Table table;
+  table.add({{"name", "x\x1b[31mred\nB"}});
+  EXPECT_EQ(to_text(table), "name\nx\\x1b[31mred\\x0aB\n");
+  EXPECT_THAT(record_text(table, 5), HasSubstr("x\\x1b[31mred\\x0aB\n"));
+}
+
 TEST(Table, OfOneRowIsTurnedWhereItIsTooWide) {
   Table table = made_up_table();
   table.rows.resize(1);
