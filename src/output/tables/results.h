@@ -97,8 +97,8 @@ std::vector<CombinationTime> read_combination_times(const std::filesystem::path&
 std::string benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance);
 
 /// The rows that are ok in github-action-benchmark's JSON ("customSmallerIsBetter"): name
-/// (scene/backend/integrator), unit, value (median) and range (the 95 % interval of the median), with device
-/// and threads as `extra`.
+/// (scene/backend/integrator), unit, value (median) and range (the 95 % interval of the median; empty with
+/// too few rounds for one), with device and threads as `extra`.
 Table github_table(std::span<const ResultRow> rows);
 
 // Rows for people.
