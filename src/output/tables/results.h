@@ -120,9 +120,10 @@ enum class ComparisonFormat { table, markdown, json };
 /// have characters outside ASCII.
 std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8 = true);
 
-/// The levels of each series of a machine's history: the first commit of each level, the number of commits,
-/// the median of their times in ms, the ratio to the level before with its 95 % interval, if there are enough
-/// commits for one, and the verdict. A series that vanished has a row without a time.
+/// The levels of each series of a machine's history, with its device as it was recorded: the first commit of
+/// each level, the number of commits, the median of their times in ms, the ratio to the level before with its
+/// 95 % interval, if there are enough commits for one, and the verdict. A series that vanished has a row
+/// without a time.
 Table history_table(const MachineHistory& machine, double threshold);
 
 // Tables of results, and helpers of tables of measured rows.
