@@ -396,8 +396,11 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
   Chart chart =
       chart_of(id, "Total energy: " + curve.name, "", {"time (s)", false}, {"total energy (J)", false});
   Series& points = chart.series.emplace_back(Series{.name = curve.name, .family = ""});
-  const std::size_t count = curve.time_s.size(), apart = std::max<std::size_t>(1, count / most_points);
-  for (std::size_t i = 0; i < count; i += apart) points.add(curve.time_s[i], curve.total_j[i]);
+  const std::size_t count = curve.time_s.size(), shown = std::min(count, most_points);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::size_t at = shown == count ? i : i * (count - 1) / (most_points - 1);  // from first to last
+    points.add(curve.time_s[at], curve.total_j[at]);
+  }
   const FoundCurve* best = nullptr;
   for (const FoundCurve& reference : references)
     if (curve.name.starts_with(reference.name) && (!best || reference.name.size() > best->name.size()))

@@ -229,6 +229,19 @@ TEST(EnergyChart, TakesTheReferenceOfTheLongestName) {
   EXPECT_EQ(energy_chart({"torus", {0}, {2}}, references, "f1-energy-0").series.size(), 1U);
 }
 
+TEST(EnergyChart, HasAtMostFortyPointsFromTheFirstToTheLast) {
+  for (const std::size_t count : {0U, 1U, 2U, 40U, 41U, 79U, 1000U}) {
+    FoundCurve curve{"cloth", std::vector<double>(count), std::vector<double>(count, 1)};
+    std::iota(curve.time_s.begin(), curve.time_s.end(), 0);
+    const Series points = energy_chart(curve, {}, "f1-energy-0").series.at(0);
+    ASSERT_EQ(points.x.size(), std::min<std::size_t>(count, 40)) << count;
+    if (count == 0) continue;
+    EXPECT_EQ(points.x.front(), curve.time_s.front());
+    EXPECT_EQ(points.x.back(), curve.time_s.back());
+    EXPECT_EQ(std::set(points.x.begin(), points.x.end()).size(), points.x.size());
+  }
+}
+
 TEST(KindOf, FollowsFromHowSpringsAreCounted) {
   ResultRow row = measured_row("serial", 1, 1.0);
   EXPECT_EQ(kind_of(row), ContentKind::cloth);
