@@ -33,6 +33,7 @@ Document times_page(const ReportFolder& folder) {
                                              grouped(its.front()->springs_unique))});
     page.emplace_back(times_of(its, folder));
   }
+  add_sentence(page, legend_of_ratios(page));
   add_rows_without_a_time(page, rows);
   return page;
 }

@@ -242,6 +242,9 @@ struct RatioInterval {
   int side_of(double limit) const { return !covers ? 0 : low > limit ? 1 : high < limit ? -1 : 0; }
 };
 
+/// A ratio of the times of two rows, with mark_of_ratio(); empty without one.
+Cell ratio_cell(const std::optional<RatioInterval>& ratio, const ResultRow* time, const ResultRow* other);
+
 /// The 95 % interval of a ratio; empty without one.
 Cell ratio_interval_cell(const std::optional<RatioInterval>& ratio);
 
