@@ -64,15 +64,13 @@ std::optional<SizeCurve::Largest> SizeCurve::largest(double frames_per_second) c
 }
 
 std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b) {
+  const auto ratio = [&](std::size_t i) { return a.samples[i].seconds_a_step / b.samples[i].seconds_a_step; };
+  const auto nodes = [&](std::size_t i) { return static_cast<double>(a.samples[i].nodes); };
   const std::size_t common = std::min(a.samples.size(), b.samples.size());
-  for (std::size_t i = 1; i < common; ++i) {
-    const double before = a.samples[i - 1].seconds_a_step / b.samples[i - 1].seconds_a_step;
-    const double here = a.samples[i].seconds_a_step / b.samples[i].seconds_a_step;
-    if ((before > 1) != (here > 1))
-      return where_one(static_cast<double>(a.samples[i - 1].nodes), before,
-                       static_cast<double>(a.samples[i].nodes), here);
-  }
-  return std::nullopt;
+  if (common == 0 || (ratio(0) > 1) == (ratio(common - 1) > 1)) return std::nullopt;
+  std::size_t first = common - 1;  // of the largest sizes, at which the same backend is the faster one
+  while ((ratio(first - 1) > 1) == (ratio(first) > 1)) --first;
+  return where_one(nodes(first - 1), ratio(first - 1), nodes(first), ratio(first));
 }
 
 void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const ExecutionOptions& execution,

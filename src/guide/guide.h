@@ -46,8 +46,10 @@ struct SizeCurve {
   std::optional<Largest> largest(double frames_per_second) const;
 };
 
-/// The number of nodes at which two backends with the same integrator take the same time per step,
-/// interpolated on logarithmic axes between samples that both have; none if one is always faster.
+/// The number of nodes from which, at all larger sizes that both backends have, the one that is slower at the
+/// smallest size takes less time per step with the same integrator. Interpolated on logarithmic axes between
+/// samples; none if the same one is faster at the smallest and the largest size: another program may have
+/// slowed a sample between them.
 std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b);
 
 /// The number of nodes along a side of the measured cloths: each but the last has four times the nodes of the

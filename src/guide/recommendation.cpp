@@ -39,9 +39,9 @@ std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const 
 
 std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
   const double frame_s = steps_a_frame(point.dt_s, wish.frames_per_second) * point.seconds_a_step;
-  return fmt::format("{} for {} frames per second (up to {})",
+  return fmt::format("{} for {} frames per second",
                      frame_s * wish.frames_per_second <= 1 ? "fast enough" : "too slow",
-                     decimal(wish.frames_per_second), three_digits(1 / frame_s));
+                     decimal(wish.frames_per_second));
 }
 
 std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const CostAtError& cost) {
@@ -55,7 +55,10 @@ std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const 
                           guide.trusted.horizon_s > limit->measured.stable_s;  // else that limits it
   std::string text =
       fmt::format("Take {} with a step of {} s{}, which is {} per frame at {} frames per second.",
-                  named(point), two_digits(point.dt_s), is_limited ? ", the longest that is stable" : "",
+                  named(point), two_digits(point.dt_s),
+                  is_limited ? fmt::format(", {} of the longest that is stable",
+                                           two_digits(point.dt_s / limit->measured.stable_s))
+                             : "",
                   pluralize(steps_a_frame(point.dt_s, rate), "step"), decimal(rate));
   if (steps)
     text += fmt::format(" A step of about {} s should suffice, too, but was not measured.",

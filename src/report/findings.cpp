@@ -109,7 +109,7 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
                                   " excluded from all statistics: " + join(wrong, "; ") + "."});
   if (without_time > 0)
     findings.push_back({false, subject(without_time, "row", " has", " have") +
-                                   " no time; the list below the tables says why."});
+                                   " no time; the list *Rows without a time* says why."});
   findings.push_back(about_speedups(rows));
   return findings;
 }
@@ -167,7 +167,7 @@ Table times_of(RowPointers rows, const ReportFolder& folder) {
     table.rows.push_back({row->scene, shown ? Cell(row->ms_per_step) : Cell(),
                           look_on(opencl_device(*row), row->backend, provenance).name, row->integrator,
                           row->threads > 0 ? Cell(row->threads) : Cell(), interval_cell(*row),
-                          speedup ? Cell(speedup->ratio) : Cell(), ratio_interval_cell(speedup), published,
+                          ratio_cell(speedup, serial, row), ratio_interval_cell(speedup), published,
                           shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
                           verified_mark(*row)});
   }

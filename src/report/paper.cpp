@@ -33,6 +33,7 @@ Document times_page(const ReportFolder& folder) {
                                              grouped(its.front()->springs_unique))});
     page.emplace_back(times_of(its, folder));
   }
+  add_sentence(page, legend_of_ratios(page));
   add_rows_without_a_time(page, rows);
   return page;
 }
@@ -137,7 +138,11 @@ std::string scenes_of(const ReportFolder& folder, const ReportInput& input) {
   return text;
 }
 
+/// Empty if no row has a sample. Files of older versions lack the trials and outliers.
 std::string timing_of(const ReportFolder& folder) {
+  const std::string rounds = range_of(folder, &ResultRow::rounds),
+                    trials = range_of(folder, &ResultRow::warm_up_trials);
+  if (rounds == "0") return {};
   std::vector<double> seconds;
   int outliers = 0;
   for (const ResultRow& row : folder.rows) {
@@ -147,14 +152,15 @@ std::string timing_of(const ReportFolder& folder) {
   }
   std::string text = fmt::format(
       "Before the first round each combination of scene, backend and integrator was run until its last two "
-      "trials were no faster than those before ({} trials).\nEach of {} rounds took one sample of every "
+      "trials were no faster than those before{}.\nEach of {} rounds took one sample of every "
       "combination of a scene, in random order.\n",
-      range_of(folder, &ResultRow::warm_up_trials), range_of(folder, &ResultRow::rounds));
+      trials == "0" ? "" : " (" + trials + " trials)", rounds);
   if (!seconds.empty())
     text += fmt::format(
         "A sample is a number of steps between two readings of the clock; the median length of the {} "
-        "samples is \\qty{{{}}}{{\\second}}.\nAll samples count, also the {} beyond Tukey's fences.\n",
-        seconds.size(), three_digits(median(seconds)), outliers);
+        "samples is \\qty{{{}}}{{\\second}}.\nAll samples count{}.\n",
+        seconds.size(), three_digits(median(seconds)),
+        outliers == 0 ? "" : fmt::format(", also the {} beyond Tukey's fences", outliers));
   return text + fmt::format(
                     "Times are medians of the samples. Their intervals contain the median of the "
                     "distribution with a probability of at least \\qty{{{}}}{{\\percent}}, whatever the "

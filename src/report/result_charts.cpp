@@ -138,6 +138,17 @@ Series roof_line(int threads, std::vector<RoofDot> dots) {
   return line;
 }
 
+/// The backend and, if its combination has several series, what they differ in.
+std::string name_in_chart(const HistorySeries& row, const MachineHistory& machine) {
+  const auto differs = [&](auto HistorySeries::*member) {
+    return std::ranges::any_of(machine.series, [&](const HistorySeries& other) {
+      return same_combination(other, row) && other.*member != row.*member;
+    });
+  };
+  return row.backend + (differs(&HistorySeries::device) ? ", " + row.device : "") +
+         (differs(&HistorySeries::nodes) ? ", " + pluralize(row.nodes, "node") : "");
+}
+
 }  // namespace
 
 BackendLook look_on(std::string_view device, std::string_view backend, const Provenance& provenance) {
@@ -225,17 +236,18 @@ std::vector<Chart> history_charts(const MachineHistory& machine, const std::stri
     const std::string title = row.scene + ", " + row.integrator + ": time per step by commit";
     auto chart = std::ranges::find(charts, title, &Chart::title);
     if (chart == charts.end()) {
-      charts.push_back(chart_of(fmt::format("{}-{}", id, charts.size() + 1), title,
-                                "Measured on " + machine.name, {"commit, counted from 1"},
-                                {"time per step (ms)", true}));
+      charts.push_back(chart_of(
+          fmt::format("{}-{}", id, charts.size() + 1), title, "Measured on " + machine.name,
+          {.label = "commit, counted from 1", .ticks_at_values = true}, {"time per step (ms)", true}));
       chart = charts.end() - 1;
     }
     const auto number = [&](std::size_t time) { return static_cast<double>(row.at[time] + 1); };
-    Series times{.name = row.backend, .family = row.backend, .low = row.low, .high = row.high};
+    const std::string name = name_in_chart(row, machine);
+    Series times{.name = name, .family = row.backend, .low = row.low, .high = row.high};
     for (std::size_t i = 0; i < row.ms.size(); ++i) times.add(number(i), row.ms[i]);
     chart->series.push_back(std::move(times));
     if (row.changes.empty()) continue;
-    Series marks{.name = row.backend + ", change", .origin = Origin::reference, .mark = PointMark::ring};
+    Series marks{.name = name + ", change", .origin = Origin::reference, .mark = PointMark::ring};
     for (const ChangePoint& change : row.changes) marks.add(number(change.first), row.ms[change.first]);
     chart->series.push_back(std::move(marks));
   }
@@ -384,8 +396,11 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
   Chart chart =
       chart_of(id, "Total energy: " + curve.name, "", {"time (s)", false}, {"total energy (J)", false});
   Series& points = chart.series.emplace_back(Series{.name = curve.name, .family = ""});
-  const std::size_t count = curve.time_s.size(), apart = std::max<std::size_t>(1, count / most_points);
-  for (std::size_t i = 0; i < count; i += apart) points.add(curve.time_s[i], curve.total_j[i]);
+  const std::size_t count = curve.time_s.size(), shown = std::min(count, most_points);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::size_t at = shown == count ? i : i * (count - 1) / (most_points - 1);  // from first to last
+    points.add(curve.time_s[at], curve.total_j[at]);
+  }
   const FoundCurve* best = nullptr;
   for (const FoundCurve& reference : references)
     if (curve.name.starts_with(reference.name) && (!best || reference.name.size() > best->name.size()))

@@ -36,6 +36,9 @@ std::string of_each_folder(const ReportInput& input, Content content, const std:
   return text.empty() ? paragraph(without) : text;
 }
 
+/// Level of headings in the content of a folder.
+int level_in(const ReportInput& input) { return input.folders.size() < 2 ? 3 : 4; }
+
 /// A warning above the times; empty if mssim found no noise.
 std::string noise_note(const ReportFolder& folder) {
   const std::vector<std::string> noise = noise_seen(folder.where_from());
@@ -284,12 +287,16 @@ std::vector<const ResultRow*> headline_rows(RowPointers rows) {
 }
 
 std::string headline_section(const ReportInput& input) {
-  const auto times = [](const ReportFolder& folder, const std::string&) {
+  const auto times = [&](const ReportFolder& folder, const std::string&) {
     if (folder.rows.empty()) return paragraph("There are no rows.");
-    const std::vector<const ResultRow*> all = pointers_to(folder.rows);
-    return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n", noise_note(folder),
-                       html_of(times_of(headline_rows(all), folder)), pluralize(all.size(), "row"),
-                       html_of(times_of(all, folder)));
+    const std::vector<const ResultRow*> rows = pointers_to(folder.rows);
+    const Table all = times_of(rows, folder);
+    Document below;
+    add_sentence(below, legend_of_ratios(all));
+    add_rows_without_a_time(below, rows);
+    return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n{}", noise_note(folder),
+                       html_of(times_of(headline_rows(rows), folder)), pluralize(rows.size(), "row"),
+                       html_of(all), html_of(below, level_in(input)));
   };
   return paragraph("Rows of the largest scene of each kind. " + html_prose(how_to_read_times)) +
          of_each_folder(input, times);
@@ -509,11 +516,10 @@ std::string guide_of(const FoundGuide& guide, const Provenance& provenance, cons
 
 /// The folders of guides, scene by scene. Empty if there are none.
 std::string guide_section(const ReportInput& input) {
-  const int level = input.folders.size() < 2 ? 3 : 4;
   return of_each_folder(input, [&](const ReportFolder& folder, const std::string& id) {
     if (!folder.guide) return std::string();
     return (folder.rows.empty() ? noise_note(folder) : "") +
-           guide_of(*folder.guide, folder.where_from(), input.legend, id, level);
+           guide_of(*folder.guide, folder.where_from(), input.legend, id, level_in(input));
   });
 }
 

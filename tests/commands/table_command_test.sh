@@ -151,6 +151,37 @@ ends 0 table "$results/web/zen4-swiftshader-busy" --format latex --out "$work/we
 grep -qF 'scripts/mssim web -{}-{}out web.html' "$work/web/artifact.tex" || fail "how to make the page: $(cat "$work/web/artifact.tex")"
 ! grep -q 'end of one round' "$work/web/methods.tex" || fail "the page does not compare the ends of samples"
 grep -q 'end of one round' "$work/table1/methods.tex" || fail "the check of samples is missing"
+# How rows were timed has no number that the files lack: of a run in which all rows failed, and of one of an older version.
+for folder in failed old; do cp -r "$results/table1/zen4" "$work/$folder"; done
+python3 - "$work" <<'PYTHON'
+import csv, pathlib, sys
+
+work = pathlib.Path(sys.argv[1])
+
+
+def change(folder, change_row):
+    file = work / folder / "timings.csv"
+    header, *rows = csv.reader(file.open(newline=""))
+    with file.open("w", newline="") as changed:
+        csv.writer(changed, lineterminator="\n").writerows([change_row(header, header), *(change_row(header, row) for row in rows)])
+
+
+def failed(header, row):
+    empty = {name: "" for name in header if name.startswith("ms_per_step") or name == "speedup_vs_serial"}
+    new = empty | {"rounds": "0", "warm_up_trials": "0", "outliers": "0", "verified": "false", "status": "failed: step 3"}
+    return row if row is header else [new.get(name, value) for name, value in zip(header, row)]
+
+
+change("failed", failed)
+samples = work / "failed/samples.csv"
+samples.write_text(samples.read_text().splitlines()[0] + "\n")
+change("old", lambda header, row: row[:24])
+PYTHON
+for folder in failed old; do ends 0 table "$work/$folder" --format latex --out "$work/$folder-paper"; done
+grep -q 'beyond Tukey' "$work/table1/methods.tex" || fail "the outliers are missing"
+! grep 'paragraph{Timing' "$work/failed-paper/methods.tex" || fail "nothing was timed"
+grep -q 'paragraph{Timing' "$work/old-paper/methods.tex" || fail "the paragraph on times is missing"
+! grep -E '\(0 trials|the 0 beyond' "$work/old-paper/methods.tex" || fail "a number that an older file lacks"
 # A garment is in a paper, though some of its rows are not dressed.
 ! grep -q 'Neither paper' "$work/garment/methods.tex" || fail "jeans are in no paper: $(cat "$work/garment/methods.tex")"
 # A commit that is not known cannot be checked out.

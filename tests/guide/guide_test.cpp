@@ -183,14 +183,15 @@ TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
   EXPECT_THAT(chosen.sentences[2], EndsWith("errors of 1e-06 to below 0.00015."));
 }
 
-TEST(Recommendation, CallsAStepTheLongestStableOneUnlessTheHorizonLimitsIt) {
+TEST(Recommendation, ComparesAStepWithTheLongestStableOneUnlessTheHorizonLimitsIt) {
   for (const auto& [horizon_s, is_longest] : {std::pair{1e-2, true}, {1e-4, false}}) {
     SceneGuide guide = guide_of({made_point("verlet", 1e-4, 1, 5e-4)});
     guide.wish = {60, 1e-3};
     guide.trusted.horizon_s = horizon_s;
     add_limit(guide, "verlet", 1.1e-4);
-    EXPECT_EQ(recommend(guide).sentences.at(0).find("longest that is stable") != std::string::npos,
-              is_longest)
+    EXPECT_EQ(
+        recommend(guide).sentences.at(0).find("0.91 of the longest that is stable") != std::string::npos,
+        is_longest)
         << horizon_s;
   }
 }
@@ -412,9 +413,11 @@ TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
 
 TEST(Recommendation, CountsWholeStepsForTheTimeOfAFrame) {
   // 60 frames a second have 2.5 steps of 1/150 s each, so that 3 are taken. At 6 ms a step these take 18
-  // ms, 55.6 frames a second; 2.5 would take 15 ms, and a frame lasts 16.7 ms.
-  const Recommendation chosen = recommend_from({made_point("verlet", 1.0 / 150, 0.9, 5e-4)});
-  EXPECT_THAT(chosen.sentences[1], AllOf(HasSubstr("too slow for 60 frames"), HasSubstr("55.6")));
+  // ms; 2.5 would take 15 ms, and a frame lasts 16.7 ms. At 50 frames a second, 3 steps are fast enough.
+  const std::vector<WorkPoint> points{made_point("verlet", 1.0 / 150, 0.9, 5e-4)};
+  EXPECT_THAT(recommend_from(points).sentences[1], HasSubstr("too slow for 60 frames per second. "));
+  EXPECT_THAT(recommend_from(points, {50, 1e-3}).sentences[1],
+              HasSubstr("fast enough for 50 frames per second. "));
 }
 
 TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator) {
@@ -478,6 +481,19 @@ TEST(ClothSizes, BackendsChangePlacesWhereTheirTimesAreEqual) {
   EXPECT_NEAR(*crossover(slow_start, quick_start), 1000, 1e-6);
   EXPECT_NEAR(*crossover(quick_start, slow_start), 1000, 1e-6);
   EXPECT_FALSE(crossover(quick_start, quick_start));
+  EXPECT_FALSE(crossover(size_curve({}), quick_start));
+}
+
+TEST(ClothSizes, DisturbedSamplesAreNoCrossover) {
+  const SizeCurve even = size_curve({{1, 1}, {10, 1}, {100, 1}, {1000, 1}, {10000, 1}});
+  const auto against = [&](std::vector<double> seconds) {
+    SizeCurve other = even;
+    for (std::size_t i = 0; i < seconds.size(); ++i) other.samples[i].seconds_a_step = seconds[i];
+    return crossover(even, other);
+  };
+  EXPECT_FALSE(against({2, 2, 0.5, 2, 2})) << "the first one is faster at all other sizes";
+  ASSERT_TRUE(against({2, 0.5, 2, 0.5, 0.5}));
+  EXPECT_NEAR(*against({2, 0.5, 2, 0.5, 0.5}), std::sqrt(1e5), 1e-6) << "the last change";
 }
 
 TEST(ClothSizes, AreMeasuredUntilAFrameTakesTooLong) {

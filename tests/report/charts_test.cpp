@@ -33,6 +33,12 @@ const Series& series(const Chart& chart, const std::string& name) {
   return chart.series.front();
 }
 
+std::vector<std::string> names_in(const Chart& chart) {
+  std::vector<std::string> names;
+  for (const Series& series : chart.series) names.push_back(series.name);
+  return names;
+}
+
 TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
   const std::vector<ResultRow> rows = two_cloths();
   const PublishedTable table1(published_table_kinds[0]);
@@ -198,12 +204,42 @@ TEST(Figure6Chart, HasALineForEachBackendThatDresses) {
   EXPECT_EQ(series(*chart, "openmp, with parallelisation").y, (std::vector<double>{0.1, 0.8}));
 }
 
+TEST(HistoryCharts, CountCommitsAndNameWhatSeriesDifferIn) {
+  std::vector<HistoryEntry> history;
+  for (int commit = 0; commit < 3; ++commit)
+    history.push_back(entry_of(made_up_provenance(),
+                               std::vector{measured_row("serial", 1, 1.0), measured_row("opencl", 0.5, 2.0)},
+                               std::to_string(commit)));
+  const auto chart = [&] { return history_charts(machines_of(history).at(0), "history-1").at(0); };
+  EXPECT_THAT(names_in(chart()), ElementsAre("serial", "opencl"));
+  EXPECT_TRUE(chart().x.ticks_at_values) << "there is no commit between two, and none before the first";
+  EXPECT_THAT(series(chart(), "serial").x, ElementsAre(1, 2, 3));
+  history[1].rows[1].device = "pthread-haswell-A Processor";
+  EXPECT_THAT(names_in(chart()), ElementsAre("serial", "opencl, cpu", "opencl, pthread-haswell-A Processor"));
+  history[2].rows[0].nodes = 2501;
+  EXPECT_THAT(names_in(chart()), ElementsAre("serial, 2500 nodes", "opencl, cpu",
+                                             "opencl, pthread-haswell-A Processor", "serial, 2501 nodes"));
+}
+
 TEST(EnergyChart, TakesTheReferenceOfTheLongestName) {
   const std::vector<FoundCurve> references{
       {"cloth", {0}, {1}}, {"cloth2500", {0, 1}, {2, 3}}, {"box-small", {0}, {4}}};
   EXPECT_EQ(energy_chart({"cloth2500-rk4", {0}, {2}}, references, "f1-energy-0").series.at(1).y,
             (std::vector<double>{2, 3}));
   EXPECT_EQ(energy_chart({"torus", {0}, {2}}, references, "f1-energy-0").series.size(), 1U);
+}
+
+TEST(EnergyChart, HasAtMostFortyPointsFromTheFirstToTheLast) {
+  for (const std::size_t count : {0U, 1U, 2U, 40U, 41U, 79U, 1000U}) {
+    FoundCurve curve{"cloth", std::vector<double>(count), std::vector<double>(count, 1)};
+    std::iota(curve.time_s.begin(), curve.time_s.end(), 0);
+    const Series points = energy_chart(curve, {}, "f1-energy-0").series.at(0);
+    ASSERT_EQ(points.x.size(), std::min<std::size_t>(count, 40)) << count;
+    if (count == 0) continue;
+    EXPECT_EQ(points.x.front(), curve.time_s.front());
+    EXPECT_EQ(points.x.back(), curve.time_s.back());
+    EXPECT_EQ(std::set(points.x.begin(), points.x.end()).size(), points.x.size());
+  }
 }
 
 TEST(KindOf, FollowsFromHowSpringsAreCounted) {
@@ -256,12 +292,6 @@ const Chart& chart_called(const std::vector<Chart>& charts, const std::string& i
     if (chart.id == id) return chart;
   ADD_FAILURE() << "no chart " << id;
   return charts.front();
-}
-
-std::vector<std::string> names_in(const Chart& chart) {
-  std::vector<std::string> names;
-  for (const Series& series : chart.series) names.push_back(series.name);
-  return names;
 }
 
 TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {

@@ -329,6 +329,15 @@ TEST(TimesOf, ShowsNoIntervalOfTooFewRounds) {
   EXPECT_THAT(text(), HasSubstr("cloth2500,0.5,openmp,semi-euler,2,,2.0,,19.475,"));
 }
 
+TEST(TimesOf, MarksARatioThatItsTimesContradict) {
+  ReportFolder folder;
+  folder.rows = {small("serial", 1), small("openmp", 0.5)};
+  const auto text = [&] { return markdown({times_of(pointers_to(folder.rows), folder)}); };
+  EXPECT_THAT(text(), HasSubstr("| 2.00× |"));
+  folder.rows[1].ms_per_step = 1.01;
+  EXPECT_THAT(text(), HasSubstr("| 2.00×† |"));
+}
+
 TEST(ExponentOf, IsTheSlopeOnLogarithmicAxes) {
   const std::vector<double> x{1, 10, 100}, y{5, 500, 50000};
   EXPECT_NEAR(*exponent_of(x, y), 2, 1e-12);

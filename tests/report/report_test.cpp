@@ -426,6 +426,32 @@ TEST(ReportPage, MarksRowsThatAreNotVerifiedInWords) {
   EXPECT_TRUE(has(page, "! not verified</strong> 1 row failed or is not verified"));
 }
 
+TEST(ReportPage, SaysWhyARowOfAnySceneHasNoTime) {
+  ReportFolder folder;
+  folder.rows = {measured_row("serial", 1, 1.0), failed_row("opencl", "unsupported: one reason"),
+                 failed_row("mine", "failed: another reason")};
+  for (ResultRow& row : folder.rows) {
+    row.scene = "my-own";
+    row.springs_published.reset();
+  }
+  const std::string page = report_page(input_of(folder));
+  for (const char* text : {"<em>Rows without a time</em>", "<h3>Rows without a time</h3>",
+                           "<code>semi-euler</code>: unsupported: one reason",
+                           "<code>semi-euler</code>: failed: another reason"})
+    EXPECT_TRUE(has(page, text)) << text;
+}
+
+TEST(ReportPage, MarksARatioThatItsTimesContradict) {
+  ReportFolder folder;
+  folder.rows = {in_six_rounds(measured_row("serial", 1, 1.0)),
+                 in_six_rounds(measured_row("openmp", 0.5, 2.0))};
+  for (ResultRow& row : folder.rows)
+    row.scene_as_shipped = false;  // else a published table has the mark, too
+  EXPECT_FALSE(has(report_page(input_of(folder)), "†"));
+  folder.rows[1].ms_per_step = 1.01;
+  EXPECT_TRUE(has(report_page(input_of(folder)), "<p>† "));
+}
+
 /// Where texts begin in a page, one after the other; a failure where one is missing or out of turn.
 void expect_in_order(const std::string& page, const std::vector<std::string>& texts) {
   std::size_t at = 0;

@@ -168,8 +168,8 @@ std::vector<std::string> regressions(const MachineHistory& machine, double thres
     if (!slowdown || judged(slowdown->ratio, threshold) != "slower") continue;
     const auto& [began, ratio] = *slowdown;
     tell(series.at[began->first],
-         fmt::format("slower since commit {}, {:.3g} times the time{}", machine.commit_of(series, *began),
-                     ratio.ratio,
+         fmt::format("slower since commit {}, {:.3g} times the time{}",
+                     machine.entries[series.at[began->first]]->commit, ratio.ratio,
                      ratio.covers ? fmt::format(" ({:.3g} to {:.3g})", ratio.low, ratio.high) : ""));
   }
   return sentences;

@@ -69,9 +69,6 @@ struct MachineHistory {
   std::vector<const HistoryEntry*> entries;
   std::vector<HistorySeries> series;
 
-  const std::string& commit_of(const HistorySeries& row, const ChangePoint& change) const {
-    return entries[row.at[change.first]]->commit;
-  }
   /// Whether that is one of the last `count` entries.
   bool is_recent(std::size_t entry, std::size_t count) const { return entry + count >= entries.size(); }
 };

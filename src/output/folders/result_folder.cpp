@@ -47,6 +47,10 @@ std::vector<FolderFile> files_of(const ResultTable& table) {
   return files;
 }
 
+FolderFile github_file(std::span<const ResultRow> rows) {
+  return {github_name, to_text(github_table(rows), ListingFormat::json)};
+}
+
 std::string output_of(const std::string& stem) {
   return (fs::path(programs_name) / (stem + ".txt")).string();
 }
@@ -145,6 +149,7 @@ void ResultFolder::write(std::span<const ResultRow> rows) {
   std::vector<FolderFile> files;
   for (const ResultTable& table : tables_(rows, provenance_))
     std::ranges::move(files_of(table), std::back_inserter(files));
+  if (!replaces_ && fs::exists(folder_ / github_name)) files.push_back(github_file(rows));
   for (const RowFile& file : row_files)
     if (std::string text = file.text(rows, provenance_); !text.empty())
       files.push_back({file.name, std::move(text)});
@@ -156,7 +161,8 @@ void ResultFolder::write(std::span<const ResultRow> rows) {
 }
 
 void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
-  write_file_atomically(folder_ / github_name, to_text(github_table(rows), ListingFormat::json));
+  const FolderFile file = github_file(rows);
+  write_file_atomically(folder_ / file.name, file.text);
 }
 
 void ResultFolder::write(std::span<const ResultTable> tables) {

@@ -51,8 +51,8 @@ class ResultFolder {
   void begin() const;
 
   /// Writes all files that follow from the rows, each whole or not at all, and timings.csv last, so that its
-  /// rows have their samples. Call it after every round. Throws WriteError; throws std::invalid_argument for
-  /// a number that is not finite, before any file is touched.
+  /// rows have their samples; github.json only if the folder has one. Call it after every round. Throws
+  /// WriteError; throws std::invalid_argument for a number that is not finite, before any file is touched.
   void write(std::span<const ResultRow> rows);
 
   /// Writes github.json (github_table()). Throws WriteError.

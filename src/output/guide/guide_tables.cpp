@@ -99,8 +99,8 @@ void add_cloths(Document& page, const SceneGuide& guide, const std::vector<Resul
   });
   add_table(
       page, "Crossovers of backends",
-      "Number of nodes from which `other` is the faster one. In pairs that are not listed, one backend is "
-      "faster at all sizes that both have.",
+      "Number of nodes from which `other` is the faster one, up to the largest size that both have. In pairs "
+      "that are not listed, the same backend is faster at the smallest and the largest of these sizes.",
       std::move(crossovers));
 }
 

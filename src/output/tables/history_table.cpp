@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "output/tables/results.h"
-#include "platform/machine.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
 
@@ -23,6 +22,7 @@ Table history_table(const MachineHistory& machine, double threshold) {
                {"backend"},
                {"integrator"},
                {"device"},
+               {"nodes"},
                {"since"},
                {"commits"},
                {"ms"},
@@ -35,7 +35,7 @@ Table history_table(const MachineHistory& machine, double threshold) {
     const auto add = [&](std::size_t entry, Cell count, Cell ms, const RatioEstimate* ratio,
                          const std::string& verdict) {
       table.rows.push_back(
-          {series.scene, series.backend, series.integrator, device_name(series.device),
+          {series.scene, series.backend, series.integrator, series.device, series.nodes,
            short_commit(machine.entries[entry]->commit), std::move(count), std::move(ms),
            ratio ? Cell(ratio->ratio) : Cell(), ratio && ratio->covers ? Cell(ratio->low) : Cell(),
            ratio && ratio->covers ? Cell(ratio->high) : Cell(), verdict.empty() ? Cell() : Cell(verdict)});

@@ -42,6 +42,8 @@ constexpr auto replacements = std::to_array<Replacement>({{"\\", "\\textbackslas
                                                           {"…", "\\ldots{}"},
                                                           {"†", "\\textdagger{}"},
                                                           {"‡", "\\textdaggerdbl{}"},
+                                                          {"≥", "$\\geq$"},
+                                                          {"°", "\\textdegree{}"},
                                                           {"√", "$\\surd$"},
                                                           {"µ", "\\textmu{}"},
                                                           {"⁹", "\\textsuperscript{9}"},
@@ -96,18 +98,22 @@ bool ends_before(std::string_view text) {
 }
 
 /// The number that a text begins with, such as "1,054", "0.0898" or "-3.6e-05"; empty for a version, a date
-/// or a name.
+/// or a name. Commas only separate groups of digits.
 std::string_view number_at(std::string_view text) {
   const auto is_digit = [&](std::size_t at) {
     return at < text.size() && text[at] >= '0' && text[at] <= '9';
   };
   const auto after_digits = [&](std::size_t at) {
-    while (is_digit(at) || (at < text.size() && text[at] == ',' && is_digit(at + 1))) ++at;
+    while (is_digit(at)) ++at;
     return at;
   };
   const std::size_t first = text.starts_with('-') ? 1 : 0;
   if (!is_digit(first)) return {};
   std::size_t end = after_digits(first);
+  constexpr std::size_t group = 3;  // digits between commas, as grouped() writes them
+  if (end - first <= group)
+    while (text.substr(end).starts_with(',') && after_digits(end + 1) == end + 1 + group) end += 1 + group;
+  if (text.substr(end).starts_with(',') && is_digit(end + 1)) return {};
   if (text.substr(end).starts_with('.') && is_digit(end + 1)) end = after_digits(end + 1);
   if (const auto rest = text.substr(end); rest.starts_with("e-") || rest.starts_with("e+"))
     end = after_digits(end + 2);

@@ -185,6 +185,13 @@ std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow
                        has_interval(*row) && has_interval(*than)};
 }
 
+Cell ratio_cell(const std::optional<RatioInterval>& ratio, const ResultRow* time, const ResultRow* other) {
+  if (!ratio) return {};
+  Cell cell = ratio->ratio;
+  cell.suffix = mark_of_ratio(ratio->ratio, *time->ms_per_step, *other->ms_per_step);
+  return cell;
+}
+
 Cell ratio_interval_cell(const std::optional<RatioInterval>& ratio) {
   return ratio && ratio->covers ? Cell(interval_text(ratio->low, ratio->high)) : Cell();
 }

@@ -97,8 +97,8 @@ std::vector<CombinationTime> read_combination_times(const std::filesystem::path&
 std::string benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance);
 
 /// The rows that are ok in github-action-benchmark's JSON ("customSmallerIsBetter"): name
-/// (scene/backend/integrator), unit, value (median) and range (the 95 % interval of the median), with device
-/// and threads as `extra`.
+/// (scene/backend/integrator), unit, value (median) and range (the 95 % interval of the median; empty with
+/// too few rounds for one), with device and threads as `extra`.
 Table github_table(std::span<const ResultRow> rows);
 
 // Rows for people.
@@ -120,9 +120,10 @@ enum class ComparisonFormat { table, markdown, json };
 /// have characters outside ASCII.
 std::string to_text(const RunComparison& comparison, ComparisonFormat format, bool utf8 = true);
 
-/// The levels of each series of a machine's history: the first commit of each level, the number of commits,
-/// the median of their times in ms, the ratio to the level before with its 95 % interval, if there are enough
-/// commits for one, and the verdict. A series that vanished has a row without a time.
+/// The levels of each series of a machine's history, with its device as it was recorded: the first commit of
+/// each level, the number of commits, the median of their times in ms, the ratio to the level before with its
+/// 95 % interval, if there are enough commits for one, and the verdict. A series that vanished has a row
+/// without a time.
 Table history_table(const MachineHistory& machine, double threshold);
 
 // Tables of results, and helpers of tables of measured rows.
@@ -240,6 +241,9 @@ struct RatioInterval {
   /// 1 if the ratio is certainly above `limit`, -1 if certainly below, and 0 if that is not known.
   int side_of(double limit) const { return !covers ? 0 : low > limit ? 1 : high < limit ? -1 : 0; }
 };
+
+/// A ratio of the times of two rows, with mark_of_ratio(); empty without one.
+Cell ratio_cell(const std::optional<RatioInterval>& ratio, const ResultRow* time, const ResultRow* other);
 
 /// The 95 % interval of a ratio; empty without one.
 Cell ratio_interval_cell(const std::optional<RatioInterval>& ratio);

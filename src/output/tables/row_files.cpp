@@ -333,14 +333,15 @@ std::string benchmark_json(std::span<const ResultRow> rows, const Provenance& pr
 }
 
 Table github_table(std::span<const ResultRow> rows) {
-  const auto text = [](const std::optional<double>& ms) { return ms ? csv_number(*ms) : std::string(); };
   Table table;
   for (const ResultRow& row : rows) {
     if (row.status != "ok" || !row.ms_per_step) continue;
     table.add({{"name", benchmark_name(row)},
                {"unit", "ms/step"},
                {"value", *row.ms_per_step},
-               {"range", fmt::format("{} to {}", text(row.ms_per_step_low), text(row.ms_per_step_high))},
+               {"range", has_interval(row) ? fmt::format("{} to {}", csv_number(*row.ms_per_step_low),
+                                                         csv_number(*row.ms_per_step_high))
+                                           : ""},
                {"extra", row.device + ", " + pluralize(row.threads, "thread")}});
   }
   return table;

@@ -219,12 +219,8 @@ std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenan
            [](const ResultRow& row) { return measured_cell(&row, counted_ms(row)); }},
           {{"times `openmp`", Align::right, "×"},
            [=](const ResultRow& row) {
-             const auto times = times_yardstick(rows, row);
-             if (!times) return Cell();
-             Cell ratio = times->ratio;
-             const ResultRow* best = find_row(rows, row.scene, yardstick, row.integrator);
-             ratio.suffix = mark_of_ratio(times->ratio, *row.ms_per_step, *best->ms_per_step);
-             return ratio;
+             return ratio_cell(times_yardstick(rows, row), &row,
+                               find_row(rows, row.scene, yardstick, row.integrator));
            }},
           {{"interval", Align::right},
            [=](const ResultRow& row) { return ratio_interval_cell(times_yardstick(rows, row)); }},
@@ -297,7 +293,8 @@ ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenanc
          if (counted_ms(row)) ms.suffix = mark_of_excess(row, provenance);
          return ms;
        }},
-      {{"times as fast", Align::right, "×"}, speedup(&RatioInterval::ratio)},
+      {{"times as fast", Align::right, "×"},
+       [&](const ResultRow& row) { return ratio_cell(of(row).speedup(), of(row).fewest, &row); }},
       {{"interval", Align::right},
        [&](const ResultRow& row) { return ratio_interval_cell(of(row).speedup()); }},
       {{"efficiency", Align::right}, efficiency},
@@ -305,6 +302,7 @@ ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenanc
   Document page{Heading{1, "Scaling with threads"}, measured_on(all, provenance),
                 Paragraph{std::string(how_to_read_threads)}};
   add_blocks(page, all, columns);
+  add_sentence(page, legend_of_ratios(page));
   add_sentence(page, legend_of_excess(all, provenance));
   add_rows_without_a_time(page, all);
   return {"threads", std::move(data), std::move(page)};

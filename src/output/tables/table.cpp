@@ -26,7 +26,7 @@ struct CsvSpelling : Spelling {
   std::string operator()(double number) const { return real(number); }
 };
 
-/// Values as people read them, with their unit.
+/// Values as people read them, with their unit. No text from a file controls the terminal.
 struct TerminalSpelling : Spelling {
   const std::string& unit;
 
@@ -34,6 +34,7 @@ struct TerminalSpelling : Spelling {
   std::string operator()(std::monostate) const { return "-"; }
   std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
   std::string operator()(std::int64_t number) const { return fmt::format("{}{}", number, unit); }
+  std::string operator()(const std::string& text) const { return escaped(text); }
   std::string operator()(double number) const { return fmt::format("{:.4g}{}", number, unit); }
 };
 

@@ -83,8 +83,8 @@ std::string cell_text(const Cell& cell, const Column& column);
 enum class ListingFormat : std::uint8_t { table, csv, json };
 
 /// The table as text, ending with a newline; a table without columns is an empty text, or an empty array. On
-/// a terminal, numbers have at most four significant digits and no groups. Nothing is "-" there, empty in CSV
-/// and null in JSON.
+/// a terminal, numbers have at most four significant digits and no groups, and control characters are
+/// escaped. Nothing is "-" there, empty in CSV and null in JSON.
 std::string to_text(const Table& table, ListingFormat format = ListingFormat::table);
 
 /// A table of one row for a terminal. If it is wider than `width` columns, one line per value that is not

@@ -184,6 +184,17 @@ TEST(History, ShowsEachLevelAndWhatVanished) {
   EXPECT_EQ(cell(3, "verdict"), "vanished");
 }
 
+TEST(History, ShowsByWhatSeriesOfACombinationDiffer) {
+  std::vector<HistoryEntry> history = two_levels(3, 0, 1);
+  history[1].rows[1].device = "pthread-haswell-A Processor";
+  history[2].rows[1].device = "pthread-znver4-A Processor";
+  history[2].rows[1].nodes = 2501;
+  EXPECT_THAT(to_text(history_table(machines_of(history)[0], threshold), ListingFormat::csv),
+              AllOf(HasSubstr("openmp,semi-euler,cpu,2500,commit-0,"),
+                    HasSubstr("openmp,semi-euler,pthread-haswell-A Processor,2500,commit-1,"),
+                    HasSubstr("openmp,semi-euler,pthread-znver4-A Processor,2501,commit-2,")));
+}
+
 class HistoryFile : public TemporaryFolderTest {
  protected:
   /// The sentence that refuses the text.

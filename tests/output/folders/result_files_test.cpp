@@ -91,6 +91,31 @@ TEST_F(ResultFiles, GoOnUnderTheProvenanceOfTheRunThatAddsRows) {
   EXPECT_THAT(read_file(file), AllOf(HasSubstr("2030"), HasSubstr(made_up_provenance().started_utc)));
 }
 
+TEST_F(ResultFiles, RenewTheFileForGithub) {
+  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  const fs::path file = folder() / "github.json";
+  const auto folder_again = [&] {
+    return ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+  };
+  {
+    ResultFolder results = folder_again();
+    results.write(rows);
+    EXPECT_FALSE(fs::exists(file)) << "nobody asked for it";
+    results.write_for_github(rows);
+  }
+  {
+    ResultFolder results = folder_again();
+    results.go_on_with(made_up_provenance());
+    rows[0].ms_per_step = 0.25;
+    results.write(rows);
+    EXPECT_EQ(text_of(file), to_text(github_table(rows), ListingFormat::json));
+  }
+  ResultFolder results = folder_again();
+  results.replace_results();
+  results.write(rows);
+  EXPECT_FALSE(fs::exists(file));
+}
+
 TEST_F(ResultFiles, ThatAreReplacedTakeTheirTracesAlong) {
   const std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   const std::string stem = "traces/" + file_stems(rows).front();

@@ -87,6 +87,12 @@ TEST(GithubTable, KeepsTheDevicesOwnName) {
   EXPECT_THAT(table_csv(github_table(std::vector{row})), HasSubstr(row.device));
 }
 
+TEST(GithubTable, HasNoRangeOfTooFewRounds) {
+  const ResultRow row = measured_row("serial", 0.5, 1.0);
+  EXPECT_THAT(table_csv(github_table(std::vector{in_six_rounds(row)})), HasSubstr(",0.5,0.25 to 1,"));
+  EXPECT_THAT(table_csv(github_table(std::vector{row})), HasSubstr(",0.5,,"));
+}
+
 TEST(RatioMark, StandsWhereTheTimesNameTheOtherOneAsTheFaster) {
   EXPECT_EQ(mark_of_ratio(0.923, 1.54, 1.48), "†");
   EXPECT_EQ(mark_of_ratio(1.1, 1.48, 1.54), "†");

@@ -99,6 +99,14 @@ TEST(ThreadTable, AsMarkdownNamesBackendsWithoutTheirThreads) {
   EXPECT_THAT(page, Not(HasSubstr("serial")));
 }
 
+TEST(ThreadTable, MarksARatioThatItsTimesContradict) {
+  std::vector<ResultRow> rows = rows_by_threads();
+  EXPECT_THAT(markdown(thread_table_of(rows).page), Not(HasSubstr("†")));
+  rows[3].ms_per_step = 1.01;
+  EXPECT_THAT(markdown(thread_table_of(rows).page),
+              AllOf(HasSubstr("| `openmp` | 2 | **1.01** | 1.60×† | "), HasSubstr("|\n\n† ")));
+}
+
 TEST(ThreadTable, HasEfficienciesOverTheFewestThreadsThatAreSeveral) {
   Provenance provenance = made_up_provenance();
   provenance.threads = 8;
