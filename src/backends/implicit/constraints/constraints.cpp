@@ -38,11 +38,14 @@ class SerialConstraints final : public Backend {
   SerialConstraints(const System& system, double dt_s)
       : nodes_(system),
         rest_(system.nodes()),
+        velocity_rest_(system.nodes()),
         substeps_(system.solver.substeps),
         h_(static_cast<Real>(dt_s / system.solver.substeps)) {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       mobility_.push_back(nodes_.pinned[i] ? Real{} : static_cast<Real>(1 / system.node_mass[i]));
-    const double h_s = dt_s / system.solver.substeps;
+    const double h_s = dt_s / system.solver.substeps, slowed = 1 + h_s * system.viscous_damping;
+    lost_ = static_cast<Real>(h_s * system.viscous_damping / slowed);
+    fall_ = static_cast<Real>(h_s * system.gravity / slowed);
     springs_.reserve(system.springs.size());
     for (const Spring& spring : spring_order(system).springs)
       springs_.push_back({spring.first, spring.second,
@@ -53,12 +56,17 @@ class SerialConstraints final : public Backend {
 
   void set_state(const State& state) override {
     nodes_.set_state(state);
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
       rest_[i] = vec3_cast<Real>(state.position[i] - vec3_cast<double>(nodes_.x[i]));
+      velocity_rest_[i] = vec3_cast<Real>(state.velocity[i] - vec3_cast<double>(nodes_.v[i]));
+    }
   }
   State state() const override {
     State state = nodes_.state();
-    for (std::size_t i = 0; i < nodes_.size(); ++i) state.position[i] += vec3_cast<double>(rest_[i]);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      state.position[i] += vec3_cast<double>(rest_[i]);
+      state.velocity[i] += vec3_cast<double>(velocity_rest_[i]);
+    }
     return state;
   }
   int threads() const override { return 1; }
@@ -68,7 +76,7 @@ class SerialConstraints final : public Backend {
       for (std::uint32_t substep = 0; substep < substeps_; ++substep) {
         fall();
         for (const CompliantSpring& spring : springs_) project(spring);
-        for (std::size_t i = 0; i < nodes_.size(); ++i) carry_sum(nodes_.x[i], rest_[i], h_, nodes_.v[i]);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) carry_move(nodes_.x[i], rest_[i], h_, nodes_.v[i]);
       }
       touch_floor();
     }
@@ -80,15 +88,9 @@ class SerialConstraints final : public Backend {
     LinearSpring<Real> law;
   };
 
-  /// Gravity and air damping in a substep: v becomes (v - h g) / (1 + h c).
   void fall() {
-    const Real kept = 1 / (1 + h_ * nodes_.viscous_damping);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (nodes_.pinned[i]) continue;
-      Vec3<Real>& v = nodes_.v[i];
-      v.y -= h_ * nodes_.gravity;
-      v = kept * v;
-    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (!nodes_.pinned[i]) carry_fall(nodes_.v[i], velocity_rest_[i], lost_, fall_);
   }
 
   void touch_floor() {
@@ -107,11 +109,13 @@ class SerialConstraints final : public Backend {
   }
 
   PlainNodes<Real> nodes_;
-  std::vector<Vec3<Real>> rest_;          // [nodes] m, rounding errors of their x
-  std::vector<Real> mobility_;            // [nodes] 1/kg, 0 if pinned
-  std::vector<CompliantSpring> springs_;  // in the order of the method
+  std::vector<Vec3<Real>> rest_;           // [nodes] m, rounding errors of their x
+  std::vector<Vec3<Real>> velocity_rest_;  // [nodes] m/s, those of their v
+  std::vector<Real> mobility_;             // [nodes] 1/kg, 0 if pinned
+  std::vector<CompliantSpring> springs_;   // in the order of the method
   const std::uint32_t substeps_;
-  const Real h_;  // s, the substep
+  const Real h_;          // s, the substep
+  Real lost_{}, fall_{};  // of carry_fall
 };
 
 /// A cloth of at most cached_bytes, which the nearest caches hold, needs only one substep per pass; a larger
@@ -120,7 +124,7 @@ class SerialConstraints final : public Backend {
 /// times with any number. More substeps leave more work between the threads, which only some of them do.
 constexpr std::size_t cached_bytes = std::size_t{4} << 20, most_depth = 4;
 
-/// The rounding error of a position in float.
+/// The rounding errors of a vector in float.
 Vec3d rest_of(const Vec3d& x) { return x - vec3_cast<double>(vec3_cast<float>(x)); }
 
 /// Fewest blocks per thread for passes of `depth` substeps.
@@ -196,7 +200,7 @@ QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lane
       layout(std::get<GridPatch>(system.topology), lanes),
       nodes(layout.rows * layout.row_floats() +
             lanes),  // a vector of the last nodes may begin one node further
-      rest(layout.rows * layout.rest_row_floats()) {
+      rest(layout.rows * layout.row_floats()) {
   const auto& grid = std::get<GridPatch>(system.topology);
   const double mass = require_uniform_mass(system);
   for (const GridSpringKind kind : {structural, shear, bending}) {
@@ -233,10 +237,11 @@ QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lane
 void QuarteredRows::set_state(const State& state) {
   for (std::size_t node = 0; node < state.position.size(); ++node) {
     const std::size_t row = node / layout.columns, column = node % layout.columns;
-    float* out = nodes.data() + layout.offset(row, column);
-    write_vector(out, layout.pitch, state.position[node]);
-    write_vector(out + 3 * layout.pitch, layout.pitch, state.velocity[node]);
-    write_vector(rest.data() + layout.rest_offset(row, column), layout.pitch, rest_of(state.position[node]));
+    const std::size_t x = layout.offset(row, column), v = x + 3 * layout.pitch;
+    write_vector(nodes.data() + x, layout.pitch, state.position[node]);
+    write_vector(nodes.data() + v, layout.pitch, state.velocity[node]);
+    write_vector(rest.data() + x, layout.pitch, rest_of(state.position[node]));
+    write_vector(rest.data() + v, layout.pitch, rest_of(state.velocity[node]));
   }
 }
 
@@ -244,12 +249,14 @@ State QuarteredRows::state() const {
   State state;
   state.position.reserve(layout.rows * layout.columns);
   state.velocity.reserve(layout.rows * layout.columns);
-  const auto vector_at = [&](const float* in) { return read_vector(in, layout.pitch); };
+  const auto vector_at = [&](std::size_t place) {
+    return read_vector(nodes.data() + place, layout.pitch) + read_vector(rest.data() + place, layout.pitch);
+  };
   for (std::size_t row = 0; row < layout.rows; ++row)
     for (std::size_t column = 0; column < layout.columns; ++column) {
-      const float* in = nodes.data() + layout.offset(row, column);
-      state.position.push_back(vector_at(in) + vector_at(rest.data() + layout.rest_offset(row, column)));
-      state.velocity.push_back(vector_at(in + 3 * layout.pitch));
+      const std::size_t x = layout.offset(row, column);
+      state.position.push_back(vector_at(x));
+      state.velocity.push_back(vector_at(x + 3 * layout.pitch));
     }
   return state;
 }
@@ -275,7 +282,7 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
   }
   threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slots / lanes));
   nodes = AlignedArray(slots * record_floats);
-  rest = AlignedArray(slots * 3);
+  rest = AlignedArray(slots * rest_components);
   free = AlignedArray(slots);
   std::vector<double> mobility(system.nodes());
   for (std::size_t node = 0; node < system.nodes(); ++node) mobility[node] = 1 / system.node_mass[node];
@@ -340,14 +347,20 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
 
 void SpringBatches::set_state(const State& state) {
   write_records(state, slot, nodes.data());
-  for (std::size_t node = 0; node < slot.size(); ++node)
-    write_vector(rest.data() + rest_offset(slot[node]), lanes, rest_of(state.position[node]));
+  for (std::size_t node = 0; node < slot.size(); ++node) {
+    float* const of_x = rest.data() + rest_offset(slot[node]);
+    write_vector(of_x, lanes, rest_of(state.position[node]));
+    write_vector(of_x + 3 * lanes, lanes, rest_of(state.velocity[node]));
+  }
 }
 
 State SpringBatches::state() const {
   State state = read_records(nodes.data(), slot);
-  for (std::size_t node = 0; node < slot.size(); ++node)
-    state.position[node] += read_vector(rest.data() + rest_offset(slot[node]), lanes);
+  for (std::size_t node = 0; node < slot.size(); ++node) {
+    const float* const of_x = rest.data() + rest_offset(slot[node]);
+    state.position[node] += read_vector(of_x, lanes);
+    state.velocity[node] += read_vector(of_x + 3 * lanes, lanes);
+  }
   return state;
 }
 

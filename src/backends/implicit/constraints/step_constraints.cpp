@@ -19,10 +19,14 @@ namespace mssim::HWY_NAMESPACE {
 
 #include "backends/implicit/constraints/carried_sum-inl.h"
 
-/// Gravity and air damping: v becomes (v - h g) / (1 + h c) at nodes that move. `fall` = h g, `kept` = 1 / (1
-/// + h c).
-HWY_INLINE Lanes3 fallen(Mask moves, const Lanes3& v, Lanes fall, Lanes kept) {
-  return select(moves, Lanes3{kept * v.x, kept * (v.y - fall), kept * v.z}, v);
+/// Gravity and air damping at nodes that move. `rest`: where those of u, v, w are, at distances of `pitch`.
+HWY_INLINE void let_nodes_fall(Mask moves, Lanes3& v, float* rest, std::size_t pitch, Lanes lost,
+                               Lanes fall) {
+  const Lanes3 lacked = load3(rest, pitch);
+  Lanes3 next = v, lacks = lacked;
+  carry_fall(next, lacks, lost, fall);
+  v = select(moves, next, v);
+  store3(rest, select(moves, lacks, lacked), pitch);
 }
 
 /// The floor, at the end of a step. A node on it has rest 0, which could otherwise be negative.
@@ -121,15 +125,18 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
 HWY_NOINLINE inline void let_fall(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
   const RealTag d;
   const std::size_t pitch = cloth.layout.pitch, nodes = cloth.layout.springs(0, 0);
-  const Lanes gravity(cloth.fall), kept(cloth.kept);
+  const Lanes lost(cloth.lost), fall(cloth.fall);
   for (std::size_t row = first_row; row < first_row + rows; ++row)
     for (std::size_t stream = 0; stream < QuarterLayout::streams; ++stream) {
-      float* const v = cloth.nodes.data() + row * cloth.layout.row_floats() +
-                       (stream * QuarterLayout::components + 3) * pitch;
+      const std::size_t from =
+          row * cloth.layout.row_floats() + (stream * QuarterLayout::components + 3) * pitch;
+      float *const velocity = cloth.nodes.data() + from, *const rest = cloth.rest.data() + from;
       const float* const free = cloth.free_of_row[row] + stream * pitch;
       for (std::size_t at = 0; at < nodes; at += lane_count()) {
         const Mask moves = hn::Ne(hn::Load(d, free + at), hn::Zero(d));
-        store_part(EveryLane(), fallen(moves, load_components(v + at, pitch), gravity, kept), v + at, pitch);
+        Lanes3 v = load_components(velocity + at, pitch);
+        let_nodes_fall(moves, v, rest + at, pitch, lost, fall);
+        store_part(EveryLane(), v, velocity + at, pitch);
       }
     }
 }
@@ -167,13 +174,12 @@ HWY_NOINLINE inline void advance(QuarteredRows& cloth, std::size_t first_row, st
   const Lanes h(cloth.h_s);
   for (std::size_t row = first_row; row < first_row + rows; ++row)
     for (std::size_t stream = 0; stream < QuarterLayout::streams; ++stream) {
-      float* const x =
-          cloth.nodes.data() + row * cloth.layout.row_floats() + stream * QuarterLayout::components * pitch;
-      float* const rest = cloth.rest.data() + row * cloth.layout.rest_row_floats() + stream * 3 * pitch;
+      const std::size_t from = row * cloth.layout.row_floats() + stream * QuarterLayout::components * pitch;
+      float *const x = cloth.nodes.data() + from, *const rest = cloth.rest.data() + from;
       for (std::size_t at = 0; at < nodes; at += lane_count()) {
         NodeLanes node = load_node(x + at, pitch);
         Lanes3 lacks = load_components(rest + at, pitch);
-        carry_sum(node.x, lacks, h, node.v);  // pins have zero velocity
+        carry_move(node.x, lacks, h, node.v);  // pins have zero velocity
         if (meets_floor) {
           meet_floor(hn::Ne(hn::Load(d, cloth.free_of_row[row] + stream * pitch + at), hn::Zero(d)),
                      cloth.surroundings, node, lacks);
@@ -391,20 +397,20 @@ struct Between {
 HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& between, std::size_t begin,
                                     std::size_t end) {
   const RealTag d;
-  const Lanes h(bodies.h_s), gravity(bodies.fall), kept(bodies.kept);
+  const Lanes h(bodies.h_s), lost(bodies.lost), fall(bodies.fall);
   for (std::size_t vector = begin; vector < end; ++vector) {
     float* const records = bodies.nodes.data() + vector * vector_springs * record_floats;
     NodeLanes node = load_records<vector_springs>(
         [&](std::size_t i) MSSIM_INLINE_LAMBDA { return records + i * record_floats; });
     const Mask moves = hn::Ne(hn::Load(d, bodies.free.data() + vector * vector_springs), hn::Zero(d));
+    float* const rest = bodies.rest.data() + vector * SpringBatches::rest_components * vector_springs;
     if (between.advances) {
-      float* const rest = bodies.rest.data() + vector * 3 * vector_springs;
       Lanes3 lacks = load3(rest);
-      carry_sum(node.x, lacks, h, node.v);  // pins have zero velocity
+      carry_move(node.x, lacks, h, node.v);  // pins have zero velocity
       if (between.meets_floor) meet_floor(moves, bodies.surroundings, node, lacks);
       store3(rest, lacks);
     }
-    if (between.falls) node.v = fallen(moves, node.v, gravity, kept);
+    if (between.falls) let_nodes_fall(moves, node.v, rest + 3 * vector_springs, vector_springs, lost, fall);
     store_records<vector_springs>(records, node);
   }
 }

@@ -69,16 +69,16 @@ SpringColouring spring_order(const System& system);
 struct SmallSteps {
   double small_s;        ///< the substep, s
   float h_s;             ///< the substep in single precision, s
-  float fall;            ///< m/s, gain by gravity per substep
-  float kept;            ///< fraction of the velocity left by air damping per substep
+  float lost;            ///< fraction of the velocity that air damping takes per substep
+  float fall;            ///< m/s, gain by gravity per substep, damped
   std::size_t substeps;  ///< per step
   Surroundings surroundings;
 
   SmallSteps(const System& system, double dt_s)
       : small_s(dt_s / system.solver.substeps),
         h_s(static_cast<float>(small_s)),
-        fall(static_cast<float>(small_s * system.gravity)),
-        kept(static_cast<float>(1 / (1 + small_s * system.viscous_damping))),
+        lost(static_cast<float>(small_s * system.viscous_damping / (1 + small_s * system.viscous_damping))),
+        fall(static_cast<float>(small_s * system.gravity / (1 + small_s * system.viscous_damping))),
         substeps(system.solver.substeps),
         surroundings(surroundings_of(system)) {}
 };
@@ -102,13 +102,9 @@ struct QuarterLayout {
         pitch(odd_pitch((columns + streams - 1) / streams, lanes)) {}
 
   std::size_t row_floats() const { return streams * components * pitch; }
-  std::size_t rest_row_floats() const { return streams * 3 * pitch; }
   /// Floats from the start to the x of a node.
   std::size_t offset(std::size_t row, std::size_t column) const {
     return row * row_floats() + column % streams * components * pitch + column / streams;
-  }
-  std::size_t rest_offset(std::size_t row, std::size_t column) const {
-    return row * rest_row_floats() + column % streams * 3 * pitch + column / streams;
   }
   /// Nodes of a stream with a node of their row `right` columns further: springs that begin in it.
   std::size_t springs(std::size_t stream, std::size_t right) const {
@@ -122,7 +118,7 @@ struct QuarteredRows : SmallSteps {
   static constexpr std::size_t block_rows = 4;  ///< rows per block of a pass
   QuarterLayout layout;
   AlignedArray nodes;  ///< [QuarterLayout::row_floats] for each row; padding is zero
-  AlignedArray rest;   ///< [rows][streams][x y z][pitch] m, rounding errors of x y z (carried_sum-inl.h)
+  AlignedArray rest;   ///< in the same places, their rounding errors (carried_sum-inl.h)
   /// [1 + rows with pins][streams][pitch] 1 if a node may move, 0 for pins and padding.
   AlignedArray free;
   std::vector<const float*> free_of_row;  ///< [rows] into `free`; its start if the row has no pin
@@ -162,13 +158,13 @@ struct SpringBatches : SmallSteps {
   std::size_t lanes = 0;
   std::vector<std::uint32_t> slot;  ///< [nodes] record of the scene's node
   AlignedArray nodes;               ///< [slots][record_floats]
-  AlignedArray rest;  ///< [slots / lanes][x y z][lanes] m, rounding errors of x y z (carried_sum-inl.h)
+  AlignedArray rest;  ///< [slots / lanes][x y z u v w][lanes] their rounding errors (carried_sum-inl.h)
   AlignedArray free;  ///< [slots] 1 if a node may move, 0 for pins and padding
   /// [vectors][3][lanes] offsets of the records of both ends, in units of offset_floats and as std::uint32_t,
   /// then the stiffness_rest of compliant_spring. The last vector of a batch repeats its last spring, which
   /// writes the same result again.
   AlignedArray springs;
-  static constexpr std::size_t offset_floats = record_floats;
+  static constexpr std::size_t offset_floats = record_floats, rest_components = 6;
   std::vector<Batch> batches;
   std::vector<IndexRange> colours;  ///< the batches of each
   std::vector<Part> parts;
@@ -185,7 +181,7 @@ struct SpringBatches : SmallSteps {
   State state() const;
 
   /// Floats from the start of `rest` to the x of a slot.
-  std::size_t rest_offset(std::size_t at) const { return at / lanes * 3 * lanes + at % lanes; }
+  std::size_t rest_offset(std::size_t at) const { return at / lanes * rest_components * lanes + at % lanes; }
   std::size_t vectors(const IndexRange& colour) const {
     return batches[colour.end - 1].end - batches[colour.begin].begin;
   }

@@ -204,6 +204,33 @@ TEST(Xpbd, MovesNodesThatASmallStepMovesByLessThanARounding) {
   }
 }
 
+/// Makes a system whose last node falls freely through air, in small steps of 1e-6 s that change its velocity
+/// by a tenth of a rounding (damping) and by ten (gravity).
+System falling_freely(System system) {
+  std::ranges::fill(system.materials, SpringMaterial{});
+  system.gravity = 9.81;
+  system.viscous_damping = 0.1;
+  system.solver.substeps = 100;
+  system.start.velocity.back() = {1, -8, 0};
+  return system;
+}
+
+void expect_free_fall(Backend& backend, const System& system) {
+  constexpr int steps = 500;
+  backend.step(steps);
+  const double kept = std::pow(1 / (1 + backend_dt_s / system.solver.substeps * system.viscous_damping),
+                               steps * system.solver.substeps);
+  const double end_speed = system.gravity / system.viscous_damping;
+  const Vec3d v = backend.state().velocity.back();
+  EXPECT_NEAR(v.x, kept, 1e-6);
+  EXPECT_NEAR(v.y, -8 * kept - end_speed * (1 - kept), 1e-6);
+}
+
+TEST(Xpbd, ChangesVelocitiesByLessThanARounding) {
+  const System system = falling_freely(one_spring({}));
+  for (const auto& backend : all_backends(system, backend_dt_s)) expect_free_fall(*backend, system);
+}
+
 TEST(Xpbd, PutsWhatFallsExactlyOntoTheFloor) {
   // What the sum of y has lost would leave the node beside it.
   System system = one_spring({0, 0});
@@ -291,6 +318,11 @@ TEST_P(EachXpbdKernel, AgreesWithTheReferenceOnClothsOfAnyShape) {
 TEST_P(EachXpbdKernel, AgreesWithTheReferenceOnBodies) {
   for (const System& system : solids()) expect_reference(system, std::to_string(system.nodes()) + " nodes");
   expect_reference(three_blocks(0.5), "three blocks");
+}
+
+TEST_P(EachXpbdKernel, ChangesVelocitiesByLessThanARounding) {
+  for (const System& system : {falling_freely(cloth_system(3, 21)), falling_freely(one_spring({}))})
+    expect_free_fall(*make(system, 1), system);
 }
 
 TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
