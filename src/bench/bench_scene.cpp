@@ -157,9 +157,17 @@ bool builds_scenes_itself(const BackendInfo& info) {
   return info.program != nullptr && info.program->in_ranks;
 }
 
-/// Steps the second stretch with another instance of the backend.
+/// Steps the second stretch with another instance of the backend. The row's note says if the stretch is so
+/// short that it shows little: short time steps move nodes by no more than roundings.
 void verify_second(Combination& combination, const SceneJob& job, const BackendInfo& info,
                    const SecondStretch& stretch) {
+  constexpr int short_part = 8;
+  if (short_part * stretch.steps < stretch.most_steps || stretch.landed == 0)
+    append_sentence(combination.row.note,
+                    fmt::format("the second stretch could be compared for {} of {}{}: roundings may hide "
+                                "small faults",
+                                stretch.steps, pluralize(stretch.most_steps, "step"),
+                                stretch.landed == 0 ? ", in which nothing landed" : ""));
   combination.backend->rest();
   ExecutionOptions execution = job.execution;
   execution.scene += "-small";  // a program may know scenes by their names

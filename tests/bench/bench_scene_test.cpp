@@ -367,6 +367,14 @@ TEST_F(BenchScene, TimesAMethodThatGrowsForAsLongAsItCanBeCompared) {
   }
 }
 
+TEST_F(BenchScene, SaysOfARowThatShortStepsShowLittle) {
+  EXPECT_THAT(run()[1].note, Not(HasSubstr("second stretch")));
+  job_.dt_s = 1e-6;
+  const ResultRow row = run()[1];
+  EXPECT_THAT(row.note, HasSubstr("second stretch"));
+  EXPECT_THAT(row.note, HasSubstr("of 400 steps"));
+}
+
 TEST_F(BenchScene, VerifiesAClothAtRest) {
   SceneSpec spec = cloth_spec(9, 11);
   spec.gravity_m_per_s2 = 0;

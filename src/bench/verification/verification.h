@@ -176,9 +176,13 @@ void add_block(SolidBlock& blocks, std::uint32_t nx, std::uint32_t ny, std::uint
 struct SecondStretch {
   System system;  ///< a cloth of 13 x 17 nodes, or two blocks of 4 x 5 x 6 nodes
   int steps = 0;
-  State state;             ///< of the double-precision reference after `steps`
-  double tolerance = 0;    ///< on the position error, in mean rest lengths
+  State state;           ///< of the double-precision reference after `steps`
+  double tolerance = 0;  ///< on the position error, in mean rest lengths
+  /// On the velocity error, m/s: that of the stiffest mode of a stable step, if its position error is the
+  /// tolerance.
+  double velocity_tolerance = 0;
   std::size_t landed = 0;  ///< nodes that have met the floor by then and slid on it
+  int most_steps = 0;      ///< the largest number of steps that was tried
 };
 
 /// Runs the reference of the second stretch of a cloth or of bodies, for up to 400 steps. It ends before the
