@@ -270,9 +270,9 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   return results;
 }
 
-/// Rows of the samples so far.
+/// Rows of the samples so far. `are_checked`: the checks after the last round are done.
 std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, const StepSize& size,
-                               const Peaks& peaks) {
+                               const Peaks& peaks, bool are_checked) {
   std::vector<ResultRow> rows;
   for (const Combination& combination : combinations) {
     const auto serial = std::ranges::find_if(combinations, [&](const Combination& other) {
@@ -283,6 +283,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);
     summarise_costs(combination, row);
     compare_with_peaks(combination, size, peaks, row);
+    if (row.status == "ok" && !are_checked) append_sentence(row.note, unchecked_samples);
     require_finite(row);
   }
   return rows;
@@ -327,7 +328,8 @@ struct FirstRound {
 void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, const SceneJob& job,
                  const BenchWatch& watch) {
   std::string activity = fmt::format("round {}", static_cast<int>(rounds) + 1);
-  double done = (rounds - first.number) / (job.rounds - first.number);
+  const int planned = job.rounds - first.number;  // none if this sample's time does not count
+  double done = planned > 0 ? (rounds - first.number) / planned : 0;
   if (job.deadline) {
     const std::chrono::duration<double> spent = Clock::now() - first.start, all = *job.deadline - first.start;
     done = all > spent ? std::max(done, spent / all) : 1;
@@ -367,7 +369,7 @@ class SampleSecrets {
   }
   /// Checks the current round, whatever was chosen.
   void check() {
-    checks_this_ = has_checked_ = true;
+    checks_this_ = has_checked_ = checks_;
     checked_ = present_;
   }
 
@@ -532,13 +534,14 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       stopped = true;
       break;
     }
-    watch.after_round(rows_of(all, size, peaks));
+    watch.after_round(rows_of(all, size, peaks, false));
     measured_any = true;
   }
-  // The deadline allowed fewer rounds than expected: take one more, whose times do not count.
-  if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
+  // The deadline allowed fewer rounds than expected, or an earlier run took all of them: take one more, whose
+  // times do not count.
+  if (!stopped && (!measured_any || secrets.is_due())) stopped = !take(job.rounds - 1, false);
   for (Combination& combination : all) {
-    if (combination.backend) require_prompt_steps(combination);
+    if (combination.backend) require_prompt_steps(combination, job);
     if (combination.backend && !stopped) count_events(combination, job);
     if (job.fps && combination.backend && !stopped) {
       watch.progress(fmt::format("frames: {} {}", combination.row.integrator, combination.row.backend), 1);
@@ -549,7 +552,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   }
   watch.progress("check of the samples", 1);
   secrets.compare(all);
-  return rows_of(all, size, peaks);
+  return rows_of(all, size, peaks, !stopped);
 }
 
 }  // namespace mssim

@@ -55,7 +55,8 @@ bool is_finished(const BenchSettings& settings, const std::string& scene,
                      " than this command: --resume needs the same ones; choose another --out, "
                      "or --overwrite to measure again");
   return std::ranges::all_of(earlier, [&](const ResultRow& row) {
-    return row.status != "ok" || (row.rounds >= settings.rounds && has_frames(settings, row));
+    return row.status != "ok" ||
+           (row.rounds >= settings.rounds && has_frames(settings, row) && !has_unchecked_samples(row));
   });
 }
 
@@ -217,11 +218,18 @@ void require_rows(const std::vector<ResultRow>& verified, const std::string& sce
                   const BenchSettings& settings, const std::string& folder) {
   const std::vector<const ResultRow*> rows = pointers_to(verified);
   for (const Integrator* integrator : settings.integrators)
-    for (const BackendInfo* backend : settings.backends)
-      if (!find_row(rows, scene, backend->name, integrator->name))
+    for (const BackendInfo* backend : settings.backends) {
+      const ResultRow* row = find_row(rows, scene, backend->name, integrator->name);
+      if (row == nullptr)
         throw UsageError(
             "--verified {} has no row of {}, {}, {}: ask for what it has, or leave --verified out", folder,
             scene, backend->name, integrator->name);
+      if (has_unchecked_samples(*row))
+        throw UsageError(
+            "--verified {}: the samples of {} are not checked, because its run was ended before that; "
+            "finish it with --resume, or leave --verified out",
+            folder, combination_name(*row));
+    }
 }
 
 BenchResults::BenchResults(const BenchPlan& plan)

@@ -153,6 +153,21 @@ struct Verification {
 Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s,
                     int steps_taken = 0);
 
+/// A state, and the time by which the steps before it were postponed until it was requested.
+struct TimedState {
+  State state;
+  /// s: how much longer it took to read than a state after one step; 0 if it was read faster than its steps
+  /// were taken.
+  double postponed_s = 0;
+};
+
+/// Reads the backend's state after steps from `start` that took `steps_s`. Leaves the backend in any state.
+TimedState read_state(Backend& backend, const State& start, double steps_s);
+
+/// "it reports steps before they are done: ...", for a backend that took `steps_s` for its steps and
+/// postponed them by at least `postponed_s`.
+std::string describe_postponed(int steps, double steps_s, double postponed_s);
+
 /// Takes steps and rounds the state to single precision after each, to show the effect of roundings. Returns
 /// the last state.
 State step_rounded(Backend& reference, int steps);
