@@ -40,14 +40,15 @@ std::pair<int, std::size_t> peak_key(const Combination& combination, const StepS
 
 /// Measures the peaks that the combinations are compared with. There are none for a garment, whose work per
 /// step depends on what touches and what is sewn; for a cloth in windows; for implicit integrators, whose
-/// solvers iterate until they converge; and for a job that only takes samples.
+/// solvers iterate until they converge; for a program that reports more threads than make sense; and for a
+/// job that only takes samples.
 Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
   if (job.garment || job.verified || job.windowed) return peaks;
   for (const Combination& combination : combinations) {
     if (is_implicit(*combination.integrator) || combination.in_double || !combination.backend ||
-        !combination.on_host)
+        !combination.on_host || thread_excess(combination.row.threads))
       continue;
     const auto [threads, bytes] = peak_key(combination, size);
     if (peaks.contains({threads, bytes})) continue;

@@ -41,10 +41,31 @@ void fail_row(ResultRow& row, const std::string& status) {
 class OnTwoProcessors final : public OtherSerial {
  public:
   using OtherSerial::OtherSerial;
-  int threads() const override { return 2; }
+  int threads() const override { return processors; }
+
+  inline static int processors = 2;
 };
 constexpr BackendInfo undividable{
     "undividable", "", "takes two", false, {}, make_other<OnTwoProcessors>, {}, {}};
+
+/// A right one of several processes: it tells how many steps it has taken since it was asked last.
+class CountsSteps final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void step(int count) override {
+    steps_ += count;
+    OtherSerial::step(count);
+  }
+  std::optional<Communication> communication() override {
+    Communication costs;
+    costs.messages = std::exchange(steps_, 0);
+    return costs;
+  }
+
+ private:
+  int steps_ = 0;
+};
+constexpr BackendInfo counting{"counting", "", "counts", false, {}, make_other<CountsSteps>, {}, {}};
 
 /// What a program may do that wants to look fast.
 enum class Cheat : std::uint8_t {
@@ -176,6 +197,25 @@ TEST_F(BenchScene, SaysOfARowThatItTookMoreProcessorsThanWereAskedFor) {
   EXPECT_GT(rows[1].roofline_fraction, 0);  // of what two processors can do
   job_.execution.threads = 2;
   EXPECT_EQ(run()[1].note, "another mesh");
+}
+
+TEST_F(BenchScene, ComparesNoRowWithPeaksOfMoreThreadsThanMakeSense) {
+  job_.backends = {&undividable};
+  job_.integrators = {find_integrator("semi-euler")};
+  const int processors = std::exchange(OnTwoProcessors::processors, 4096);
+  const ResultRow row = run()[0];
+  OnTwoProcessors::processors = processors;
+  EXPECT_EQ(row.status, "ok");
+  EXPECT_EQ(row.threads, 4096);
+  EXPECT_GT(row.gigabytes_per_second, 0);
+  EXPECT_EQ(row.roofline_fraction, std::nullopt);
+}
+
+TEST_F(BenchScene, CountsTheCostsOfTheStepsThatItTimes) {
+  job_.backends = {&counting};
+  job_.integrators = {find_integrator("semi-euler")};
+  const ResultRow row = run()[0];
+  EXPECT_EQ(row.messages_per_step, row.sample_steps.front());
 }
 
 TEST_F(BenchScene, GoesOnWithTheRoundsThatAllCombinationsHave) {

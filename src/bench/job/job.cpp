@@ -51,6 +51,7 @@ double seconds_of(const Work& work) {
 SampleTime time_sample(Combination& combination, int steps) {
   Backend& backend = *combination.backend;
   warm_up(combination);
+  backend.communication();  // discards that of earlier steps
   combination.energy.joules();
   // Read last before the steps and first after them: reading the counters of energy takes CPU time.
   const double processor_before = backend.processor_seconds();
@@ -262,7 +263,6 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
                                 std::optional<std::size_t> first) {
   std::optional<double> ms;
   attempt(combination, [&] {
-    combination.backend->communication();  // discards that of earlier steps
     const SampleTime time = time_sample(combination, combination.steps);
     if (const auto costs = combination.backend->communication()) combination.communication.push_back(*costs);
     std::optional<State> state;
