@@ -1,5 +1,7 @@
 #include "application/bench/bench_results.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -115,6 +117,16 @@ std::string revision(const BuildInfo& build) {
   return std::string(build.commit) + (build.dirty ? ", changed" : "");
 }
 
+/// The variables that decide where OpenMP's threads run and how they wait: not those that print something,
+/// and not the number of threads, which is compared by itself.
+std::string thread_variables(const Provenance& provenance) {
+  std::vector<std::string> variables;
+  for (const auto& [name, value] : provenance.thread_environment)
+    if (!name.starts_with("OMP_DISPLAY_") && name != "OMP_AFFINITY_FORMAT" && name != "OMP_NUM_THREADS")
+      variables.push_back(printable(name + '=' + value));
+  return variables.empty() ? "empty" : join(variables, " ");
+}
+
 /// A table must not mix results of different programs or machines, nor contain rows that its provenance does
 /// not describe.
 void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
@@ -124,6 +136,13 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
                               revision(earlier.build), revision(now.build)));
   else if (earlier.program_fnv1a_64 && earlier.program_fnv1a_64 != now.program_fnv1a_64)
     all.emplace_back("it is from another build of the program, whose file differs");
+  const auto cpus_of = [](const Provenance& run) {
+    return printable(fmt::format("{}", fmt::join(run.allowed_cpus, ",")));
+  };
+  if (earlier.allowed_cpus != now.allowed_cpus)
+    all.push_back(fmt::format("the CPUs that it may use were {} and are {}", cpus_of(earlier), cpus_of(now)));
+  if (const std::string then = thread_variables(earlier), present = thread_variables(now); then != present)
+    all.push_back(fmt::format("the environment of OpenMP was {} and is {}", then, present));
   if (earlier.backend_programs != now.backend_programs)
     all.emplace_back("a program that is a backend is not the same");
   std::vector<std::string> left_out;
