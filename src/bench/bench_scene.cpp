@@ -40,14 +40,15 @@ std::pair<int, std::size_t> peak_key(const Combination& combination, const StepS
 
 /// Measures the peaks that the combinations are compared with. There are none for a garment, whose work per
 /// step depends on what touches and what is sewn; for a cloth in windows; for implicit integrators, whose
-/// solvers iterate until they converge; and for a job that only takes samples.
+/// solvers iterate until they converge; for a program that reports more threads than make sense; and for a
+/// job that only takes samples.
 Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
   if (job.garment || job.verified || job.windowed) return peaks;
   for (const Combination& combination : combinations) {
     if (is_implicit(*combination.integrator) || combination.in_double || !combination.backend ||
-        !combination.on_host)
+        !combination.on_host || thread_excess(combination.row.threads))
       continue;
     const auto [threads, bytes] = peak_key(combination, size);
     if (peaks.contains({threads, bytes})) continue;
@@ -157,9 +158,17 @@ bool builds_scenes_itself(const BackendInfo& info) {
   return info.program != nullptr && info.program->in_ranks;
 }
 
-/// Steps the second stretch with another instance of the backend.
+/// Steps the second stretch with another instance of the backend. The row's note says if the stretch is so
+/// short that it shows little: short time steps move nodes by no more than roundings.
 void verify_second(Combination& combination, const SceneJob& job, const BackendInfo& info,
                    const SecondStretch& stretch) {
+  constexpr int short_part = 8;
+  if (short_part * stretch.steps < stretch.most_steps || stretch.landed == 0)
+    append_sentence(combination.row.note,
+                    fmt::format("the second stretch could be compared for {} of {}{}: roundings may hide "
+                                "small faults",
+                                stretch.steps, pluralize(stretch.most_steps, "step"),
+                                stretch.landed == 0 ? ", in which nothing landed" : ""));
   combination.backend->rest();
   ExecutionOptions execution = job.execution;
   execution.scene += "-small";  // a program may know scenes by their names
@@ -262,9 +271,9 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   return results;
 }
 
-/// Rows of the samples so far.
+/// Rows of the samples so far. `are_checked`: the checks after the last round are done.
 std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, const StepSize& size,
-                               const Peaks& peaks) {
+                               const Peaks& peaks, bool are_checked) {
   std::vector<ResultRow> rows;
   for (const Combination& combination : combinations) {
     const auto serial = std::ranges::find_if(combinations, [&](const Combination& other) {
@@ -275,6 +284,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);
     summarise_costs(combination, row);
     compare_with_peaks(combination, size, peaks, row);
+    if (row.status == "ok" && !are_checked) append_sentence(row.note, unchecked_samples);
     require_finite(row);
   }
   return rows;
@@ -319,7 +329,8 @@ struct FirstRound {
 void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, const SceneJob& job,
                  const BenchWatch& watch) {
   std::string activity = fmt::format("round {}", static_cast<int>(rounds) + 1);
-  double done = (rounds - first.number) / (job.rounds - first.number);
+  const int planned = job.rounds - first.number;  // none if this sample's time does not count
+  double done = planned > 0 ? (rounds - first.number) / planned : 0;
   if (job.deadline) {
     const std::chrono::duration<double> spent = Clock::now() - first.start, all = *job.deadline - first.start;
     done = all > spent ? std::max(done, spent / all) : 1;
@@ -359,7 +370,7 @@ class SampleSecrets {
   }
   /// Checks the current round, whatever was chosen.
   void check() {
-    checks_this_ = has_checked_ = true;
+    checks_this_ = has_checked_ = checks_;
     checked_ = present_;
   }
 
@@ -524,13 +535,14 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       stopped = true;
       break;
     }
-    watch.after_round(rows_of(all, size, peaks));
+    watch.after_round(rows_of(all, size, peaks, false));
     measured_any = true;
   }
-  // The deadline allowed fewer rounds than expected: take one more, whose times do not count.
-  if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
+  // The deadline allowed fewer rounds than expected, or an earlier run took all of them: take one more, whose
+  // times do not count.
+  if (!stopped && (!measured_any || secrets.is_due())) stopped = !take(job.rounds - 1, false);
   for (Combination& combination : all) {
-    if (combination.backend) require_prompt_steps(combination);
+    if (combination.backend) require_prompt_steps(combination, job);
     if (combination.backend && !stopped) count_events(combination, job);
     if (job.fps && combination.backend && !stopped) {
       watch.progress(fmt::format("frames: {} {}", combination.row.integrator, combination.row.backend), 1);
@@ -541,7 +553,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   }
   watch.progress("check of the samples", 1);
   secrets.compare(all);
-  return rows_of(all, size, peaks);
+  return rows_of(all, size, peaks, !stopped);
 }
 
 }  // namespace mssim

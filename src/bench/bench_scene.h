@@ -12,7 +12,7 @@ namespace mssim {
 struct BenchWatch {
   /// Receives the current activity and the finished share of the scene, 0 to 1.
   std::function<void(const std::string& activity, double done)> progress;
-  /// Receives the rows with the samples of all rounds so far, to be kept.
+  /// Receives the rows with the samples of all rounds so far, to be kept; their note is `unchecked_samples`.
   std::function<void(const std::vector<ResultRow>& rows)> after_round;
   /// Returns whether to stop now. Samples of an incomplete round are lost.
   std::function<bool()> stop;
@@ -40,11 +40,12 @@ struct BenchWatch {
 /// job.verified decide which combinations are right, and only these are sampled.
 ///
 /// Rounds for which every combination has an earlier sample are not measured again. Earlier samples of other
-/// rounds are dropped.
+/// rounds are dropped. If no round is left to measure, the samples of one more round are checked, and their
+/// times do not count.
 ///
 /// Returns one row per combination, integrators outermost. The row of a combination that cannot run or is
-/// wrong has the reason. If stopped, the rows have the samples of the complete rounds; there are no rows if
-/// it was stopped during the preparation or the first round.
+/// wrong has the reason. If stopped, the rows have the samples of the complete rounds, and the note
+/// `unchecked_samples`; there are no rows if it was stopped during the preparation or the first round.
 std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch);
 
 }  // namespace mssim

@@ -183,6 +183,23 @@ std::optional<double> evaluations_of(const Integrator& integrator, const System&
   return std::nullopt;
 }
 
+/// Reads the state after a run of `steps` steps, which took `run_s`. Throws BackendFailure for a program that
+/// takes its steps only when the state is requested.
+State prompt_state(Backend& backend, const System& system, int steps, double run_s) {
+  constexpr int tries = 3;  // because a busy machine delays single readings
+  double postponed_s = std::numeric_limits<double>::infinity();
+  for (int tried = 0; tried < tries; ++tried) {
+    if (tried > 0) {
+      backend.set_state(system.start);
+      backend.step(steps);
+    }
+    TimedState end = read_state(backend, system.start, run_s);
+    postponed_s = std::min(postponed_s, end.postponed_s);
+    if (postponed_s <= run_s) return std::move(end.state);
+  }
+  throw BackendFailure(describe_postponed(steps, run_s, postponed_s), "");
+}
+
 /// Sets the errors of a point from its state at the horizon.
 void take_state(WorkPoint& point, const System& system, const TrustedState& trusted, const State& state) {
   if (first_bad_node(state)) {
@@ -420,7 +437,7 @@ std::optional<MeasuredPoint> WorkCurve::measure(int steps) {
     const StepTime time = time_steps(*backend, system_, steps, enough_s);
     point.seconds_a_step = time.seconds;
     point.samples = time.runs;
-    state = backend->state();
+    state = prompt_state(*backend, system_, steps, time.seconds * steps);
     point.note = backend->note();
   };
   if (!succeeds(*method_.backend, method_.status, method_.late, run)) {

@@ -44,6 +44,9 @@ const char* remedy(int error_number) {
       return "free some space or choose another folder";
     case EFBIG:
       return "raise the limit on file sizes (ulimit -f) or write less";
+    case EMFILE:
+    case ENFILE:
+      return "raise the limit of open files (ulimit -n)";
     case EACCES:
     case EPERM:
     case EROFS:
@@ -344,7 +347,7 @@ TemporaryFolder::TemporaryFolder(const fs::path& parent) {
   std::string name = ((none ? parent : whole) / "mssim-XXXXXX").string();
   if (!::mkdtemp(name.data()))
     throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +
-                             std::strerror(errno) + "); set TMPDIR to a writable folder");
+                             std::strerror(errno) + "); set TMPDIR to a writable folder whose path is short");
   path_ = name;
 }
 

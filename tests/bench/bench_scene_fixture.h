@@ -17,7 +17,7 @@ class OtherSerial : public Backend {
   std::string device() const override { return "made up"; }
   int threads() const override { return 1; }
 
- private:
+ protected:
   std::unique_ptr<Backend> serial_;
 };
 
@@ -64,6 +64,29 @@ class FailsAt final : public OtherSerial {
 };
 constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, {}, make_other<FailsAt>,
                                 {},          {}};
+
+/// Takes its steps when it is asked for the state.
+class Postponing final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void set_state(const State& state) override {
+    owed_ = 0;
+    OtherSerial::set_state(state);
+  }
+  void step(int count) override {
+    owed_ += count;
+    for (const Stopwatch watch; watch.seconds() < 3e-5;) {
+    }  // so long that 2,000 steps could be done
+  }
+  State state() const override {
+    serial_->step(std::exchange(owed_, 0));
+    return OtherSerial::state();
+  }
+
+ private:
+  mutable int owed_ = 0;
+};
+constexpr BackendInfo postponing{"postponing", "", "is late", false, {}, make_other<Postponing>, {}, {}};
 
 /// A small cloth, which is measured in short samples.
 class BenchScene : public testing::Test {

@@ -41,10 +41,31 @@ void fail_row(ResultRow& row, const std::string& status) {
 class OnTwoProcessors final : public OtherSerial {
  public:
   using OtherSerial::OtherSerial;
-  int threads() const override { return 2; }
+  int threads() const override { return processors; }
+
+  inline static int processors = 2;
 };
 constexpr BackendInfo undividable{
     "undividable", "", "takes two", false, {}, make_other<OnTwoProcessors>, {}, {}};
+
+/// A right one of several processes: it tells how many steps it has taken since it was asked last.
+class CountsSteps final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void step(int count) override {
+    steps_ += count;
+    OtherSerial::step(count);
+  }
+  std::optional<Communication> communication() override {
+    Communication costs;
+    costs.messages = std::exchange(steps_, 0);
+    return costs;
+  }
+
+ private:
+  int steps_ = 0;
+};
+constexpr BackendInfo counting{"counting", "", "counts", false, {}, make_other<CountsSteps>, {}, {}};
 
 /// What a program may do that wants to look fast.
 enum class Cheat : std::uint8_t {
@@ -52,7 +73,7 @@ enum class Cheat : std::uint8_t {
   drifts,     ///< is right for a hundred steps of a request, and then pulls too weakly
   grows,      ///< is right until it has been asked for some states, and then gives huge ones
   remembers,  ///< steps from the scene's start, whatever state it is given, which it need not do twice
-  postpones,  ///< takes its steps when it is asked for the state
+  reverses,   ///< gives velocities of the opposite sign
   nothing     ///< is right, but slow to give a state
 };
 
@@ -65,14 +86,11 @@ class Cheating final : public Backend {
         weak_(find_backend("serial")->make(weakened(weak_system_), integrator, dt_s, options)) {}
   void set_state(const State& state) override {
     present_.reset();
-    owed_ = 0;
     right_->set_state(cheat == Cheat::remembers ? start_ : state);
   }
   void step(int count) override {
     const int known = std::min(count, 100), more = count - known;
-    if (cheat == Cheat::postpones) {
-      owed_ += count;
-    } else if (cheat == Cheat::grows || cheat == Cheat::remembers || cheat == Cheat::nothing) {
+    if (cheat != Cheat::stops && cheat != Cheat::drifts) {
       right_->step(count);
     } else {
       right_->step(known);
@@ -83,11 +101,12 @@ class Cheating final : public Backend {
     }
   }
   State state() const override {
-    right_->step(std::exchange(owed_, 0));
     if (cheat == Cheat::nothing) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     State state = present_ ? *present_ : right_->state();
     if (cheat == Cheat::grows && ++states_ > 2)
       for (Vec3d& x : state.position) x = 1e300 * x;
+    if (cheat == Cheat::reverses)
+      for (Vec3d& v : state.velocity) v = -1 * v;
     return state;
   }
   std::string device() const override { return "made up"; }
@@ -105,7 +124,7 @@ class Cheating final : public Backend {
   System weak_system_;
   std::unique_ptr<Backend> right_, weak_;
   std::optional<State> present_;
-  mutable int owed_ = 0, states_ = 0;
+  mutable int states_ = 0;
 };
 
 std::unique_ptr<Backend> cheating(const System& system, const Integrator& integrator, double dt_s,
@@ -180,6 +199,25 @@ TEST_F(BenchScene, SaysOfARowThatItTookMoreProcessorsThanWereAskedFor) {
   EXPECT_EQ(run()[1].note, "another mesh");
 }
 
+TEST_F(BenchScene, ComparesNoRowWithPeaksOfMoreThreadsThanMakeSense) {
+  job_.backends = {&undividable};
+  job_.integrators = {find_integrator("semi-euler")};
+  const int processors = std::exchange(OnTwoProcessors::processors, 4096);
+  const ResultRow row = run()[0];
+  OnTwoProcessors::processors = processors;
+  EXPECT_EQ(row.status, "ok");
+  EXPECT_EQ(row.threads, 4096);
+  EXPECT_GT(row.gigabytes_per_second, 0);
+  EXPECT_EQ(row.roofline_fraction, std::nullopt);
+}
+
+TEST_F(BenchScene, CountsTheCostsOfTheStepsThatItTimes) {
+  job_.backends = {&counting};
+  job_.integrators = {find_integrator("semi-euler")};
+  const ResultRow row = run()[0];
+  EXPECT_EQ(row.messages_per_step, row.sample_steps.front());
+}
+
 TEST_F(BenchScene, GoesOnWithTheRoundsThatAllCombinationsHave) {
   const std::vector<ResultRow> first = run();
   job_.earlier = first;
@@ -233,7 +271,10 @@ TEST_F(BenchScene, StopsWithTheRoundsThatAreComplete) {
   const std::vector<ResultRow> rows = run();
   EXPECT_EQ(kept_.size(), 2U);
   ASSERT_EQ(rows.size(), 4U);
-  for (const ResultRow& row : rows) EXPECT_EQ(row.samples_ms.size(), 2U);
+  for (const ResultRow& row : rows) {
+    EXPECT_EQ(row.samples_ms.size(), 2U);
+    EXPECT_TRUE(has_unchecked_samples(row));
+  }
 }
 
 TEST_F(BenchScene, GivesNoRowsWhenItIsStoppedBeforeARoundIsComplete) {
@@ -327,12 +368,53 @@ TEST_F(BenchScene, FindsAProgramThatIsRightOnlyWhereItIsVerified) {
       EXPECT_EQ(row.ms_per_step.has_value(), right);
     }
   };
-  expect_found(Cheat::postpones, "reports steps before they are done");
+  expect_found(Cheat::reverses, "velocity error");
   expect_found(Cheat::grows, "not finite");
   for (const Cheat what : {Cheat::stops, Cheat::drifts, Cheat::remembers})
     expect_found(what, "position error");
   job_.deadline = std::chrono::steady_clock::now();
   expect_found(Cheat::stops, "position error");
+}
+
+TEST_F(BenchScene, FindsAProgramThatPostponesItsStepsHoweverFewSamplesThereAre) {
+  system_ = solid_block(5, 4, 3);
+  job_.backends = {find_backend("serial"), &postponing};
+  job_.integrators = {find_integrator("semi-euler")};
+  job_.sample_seconds = 0.05;
+  for (const int rounds : {1, 2, 4}) {
+    job_.rounds = rounds;
+    const std::vector<ResultRow> rows = run();
+    EXPECT_EQ(rows[0].status, "ok") << rounds;
+    EXPECT_THAT(rows[1].status, HasSubstr("reports steps before they are done")) << rounds;
+    EXPECT_FALSE(rows[1].verified) << rounds;
+  }
+}
+
+TEST_F(BenchScene, ChecksSamplesThatAnEarlierRunLeftUnchecked) {
+  system_ = solid_block(5, 4, 3);
+  job_.backends = {find_backend("serial"), &cheat, &postponing};
+  job_.integrators = {find_integrator("semi-euler")};
+  job_.sample_seconds = 0.05;
+  Cheating::cheat = Cheat::remembers;
+  const std::vector<ResultRow> rows = run();
+  ASSERT_EQ(kept_.size(), 3U);
+  for (const ResultRow& row : kept_.back()) {
+    EXPECT_TRUE(counts(row)) << row.backend;
+    EXPECT_TRUE(has_unchecked_samples(row)) << row.backend;
+  }
+  EXPECT_FALSE(has_unchecked_samples(rows[0]));
+  for (const int earlier : {1, 3}) {  // ended after these rounds, and continued for as many or for fewer
+    kept_.resize(3);
+    job_.earlier = kept_[static_cast<std::size_t>(earlier) - 1];
+    job_.rounds = 1;
+    const std::vector<ResultRow> resumed = run();
+    EXPECT_EQ(kept_.size(), 3U) << "no round was left";
+    EXPECT_EQ(resumed[0].status, "ok");
+    EXPECT_EQ(resumed[0].samples_ms, job_.earlier[0].samples_ms);
+    EXPECT_FALSE(has_unchecked_samples(resumed[0]));
+    EXPECT_THAT(resumed[1].status, HasSubstr("position error"));
+    EXPECT_THAT(resumed[2].status, HasSubstr("reports steps before they are done"));
+  }
 }
 
 TEST_F(BenchScene, LetsAProgramBeSlowToGiveItsState) {
@@ -365,6 +447,14 @@ TEST_F(BenchScene, TimesAMethodThatGrowsForAsLongAsItCanBeCompared) {
     }
     EXPECT_EQ(row.note.find("doubles a rounding") != std::string::npos, grows) << row.note;
   }
+}
+
+TEST_F(BenchScene, SaysOfARowThatShortStepsShowLittle) {
+  EXPECT_THAT(run()[1].note, Not(HasSubstr("second stretch")));
+  job_.dt_s = 1e-6;
+  const ResultRow row = run()[1];
+  EXPECT_THAT(row.note, HasSubstr("second stretch"));
+  EXPECT_THAT(row.note, HasSubstr("of 400 steps"));
 }
 
 TEST_F(BenchScene, VerifiesAClothAtRest) {

@@ -71,6 +71,12 @@ expect 2 'cannot continue in moved: the CPU was Another CPU[ ,].*; the number of
 cp -r int rebuilt
 sed -i 's/\("program_fnv1a_64": "\)..../\10000/' rebuilt/provenance.json
 expect 2 'cannot continue in rebuilt: it is from another build of the program' "${bench[@]}" --out rebuilt --resume
+cp -r int elsewhere
+sed -i '/"allowed_cpus": \[/,/\]/ s/[0-9][0-9]*/1234/' elsewhere/provenance.json
+expect 2 'cannot continue in elsewhere: the CPUs that it may use were 1234.* and are [0-9,]*; choose another' "${bench[@]}" --out elsewhere --resume
+OMP_WAIT_POLICY=passive expect 2 'cannot continue in int: the environment of OpenMP was .* and is .*OMP_WAIT_POLICY=passive' \
+  "${bench[@]}" --out int --resume
+OMP_DISPLAY_AFFINITY=false ends 0 "${bench[@]}" --out int --resume
 expect 2 'resume' bench --scene cloth2500 --resume
 expect 2 'cannot continue in int: it has results of cloth2500, which this command leaves out; choose another' \
   bench --scene cloth4900 --integrator semi-euler --threads 1 --backend serial,openmp --rounds 6 --out int --resume

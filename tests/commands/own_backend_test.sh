@@ -60,7 +60,7 @@ row exits 'failed: exits ended with exit code 3 before it answered ""step 1""; i
 for mistake in hangs ignores-signals leaves-children; do
   row "$mistake" "failed: $mistake did not answer \"\"step 1\"\" within 2 s"
 done
-row binary 'to ""step 1"", where done or failed is expected'
+row binary 'to ""step 1"", where done, or failed and a reason, is expected'
 row nan 'failed: blew up at step 1 (t = 5e-05 s): node 7 is not finite'
 row floods ,true,ok,
 row tells-time ,true,ok,
@@ -119,6 +119,10 @@ for folder in tmp "$PWD"/long*; do
   TMPDIR=$folder ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends
   [ -z "$(ls "$folder")" ] || fail "$folder holds $(ls "$folder")"
 done
+broken=$'a\nfolder'
+mkdir "$broken"
+TMPDIR=$PWD/$broken ends 1 "${bench[@]}" --backend serial,./spring_list --out broken
+grep -q 'failed: .*line break; set TMPDIR' broken/timings.csv || fail "a line break in TMPDIR: $(cat broken/timings.csv)"
 TMPDIR=$work/none "$mssim" "${bench[@]}" --backend serial,./spring_list --out nowhere >out 2>err && fail "a missing TMPDIR is not told"
 grep -q '^cloth2500,[0-9,]*,serial,.*,true,ok,' nowhere/timings.csv || fail "a missing TMPDIR costs serial: $(cat err)"
 

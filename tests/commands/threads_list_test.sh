@@ -22,10 +22,3 @@ warns 'the folder has other backends or integrators'
 ends 0 "${bench[@]}" --threads 2 --rounds 1 --overwrite --out list
 [ ! -e list/threads.csv ] || fail "there is a table of one number of threads"
 ends 0 compare list list
-
-# What is advised for speed-ups can be typed.
-ends 0 bench --scene cloth2500 --backend openmp --integrator semi-euler --threads 1,2 --rounds 1
-advice=$(sed -n 's/.*add it: --backend //p' "$work/err")
-[ "$advice" = serial,openmp ] || fail "advice: $(cat "$work/err")"
-ends 0 bench --scene cloth2500 --backend "$advice" --integrator semi-euler --threads 1,2 --rounds 1 --out typed
-[ "$(column_of typed/timings.csv threads | tr '\n' ' ')" = "1 1 2 " ] || fail "typed: $(cat typed/timings.csv)"

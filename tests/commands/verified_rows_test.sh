@@ -50,6 +50,9 @@ refuse 'it was written by another program' "$work/doctored"
 doctored provenance.json '/program_fnv1a_64/d'
 refuse 'it was written by another program' "$work/doctored"
 
+doctored timings.csv 's/,true,ok,,/,true,ok,its samples are not checked yet,/'
+refuse 'the samples of mine, openmp, semi-euler are not checked.*--resume' "$work/doctored"
+
 # A row that was not verified is not sampled and not verified.
 for wrong in 's/,true,ok,/,false,ok,/' 's/,true,ok,/,false,failed: too far,/'; do
   doctored timings.csv "$wrong"

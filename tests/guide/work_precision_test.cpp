@@ -4,6 +4,7 @@
 #include "bench/verification/verification.h"
 #include "guide/guide.h"
 #include "integrators/all_integrators.h"
+#include "tests/bench/bench_scene_fixture.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
 
@@ -77,6 +78,21 @@ TEST(WorkCurve, IsUnsupportedWithoutSpendingTimeWhereTheBackendLacksTheIntegrato
   EXPECT_FALSE(curve.has_next());
   EXPECT_EQ(method.lack, Lack::backend);
   EXPECT_THAT(method.status, testing::HasSubstr("implicit"));
+}
+
+TEST(WorkCurve, EndsWithAProgramThatPostponesItsSteps) {
+  const System system = cloth_system(30, 30);
+  const TrustedState trusted =
+      trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-3});
+  StepLimit limit;
+  limit.integrator = find_integrator("semi-euler");
+  limit.measured = {.stable_s = 2.2e-4, .unstable_s = 2.21e-4};
+  GuidedMethod method{limit.integrator, &postponing, {}};
+  WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-3);
+  EXPECT_FALSE(curve.next());
+  EXPECT_FALSE(curve.has_next());
+  EXPECT_EQ(method.lack, Lack::backend);
+  EXPECT_THAT(method.status, StartsWith("failed: it reports steps before they are done"));
 }
 
 TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {

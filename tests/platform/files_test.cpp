@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 
 #include "tests/support/files_fixture.h"
@@ -128,6 +129,11 @@ TEST_F(AtomicFileTest, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
             0);
   EXPECT_EQ(text_of(file), "old\n");
   EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
+}
+
+TEST(WriteFailure, NamesTheLimitThatWasReached) {
+  EXPECT_THAT(write_failure("a", "creating it", EMFILE), HasSubstr("ulimit -n"));
+  EXPECT_THAT(write_failure("a", "creating it", EFBIG), HasSubstr("ulimit -f"));
 }
 
 TEST_F(AtomicFileTest, HasOneWriterAtATime) {

@@ -1,5 +1,7 @@
 #include "application/bench/bench_results.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -55,7 +57,8 @@ bool is_finished(const BenchSettings& settings, const std::string& scene,
                      " than this command: --resume needs the same ones; choose another --out, "
                      "or --overwrite to measure again");
   return std::ranges::all_of(earlier, [&](const ResultRow& row) {
-    return row.status != "ok" || (row.rounds >= settings.rounds && has_frames(settings, row));
+    return row.status != "ok" ||
+           (row.rounds >= settings.rounds && has_frames(settings, row) && !has_unchecked_samples(row));
   });
 }
 
@@ -114,6 +117,16 @@ std::string revision(const BuildInfo& build) {
   return std::string(build.commit) + (build.dirty ? ", changed" : "");
 }
 
+/// The variables that decide where OpenMP's threads run and how they wait: not those that print something,
+/// and not the number of threads, which is compared by itself.
+std::string thread_variables(const Provenance& provenance) {
+  std::vector<std::string> variables;
+  for (const auto& [name, value] : provenance.thread_environment)
+    if (!name.starts_with("OMP_DISPLAY_") && name != "OMP_AFFINITY_FORMAT" && name != "OMP_NUM_THREADS")
+      variables.push_back(printable(name + '=' + value));
+  return variables.empty() ? "empty" : join(variables, " ");
+}
+
 /// A table must not mix results of different programs or machines, nor contain rows that its provenance does
 /// not describe.
 void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
@@ -123,6 +136,13 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
                               revision(earlier.build), revision(now.build)));
   else if (earlier.program_fnv1a_64 && earlier.program_fnv1a_64 != now.program_fnv1a_64)
     all.emplace_back("it is from another build of the program, whose file differs");
+  const auto cpus_of = [](const Provenance& run) {
+    return printable(fmt::format("{}", fmt::join(run.allowed_cpus, ",")));
+  };
+  if (earlier.allowed_cpus != now.allowed_cpus)
+    all.push_back(fmt::format("the CPUs that it may use were {} and are {}", cpus_of(earlier), cpus_of(now)));
+  if (const std::string then = thread_variables(earlier), present = thread_variables(now); then != present)
+    all.push_back(fmt::format("the environment of OpenMP was {} and is {}", then, present));
   if (earlier.backend_programs != now.backend_programs)
     all.emplace_back("a program that is a backend is not the same");
   std::vector<std::string> left_out;
@@ -217,11 +237,18 @@ void require_rows(const std::vector<ResultRow>& verified, const std::string& sce
                   const BenchSettings& settings, const std::string& folder) {
   const std::vector<const ResultRow*> rows = pointers_to(verified);
   for (const Integrator* integrator : settings.integrators)
-    for (const BackendInfo* backend : settings.backends)
-      if (!find_row(rows, scene, backend->name, integrator->name))
+    for (const BackendInfo* backend : settings.backends) {
+      const ResultRow* row = find_row(rows, scene, backend->name, integrator->name);
+      if (row == nullptr)
         throw UsageError(
             "--verified {} has no row of {}, {}, {}: ask for what it has, or leave --verified out", folder,
             scene, backend->name, integrator->name);
+      if (has_unchecked_samples(*row))
+        throw UsageError(
+            "--verified {}: the samples of {} are not checked, because its run was ended before that; "
+            "finish it with --resume, or leave --verified out",
+            folder, combination_name(*row));
+    }
 }
 
 BenchResults::BenchResults(const BenchPlan& plan)

@@ -28,9 +28,9 @@ class BenchRows {
   std::vector<ResultRow> rows_;
 };
 
-/// Whether an earlier run completed every requested combination of the scene, frames included. Throws
-/// UsageError if it measured other combinations, because samples of different rows are compared round by
-/// round.
+/// Whether an earlier run completed every requested combination of the scene, with frames and the check of
+/// its samples. Throws UsageError if it measured other combinations, because samples of different rows are
+/// compared round by round.
 bool is_finished(const BenchSettings& settings, const std::string& scene,
                  const std::vector<ResultRow>& earlier);
 
@@ -50,7 +50,8 @@ MeasuredRun read_run(const std::filesystem::path& path);
 /// folder does not match, and the errors of reading it. `now`: with the scenes.
 std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now);
 
-/// Throws UsageError if these rows of a folder lack a combination of the scene.
+/// Throws UsageError if these rows of a folder lack a combination of the scene, or its samples are not
+/// checked.
 void require_rows(const std::vector<ResultRow>& verified, const std::string& scene,
                   const BenchSettings& settings, const std::string& folder);
 

@@ -50,7 +50,8 @@ std::pair<std::string_view, std::string_view> split(std::string_view line) {
 
 void refuse_failed(const std::string& line, const std::string& asked) {
   const auto [word, text] = split(line);
-  if (word == "failed") throw AnswerFailure("failed at \"" + asked + "\": " + printable(text, longest_shown));
+  if (word == "failed" && !text.empty())
+    throw AnswerFailure("failed at \"" + asked + "\": " + printable(text, longest_shown));
 }
 
 /// The number in an answer to `prepare`, from 1 to `most`; `what` names the things that it counts.
@@ -179,8 +180,8 @@ void Conversation::say_last(std::string_view lines) {
 bool take_introduction(Introduction& introduction, const std::string& line) {
   const auto [word, text] = split(line);
   const std::string shown = printable(text, longest_shown);
-  if (word == "unsupported") throw Unsupported(shown);
-  if (word == "unavailable") throw Unavailable(shown);
+  if (word == "unsupported" && !text.empty()) throw Unsupported(shown);
+  if (word == "unavailable" && !text.empty()) throw Unavailable(shown);
   refuse_failed(line, "prepare");
   if (line == "ready 1") return true;
   if (word == "device" && !text.empty())
@@ -198,10 +199,9 @@ bool take_introduction(Introduction& introduction, const std::string& line) {
   else if (line == "tells costs")
     introduction.tells_costs = true;
   else
-    refuse(
-        line, "prepare",
-        "device, threads, pass, precision, note, untimed, tells costs, ready 1, unsupported, unavailable or "
-        "failed");
+    refuse(line, "prepare",
+           "device, threads, pass, precision, note, untimed, tells costs or ready 1, or unsupported, "
+           "unavailable or failed and a reason");
   return false;
 }
 
@@ -227,7 +227,7 @@ bool take_cost(Communication& costs, const std::string& line) {
   else
     refuse(line, "costs",
            "cost waiting or cost packing and a share, cost bytes, cost messages, cost latency or cost "
-           "bandwidth and a number, done or failed");
+           "bandwidth and a number, done, or failed and a reason");
   return false;
 }
 
@@ -236,7 +236,7 @@ void take_done(const std::string& request, const std::string& line, bool timed) 
   refuse_failed(line, request);
   const auto [word, text] = split(line);
   if (!(timed && word == "done" && is_at_least_zero(number_in<double>(text))))
-    refuse(line, request, "done or failed");
+    refuse(line, request, "done, or failed and a reason,");
 }
 
 }  // namespace mssim

@@ -161,10 +161,13 @@ StateFile::StateFile(std::size_t nodes, const std::filesystem::path& elsewhere) 
     if (make(shared_->path())) return;
     shared_.reset();
   }
-  if (!make(elsewhere))
-    throw std::runtime_error(
-        fmt::format("cannot make {} of {} bytes ({}); set TMPDIR to a folder with more room", path_.string(),
-                    bytes_of(nodes), std::strerror(errno)));
+  if (make(elsewhere)) return;
+  const int error = errno;
+  throw std::runtime_error(fmt::format(
+      "cannot make {} of {} bytes ({}); {}", path_.string(), bytes_of(nodes), std::strerror(error),
+      error == EFBIG                       ? "raise the limit on file sizes (ulimit -f)"
+      : error == EMFILE || error == ENFILE ? "raise the limit of open files (ulimit -n)"
+                                           : "set TMPDIR to a folder with more room"));
 }
 
 bool StateFile::make(const std::filesystem::path& folder) {

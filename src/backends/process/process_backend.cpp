@@ -118,6 +118,10 @@ class ProcessBackend final : public WindowBackend {
         floor_height_(system.floor.height),
         conversation_(folder_.path()),
         state_file_(nodes, folder_.path()) {
+    if (folder_.path().native().find('\n') != std::string::npos)
+      throw std::runtime_error(fmt::format(
+          "no line to a program can name {}, which has a line break; set TMPDIR to another folder",
+          printable(folder_.path().native())));
     const std::filesystem::path system_file = folder_.path() / "system.h5";
     // With several processes, each builds its part of a cloth itself, and the cloth may be large.
     if (!program.in_ranks || !std::holds_alternative<GridPatch>(system.topology))

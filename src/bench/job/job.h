@@ -131,10 +131,8 @@ struct Combination {
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
   std::vector<double> sample_seconds;        ///< wall time of each sample of this run
-  /// For each sample of this run, s: how much longer its end state takes to read than a state after one step;
-  /// 0 if it is read faster than its steps were taken.
-  std::vector<double> postponed_seconds;
-  std::optional<SampleEnd> checked;  ///< end of the sample that is to be checked
+  std::vector<double> postponed_seconds;     ///< for each sample of this run (TimedState)
+  std::optional<SampleEnd> checked;          ///< end of the sample that is to be checked
   /// Compares the windows after this number of steps; empty if the cloth is not in windows or was verified by
   /// an earlier process.
   std::function<Verification(WindowBackend& backend, int steps)> compare_windows;
@@ -192,9 +190,9 @@ void count_events(Combination& combination, const SceneJob& job);
 /// Fails the combination if its samples show that steps are not taken while the clock runs, but when the
 /// state is requested: the more steps there were, the longer reading it then takes. The criterion: reading a
 /// sample's end takes longer than reading a state after one step, by more than the sample itself took (low
-/// end of the median's interval). Needs at least three samples of more than one step. Cloths in windows are
-/// not examined.
-void require_prompt_steps(Combination& combination);
+/// end of the median's interval). If one or two samples show that, more are taken until there are three;
+/// their times do not count. Samples of one step, and cloths in windows, are not examined.
+void require_prompt_steps(Combination& combination, const SceneJob& job);
 
 /// Adds medians of the other costs of this run's samples to the row: processors, energy, and communication.
 void summarise_costs(const Combination& combination, ResultRow& row);

@@ -14,7 +14,6 @@
 #include <sstream>
 #include <tuple>
 
-#include "platform/files.h"
 #include "platform/machine.h"
 #include "text/text.h"
 
@@ -200,13 +199,22 @@ std::string without_home(std::string_view argument) {
   return result;
 }
 
-/// Hash of the running program's file; none if it cannot be read.
-std::optional<std::uint64_t> program_hash() {
-  try {
-    return fnv1a_64(read_file("/proc/self/exe"));
-  } catch (const ReadError&) {
-    return std::nullopt;
+/// Hash of a file; none if it is not a regular file. Of a file that is longer than `most_bytes` or cannot be
+/// read, the hash is of its size and the time of its last change.
+std::optional<std::uint64_t> file_hash(const fs::path& file, std::uintmax_t most_bytes = UINTMAX_MAX) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (std::ifstream in(file, std::ios::binary); in.is_open() && bytes <= most_bytes) {
+    std::uint64_t hash = fnv1a_64("");
+    std::vector<char> block(std::size_t{1} << 20);
+    do {
+      in.read(block.data(), std::ssize(block));
+      hash = fnv1a_64({block.data(), static_cast<std::size_t>(in.gcount())}, hash);
+    } while (in);
+    return hash;
   }
+  return fnv1a_64(fmt::format("{} {}", bytes, fs::last_write_time(file, error).time_since_epoch().count()));
 }
 
 std::string now_utc() {
@@ -285,7 +293,7 @@ Machine read_machine(const fs::path& root) {
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads) {
   Provenance provenance;
   provenance.build = build_info();
-  provenance.program_fnv1a_64 = program_hash();
+  provenance.program_fnv1a_64 = file_hash("/proc/self/exe");
   provenance.machine = read_machine();
   provenance.threads = threads;
   provenance.allowed_cpus = process_cpus();
@@ -301,17 +309,15 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
 
 void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
                  const std::filesystem::path& folder) {
-  // Larger files are data; reading them would take too long.
-  constexpr std::size_t largest_file = std::size_t{64} << 20;
+  // Larger arguments are data; reading them would take too long.
+  constexpr std::uintmax_t largest_argument = std::uintmax_t{64} << 20;
   for (std::string& word : record.command) {
     const bool is_program = &word == &record.command.front();
     const std::filesystem::path file = is_program ? program : folder / word;
-    const std::string& shown = word = escaped(without_home(word));
-    try {
-      record.files.push_back({shown, fnv1a_64(read_file(file, largest_file))});
-    } catch (const ReadError&) {
-      continue;  // not a file
-    }
+    const std::optional<std::uint64_t> hash =
+        is_program ? file_hash(file) : file_hash(file, largest_argument);
+    word = escaped(without_home(word));
+    if (hash) record.files.push_back({word, *hash});
   }
   for (auto& [name, value] : record.environment) value = escaped(without_home(value));
   std::ranges::sort(record.environment);

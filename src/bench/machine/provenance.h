@@ -152,8 +152,9 @@ inline AskedProcessors asked_processors(const Provenance& provenance, std::strin
                  : AskedProcessors{row_name, provenance.threads};
 }
 
-/// Adds `record`, a program that is a backend, with the hashes of its files. `program` is the file of the
-/// command's first word, `folder` the working folder.
+/// Adds `record`, a program that is a backend, with the hashes of its files: of an argument's file above 64
+/// MiB, only of its size and the time of its last change. `program` is the file of the command's first word,
+/// `folder` the working folder.
 void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
                  const std::filesystem::path& folder);
 

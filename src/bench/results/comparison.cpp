@@ -100,6 +100,8 @@ std::vector<std::string> differences(std::span<const ResultRow> before, std::spa
     const ResultRow* same = find(now, row);
     if (!same || !row.ms_per_step || !same->ms_per_step) continue;
     add(sentences, "the device of " + row.backend, row.device, same->device);
+    add(sentences, "the number of threads of " + row.backend, std::to_string(row.threads),
+        std::to_string(same->threads));
     add(sentences, "scene " + row.scene, size_of(row), size_of(*same));
   }
   return sentences;

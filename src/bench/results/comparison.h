@@ -19,8 +19,8 @@ namespace mssim {
 /// Compares CPU, compiler (with build type and flags), threads, and the text of scenes that both runs have.
 std::vector<std::string> differences(const Provenance& before, const Provenance& now);
 
-/// Compares device and scene size of the combinations that both runs have (another TetGen makes another mesh
-/// of the same file). Rows without a measurement are ignored.
+/// Compares device, threads and scene size of the combinations that both runs have (another TetGen makes
+/// another mesh of the same file). Rows without a measurement are ignored.
 std::vector<std::string> differences(std::span<const ResultRow> before, std::span<const ResultRow> now);
 
 /// Verdict on a combination that was measured twice.

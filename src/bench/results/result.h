@@ -283,6 +283,14 @@ inline bool has_interval(const ResultRow& row) {
 /// Whether the row is ok and verified, so that its time counts.
 inline bool counts(const ResultRow& row) { return row.status == "ok" && row.verified; }
 
+/// Note of a row whose run has not ended, or ended before the checks that follow its last round.
+inline constexpr std::string_view unchecked_samples = "its samples are not checked yet";
+
+/// Whether the checks that follow the last round are still to be made.
+inline bool has_unchecked_samples(const ResultRow& row) {
+  return row.note.find(unchecked_samples) != std::string::npos;
+}
+
 /// Whether the row failed, or has a time that was not verified.
 inline bool is_wrong(const ResultRow& row) {
   return row.status.starts_with("failed") || (row.status == "ok" && !row.verified);

@@ -10,6 +10,7 @@
 
 #include "backends/backends.h"
 #include "laws/host_laws.h"
+#include "platform/machine.h"
 #include "platform/process.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
@@ -411,6 +412,32 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
         fmt::format("energy is off by {:.6g} of the energy in motion, more than {:.6g}, after {}",
                     deviation.energy, energy_allowed, steps);
   return result;
+}
+
+TimedState read_state(Backend& backend, const State& start, double steps_s) {
+  TimedState read;
+  const Stopwatch watch;
+  read.state = backend.state();
+  const double seconds = watch.seconds();
+  // Many threads step a large cloth faster than its state is read.
+  if (seconds <= steps_s) return read;
+  double after_a_step = 0;  // the longest of three, because a busy machine delays single readings
+  for (int time = 0; time < 3; ++time) {
+    backend.set_state(start);
+    backend.step(1);
+    const Stopwatch again;
+    backend.state();
+    after_a_step = std::max(after_a_step, again.seconds());
+  }
+  read.postponed_s = seconds - after_a_step;
+  return read;
+}
+
+std::string describe_postponed(int steps, double steps_s, double postponed_s) {
+  return fmt::format(
+      "it reports steps before they are done: it takes {:.6g} ms for {}, and then at least {:.6g} ms "
+      "longer to return the state than after one step",
+      1e3 * steps_s, pluralize(steps, "step"), 1e3 * postponed_s);
 }
 
 State sample_start(const System& system, std::uint32_t number) {

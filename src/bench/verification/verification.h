@@ -153,6 +153,21 @@ struct Verification {
 Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s,
                     int steps_taken = 0);
 
+/// A state, and the time by which the steps before it were postponed until it was requested.
+struct TimedState {
+  State state;
+  /// s: how much longer it took to read than a state after one step; 0 if it was read faster than its steps
+  /// were taken.
+  double postponed_s = 0;
+};
+
+/// Reads the backend's state after steps from `start` that took `steps_s`. Leaves the backend in any state.
+TimedState read_state(Backend& backend, const State& start, double steps_s);
+
+/// "it reports steps before they are done: ...", for a backend that took `steps_s` for its steps and
+/// postponed them by at least `postponed_s`.
+std::string describe_postponed(int steps, double steps_s, double postponed_s);
+
 /// Takes steps and rounds the state to single precision after each, to show the effect of roundings. Returns
 /// the last state.
 State step_rounded(Backend& reference, int steps);
@@ -176,9 +191,13 @@ void add_block(SolidBlock& blocks, std::uint32_t nx, std::uint32_t ny, std::uint
 struct SecondStretch {
   System system;  ///< a cloth of 13 x 17 nodes, or two blocks of 4 x 5 x 6 nodes
   int steps = 0;
-  State state;             ///< of the double-precision reference after `steps`
-  double tolerance = 0;    ///< on the position error, in mean rest lengths
+  State state;           ///< of the double-precision reference after `steps`
+  double tolerance = 0;  ///< on the position error, in mean rest lengths
+  /// On the velocity error, m/s: that of the stiffest mode of a stable step, if its position error is the
+  /// tolerance.
+  double velocity_tolerance = 0;
   std::size_t landed = 0;  ///< nodes that have met the floor by then and slid on it
+  int most_steps = 0;      ///< the largest number of steps that was tried
 };
 
 /// Runs the reference of the second stretch of a cloth or of bodies, for up to 400 steps. It ends before the

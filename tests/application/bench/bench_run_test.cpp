@@ -51,6 +51,9 @@ TEST(BenchRows, AreFinishedWhenEachHasItsRoundsOrCannotRun) {
   std::vector<ResultRow> rows{row("a", "serial"), row("a", "opencl")};
   EXPECT_FALSE(is_finished(settings, "a", {}));
   EXPECT_TRUE(is_finished(settings, "a", rows));
+  rows[1].note = "a remark; " + std::string(unchecked_samples);
+  EXPECT_FALSE(is_finished(settings, "a", rows));
+  rows[1].note = "a remark";
   rows[1].rounds = 2;
   EXPECT_FALSE(is_finished(settings, "a", rows));
   rows[1].status = "unavailable: no device";

@@ -245,6 +245,11 @@ TEST(Answers, RefuseAProgramOrItsScene) {
   for (const char* line :
        {"", "ready 2", "threads 0", "threads 5000", "pass 0", "pass 1001", "tells", "tells jokes", "device"})
     EXPECT_THROW(take_introduction(introduction, line), AnswerFailure) << line;
+  for (const char* word : {"unsupported", "unavailable", "failed"})
+    for (const std::string& line : {std::string(word), word + std::string(" ")})
+      EXPECT_THAT(sentence_of<AnswerFailure>([&] { take_introduction(introduction, line); }),
+                  AllOf(StartsWith("answered \"" + line), HasSubstr("reason")))
+          << line;
 }
 
 TEST(Answers, SayWhatProcessesSpendOnEachOther) {

@@ -1,5 +1,8 @@
 #include "backends/process/exchanged_files.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <fstream>
 
 #include "backends/process/process_backend.h"
@@ -7,6 +10,7 @@
 #include "integrators/all_integrators.h"
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/output_fixture.h"
 #include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
@@ -88,6 +92,18 @@ TEST_F(StateFileTest, SurvivesBeingCut) {
   EXPECT_EQ(failure(), "left a state file of 0 bytes instead of 96");
   file_.write(state_);
   EXPECT_EQ(failure(), "");
+}
+
+TEST_F(StateFileTest, NamesTheLimitThatItExceeds) {
+  EXPECT_EQ(exit_of_child([&] {
+              std::signal(SIGXFSZ, SIG_IGN);
+              const rlimit limit{1000, 1000};
+              ::setrlimit(RLIMIT_FSIZE, &limit);
+              EXPECT_THAT(sentence_of<std::runtime_error>([&] { StateFile(1000, folder()); }),
+                          AllOf(HasSubstr("48000 bytes"), HasSubstr("ulimit -f")));
+              return testing::Test::HasFailure() ? 1 : 0;
+            }),
+            0);
 }
 
 TEST_F(StateFileTest, GoesAway) {

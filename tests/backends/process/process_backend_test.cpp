@@ -126,7 +126,7 @@ TEST(ProcessBackend, CountsTheProcessorTimeOfTheProgram) {
 // What else programs do wrong, and what they are measured to be: tests/commands/own_backend_test.sh.
 TEST(ProcessBackend, TellsHowAProgramFails) {
   EXPECT_STREQ(failure_of("nonsense").what(),
-               "nonsense answered \"hello\" to \"step 10\", where done or failed is expected");
+               "nonsense answered \"hello\" to \"step 10\", where done, or failed and a reason, is expected");
   EXPECT_STREQ(failure_of("fails").what(), "fails failed at \"step 10\": a spring has snapped");
   EXPECT_EQ(failure_of("exits").output, "out of cake\n");
   EXPECT_STREQ(failure_of("closes").what(), "closes closed its connection before it answered \"step 10\"");

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -117,6 +118,33 @@ TEST(Provenance, TellsWhatRanWhereAndHow) {
   EXPECT_EQ(json["tetgen"], "1.5");
   EXPECT_THAT(json["started_utc"].get<std::string>(),
               testing::MatchesRegex("20[0-9]{2}-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"));
+}
+
+TEST_F(MadeUpMachine, KnowsProgramsOfAnySizeByTheirHash) {
+  constexpr std::uintmax_t large = (std::uintmax_t{64} << 20) + 1;
+  const auto files_of = [&] {
+    Provenance provenance;
+    add_program(provenance, {"mine", {"./program", "data", "--fast"}}, folder() / "program", folder());
+    return provenance.backend_programs.front().files;
+  };
+  for (const char* name : {"program", "data"}) {
+    put(name, "text");
+    std::filesystem::resize_file(folder() / name, large);
+  }
+  const std::vector<FileHash> before = files_of();
+  ASSERT_EQ(before.size(), 2U);
+  EXPECT_EQ(before[0].name, "./program");
+  EXPECT_EQ(before[1].name, "data");
+  const auto changed = std::filesystem::last_write_time(folder() / "program");
+  put("program", "next");
+  std::filesystem::resize_file(folder() / "program", large);
+  std::filesystem::last_write_time(folder() / "program", changed);
+  std::filesystem::last_write_time(folder() / "data", changed + std::chrono::seconds(1));
+  const std::vector<FileHash> now = files_of();
+  EXPECT_NE(now[0].fnv1a_64, before[0].fnv1a_64) << "of the program's content";
+  EXPECT_NE(now[1].fnv1a_64, before[1].fnv1a_64) << "of the time when an argument's file changed";
+  put("program", "a");
+  EXPECT_EQ(to_hex(files_of()[0].fnv1a_64), "af63dc4c8601ec8c") << "published for FNV-1a";
 }
 
 TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {

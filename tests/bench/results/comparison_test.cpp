@@ -235,6 +235,15 @@ TEST(Comparability, SaysOnceThatABackendRanOnAnotherDevice) {
   EXPECT_THAT(differences(before, now), ElementsAre("the device of opencl was cpu and is a GPU"));
 }
 
+TEST(Comparability, SaysThatABackendRanWithOtherThreads) {
+  const std::vector<ResultRow> before{measured_row("opencl", 1, {})};
+  std::vector<ResultRow> now = before;
+  now[0].threads = before[0].threads + 1;
+  EXPECT_THAT(differences(before, now),
+              ElementsAre(fmt::format("the number of threads of opencl was {} and is {}", before[0].threads,
+                                      now[0].threads)));
+}
+
 TEST(Comparability, SaysThatASceneCameOutOtherwise) {
   const std::vector<ResultRow> before{measured_row("openmp", 1, {})};
   std::vector<ResultRow> now = before;

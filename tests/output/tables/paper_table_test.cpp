@@ -149,11 +149,7 @@ TEST(PaperTable, MarksARatioThatItsTimesContradict) {
 TEST(PaperTable, SaysWhyThereAreNoSpeedUps) {
   EXPECT_THAT(
       page_of({measured_row("openmp", 0.0125, std::nullopt), measured_row("hybrid", 1, std::nullopt)}),
-      HasSubstr("\nspeed-ups are missing, since serial is not among the backends; add it: --backend "
-                "serial,openmp,hybrid.\n"));
-  // What --threads makes is left out, and what was named is not.
-  const std::array<std::string_view, 4> names{"openmp:1", "openmp", "openmp:double:1", "openmp:double"};
-  EXPECT_THAT(reason_without_speedups(names), testing::EndsWith("--backend serial,openmp,openmp:double"));
+      HasSubstr("\nspeed-ups are missing, since serial is not among the backends; add it to --backend.\n"));
   EXPECT_THAT(page_of(table_rows()), Not(HasSubstr("missing")));
 }
 
