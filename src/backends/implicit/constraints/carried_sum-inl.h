@@ -23,10 +23,22 @@ MSSIM_INLINE void carry_move(Vector& x, Vector& rest, Real h, const Vector& v) {
   carry_sum(x.z, rest.z, mul_add(h, v.z, rest.z));
 }
 
+/// sum + rest as their rounded sum and its error, whichever is larger (D. E. Knuth, 1969).
+template <class Real>
+MSSIM_INLINE void round_again(Real& sum, Real& rest) {
+  const Real next = sum + rest, part = next - sum;
+  rest = (sum - (next - part)) + (rest - part);
+  sum = next;
+}
+
 /// Gravity and air damping, v = (v - h g) / (1 + h c): `lost` = h c / (1 + h c) and `fall` = h g / (1 + h c).
-/// A factor 1 / (1 + h c) would be rounded to steps of 6e-8, or to 1.
+/// A factor 1 / (1 + h c) would be rounded to steps of 6e-8, or to 1. Springs have changed v since its sum
+/// was rounded.
 template <class Vector, class Real>
 MSSIM_INLINE void carry_fall(Vector& v, Vector& rest, Real lost, Real fall) {
+  round_again(v.x, rest.x);
+  round_again(v.y, rest.y);
+  round_again(v.z, rest.z);
   carry_sum(v.x, rest.x, mul_add(-lost, v.x, rest.x));
   carry_sum(v.y, rest.y, mul_add(-lost, v.y, rest.y - fall));
   carry_sum(v.z, rest.z, mul_add(-lost, v.z, rest.z));
