@@ -4,11 +4,9 @@
 #include <cmath>
 #include <exception>
 #include <iostream>
-#include <optional>
 #include <set>
 #include <span>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "bench/verification/verification.h"
@@ -22,18 +20,6 @@
 
 namespace mssim {
 namespace {
-
-/// Only meshes and dressed bodies do not follow from the scene's file alone.
-std::string difference(const SceneSpec& spec, const SceneCounts& counts,
-                       const std::optional<SceneCounts>& stated) {
-  if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
-    return "";
-  return fmt::format("the mesh has {} nodes and {} springs where the scene states {} and {}: another {}",
-                     counts.nodes, counts.springs_unique, stated->nodes, stated->springs_unique,
-                     std::holds_alternative<GarmentSpec>(spec.content)
-                         ? "body, or another pattern, makes other panels; state what they have"
-                         : "TetGen, or another file, makes another mesh");
-}
 
 /// The axes around all of which a row of cloth with this middle must go: that of the leg on its side, those
 /// of both legs, or that of the trunk.
@@ -61,8 +47,7 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
   scene.body = std::move(built.body);
   scene.files = parts.files;
   scene.counts = counts_of(scene.spec, scene.system);
-  scene.note = difference(scene.spec, scene.counts, parts.stated);
-  append_sentence(scene.note, built.note);
+  scene.note = std::move(built.note);
   const bool is_garment = scene.body != nullptr;
   scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s
                                : auto_dt(mode_bound(scene.system), [&](const Integrator& integrator) {

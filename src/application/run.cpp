@@ -341,9 +341,6 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
                  {"within", check.within}});
   if (!options.silent)
     std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << to_text(fitting);
-  if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
-    std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
-              << " s the garment is still moving; a longer --duration gives it more time\n";
   const std::vector<std::string> found = misfits(result, fit, {});
   for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
   return found.empty() ? exit_ok : exit_not_verified;

@@ -95,6 +95,7 @@ class EachBody final : public Backend {
     return sum;
   }
   bool runs_on_host() const override { return first().runs_on_host(); }
+  bool is_in_single() const override { return first().is_in_single(); }
   std::string note() const override {
     std::string all;
     for (const std::string& note : of_each(&Backend::note))

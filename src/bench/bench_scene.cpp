@@ -47,7 +47,7 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
   Peaks peaks;
   if (job.garment || job.verified || job.windowed) return peaks;
   for (const Combination& combination : combinations) {
-    if (is_implicit(*combination.integrator) || combination.in_double || !combination.backend ||
+    if (is_implicit(*combination.integrator) || !combination.in_single || !combination.backend ||
         !combination.on_host || thread_excess(combination.row.threads))
       continue;
     const auto [threads, bytes] = peak_key(combination, size);
@@ -60,7 +60,7 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
 
 void compare_with_peaks(const Combination& combination, const StepSize& size, const Peaks& peaks,
                         ResultRow& row) {
-  if (!row.ms_per_step || row.dressing || combination.in_double || is_implicit(*combination.integrator))
+  if (!row.ms_per_step || row.dressing || !combination.in_single || is_implicit(*combination.integrator))
     return;
   const StepCost cost =
       step_cost(*combination.integrator, size_for(combination, size), combination.steps_per_pass);

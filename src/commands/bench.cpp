@@ -332,8 +332,9 @@ std::function<int()> declare_bench(Arguments& arguments) {
                          "Continue an interrupted run of the same command, keeping its finished rounds");
   arguments.add_flag("--overwrite", options->output.overwrite, "Replace existing results in the folder")
       .excludes(resume);
-  arguments.add_flag("--trace", options->output.trace,
-                     "Also trace each combination into FOLDER/traces, after it has been timed");
+  arguments.add_flag(
+      "--trace", options->output.trace,
+      "Also trace each combination into FOLDER/traces, after it has been timed (not of garments)");
   arguments.add_choice<SummaryFormat>(
       "--format", options->format,
       {{"table", SummaryFormat::table},

@@ -61,8 +61,8 @@ constexpr std::string_view exit_codes =
     "Exit codes: 0 success; 1 a row is not verified, a simulation blew up, a garment\n"
     "does not fit, a guide had too little time, a measured body takes no jeans, or a\n"
     "comparison or a history shows a regression; 2 bad usage or input; 3 a requested\n"
-    "device or program is missing; 4 a file could not be written, or a trace could\n"
-    "not be read.";
+    "device or program is missing; 4 a file could not be written, or the system\n"
+    "refused to read a trace.";
 
 /// mssim's first argument when a shell asks what may stand in the place of the last of the words that follow
 /// (src/completion).

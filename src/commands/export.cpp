@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "application/console.h"
@@ -79,6 +80,15 @@ std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<
   return mapped<fs::path>(frames, [&](std::size_t frame) { return target_of(numbered(out, frame)); });
 }
 
+void tell_of(std::span<const fs::path> written) {
+  if (written.empty()) return;
+  std::cerr << "mssim: wrote " << printable(written.front().string());
+  if (written.size() > 1)
+    std::cerr << " to " << printable(written.back().filename().string()) << ", " << written.size()
+              << " files";
+  std::cerr << '\n';
+}
+
 int run(const ExportOptions& options) {
   const TraceReader trace(options.trace);
   const std::vector<std::size_t> frames = exported_frames(options.frames, trace.content().time_s);
@@ -102,15 +112,18 @@ int run(const ExportOptions& options) {
     file.close();
   } else {
     const auto text_of = options.format == ExportFormat::obj ? obj_of : ply_of;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      stop.throw_if_requested();
-      write_file_atomically(files[i], text_of(mesh, frame_of(trace, mesh, frames[i])));
+    std::size_t written = 0;
+    try {
+      for (; written < files.size(); ++written) {
+        stop.throw_if_requested();
+        write_file_atomically(files[written], text_of(mesh, frame_of(trace, mesh, frames[written])));
+      }
+    } catch (...) {  // the files before stay
+      tell_of(std::span(files).first(written));
+      throw;
     }
   }
-  std::cerr << "mssim: wrote " << printable(files.front().string());
-  if (files.size() > 1)
-    std::cerr << " to " << printable(files.back().filename().string()) << ", " << files.size() << " files";
-  std::cerr << '\n';
+  tell_of(files);
   return exit_ok;
 }
 

@@ -270,6 +270,12 @@ MeasuredFile measure_file(const MeasureOptions& options) {
                                  " openings: close them where the surface was made, or give --close-holes");
     BodyProfile profile(surface, options.body);
     tell_of_ignored_parts(profile);
+    if (!profile.has_legs())  // the profile would speak of axes that are not the file's
+      throw InputError(
+          "it does not divide into a left and a right leg if it is upright in {} and faces {}: "
+          "correct these with --up and --facing, or give a body whose legs are apart",
+          up_axis_names.at(static_cast<std::size_t>(guess.stance.up)),
+          facing_names.at(static_cast<std::size_t>(guess.stance.facing)));
     const BodyLandmarks landmarks = found_landmarks(profile);
     listing.add_measures(profile, landmarks);
     tell(options, listing);
@@ -337,7 +343,9 @@ int run_measure(const MeasureOptions& options) {
     MeasuredFile found = measure_file(options);
     return options.scene.empty() ? exit_ok : write_scene(options, std::move(found));
   } catch (const InputError& error) {
-    throw UsageError(printable(options.body, 1000) + " cannot be measured: " + printable(error.what(), 1500));
+    const std::string_view problem = error.what();
+    if (problem.starts_with(options.body)) throw UsageError(printable(problem, 1500));
+    throw UsageError(printable(options.body, 1000) + " cannot be measured: " + printable(problem, 1500));
   }
 }
 

@@ -105,7 +105,7 @@ void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::st
       arguments.add_choice(
           "--colour", choice.colour,
           {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
-          "What the colours show: object, panel (of a garment) or strain (default: object)")};
+          "What the colours show: object, panel (of a garment, else as object) or strain (default: object)")};
   for (Argument argument : all)
     if (needed) argument.needs(*needed);
 }

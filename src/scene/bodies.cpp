@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -223,6 +222,11 @@ struct MeshedShape {
   double volume = 0;  ///< m^3
 };
 
+/// The size of a body's mesh that its scene states, or the scene that has its shape; nothing if neither does.
+std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& own) {
+  return own.other.empty() ? body.expected : own.stated_by_other;
+}
+
 /// Throws SceneError if the shape of another scene cannot be used.
 OwnShape shape_of(const SceneSpec& spec, std::size_t body) {
   try {
@@ -307,9 +311,25 @@ class MeshedShapes {
     return all;
   }
 
-  /// How the meshes were made, if a reader should know: sentences, or empty.
-  std::string note() const {
+  /// Which mesh has another size than is stated, and how the meshes were made, if a reader should know:
+  /// sentences, or empty. A scene may have thousands of bodies, so the sentence names only the first.
+  std::string note(const SceneSpec& spec) const {
     std::string all;
+    std::size_t other_meshes = 0;
+    for (std::size_t body = 0; body < of_body_.size(); ++body) {
+      const MeshedShape& shape = of_body(body);
+      const MeshSize made{static_cast<std::uint32_t>(shape.mesh.nodes.size()),
+                          static_cast<std::uint32_t>(shape.edges.size())};
+      const std::optional<MeshSize> stated = stated_size(bodies_of(spec).list[body], shape.own);
+      if (!stated || *stated == made) continue;
+      if (++other_meshes == 1)
+        all = fmt::format(
+            "the mesh of {} has {} nodes and {} springs where the scene states {} and {}: another TetGen, or "
+            "another file, makes another mesh",
+            pointer_to(body), made.nodes, made.springs, stated->nodes, stated->springs);
+    }
+    if (other_meshes > 1)
+      append_sentence(all, fmt::format("{} bodies in all have another mesh", other_meshes));
     for (const MeshedShape& shape : shapes_) append_sentence(all, shape.mesh.note);
     return all;
   }
@@ -374,14 +394,10 @@ void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const Meshed
 }
 
 /// The sum over the bodies; nothing unless all of them state their size.
-std::optional<SceneCounts> stated_counts_of(const SceneSpec& spec,
-                                            const std::function<OwnShape(std::size_t body)>& shape_of) {
+std::optional<SceneCounts> stated(const SceneSpec& spec) {
   SceneCounts counts;
-  const std::vector<BodySpec>& list = bodies_of(spec).list;
-  for (std::size_t body = 0; body < list.size(); ++body) {
-    const std::optional<MeshSize> size = std::holds_alternative<ShapeOfScene>(list[body].shape)
-                                             ? shape_of(body).stated_by_other
-                                             : list[body].expected;
+  for (const BodySpec& body : bodies_of(spec).list) {
+    const std::optional<MeshSize> size = stated_size(body, own_shape(body.shape, spec.file.parent_path()));
     if (!size) return std::nullopt;
     counts.nodes += size->nodes;
     counts.springs_unique += size->springs;
@@ -463,9 +479,8 @@ bool names_files(const SceneSpec& spec) {
 SceneParts read(const SceneSpec& spec) {
   const auto shapes = std::make_shared<const MeshedShapes>(spec);
   return {shapes->counts(),
-          stated_counts_of(spec, [&](std::size_t body) { return shapes->of_body(body).own; }),
           [shapes](const SceneSpec& of) {
-            return BuiltScene{build_bodies(of, *shapes), shapes->note()};
+            return BuiltScene{build_bodies(of, *shapes), shapes->note(of)};
           },
           shapes->files(), names_files(spec) ? std::optional(shapes->hash()) : std::nullopt};
 }
@@ -486,12 +501,7 @@ extern const SceneKind bodies_kind{
     // The published counts seem to be the length of the array of packed springs, three values per spring: all
     // nine are divisible by three, and the thirds fit tetrahedral meshes.
     .published_per_spring = 3,
-    .stated =
-        [](const SceneSpec& spec) {
-          return stated_counts_of(spec, [&](std::size_t body) {
-            return own_shape(bodies_of(spec).list[body].shape, spec.file.parent_path());
-          });
-        },
+    .stated = stated,
     .read = read,
 };
 

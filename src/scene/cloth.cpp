@@ -204,8 +204,8 @@ extern const SceneKind cloth_kind{
     .stated = [](const SceneSpec& spec) { return std::optional(cloth_counts(spec)); },
     .read =
         [](const SceneSpec& spec) {
-          const SceneCounts counts = cloth_counts(spec);
-          return SceneParts{counts, counts, [](const SceneSpec& of) { return BuiltScene{build_cloth(of)}; }};
+          return SceneParts{cloth_counts(spec),
+                            [](const SceneSpec& of) { return BuiltScene{build_cloth(of)}; }};
         },
 };
 

@@ -151,6 +151,12 @@ bool is_scene(std::string_view name_or_path) {
 SceneSpec find_scene(std::string_view name_or_path) {
   if (is_path_of_scene(name_or_path)) return load_scene(name_or_path);
   if (is_scene(name_or_path)) return load_scene(file_of(name_or_path));
+  std::error_code error;  // a name too long for a file is not a file
+  if (std::filesystem::is_regular_file(name_or_path, error))
+    throw SceneError(
+        "\"{0}\" is a file, but not the name of a scene: a scene's file ends in .json, or its path has a "
+        "folder, as in ./{0}",
+        printable(name_or_path));
   const std::vector<std::string> names = names_in_folder();
   throw SceneError("no scene is named \"" + printable(name_or_path) + '"' +
                    did_you_mean(name_or_path, std::vector<std::string_view>(names.begin(), names.end())) +

@@ -42,7 +42,6 @@ std::optional<SceneCounts> stated_counts(const SceneSpec& spec) {
 SceneParts read_parts(const SceneSpec& spec) {
   SceneParts parts = kind_of(spec).read(spec);
   parts.counts = with_published(spec, parts.counts);
-  parts.stated = with_published(spec, parts.stated);
   parts.files.push_back(spec.file);
   return parts;
 }

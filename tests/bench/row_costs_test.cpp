@@ -163,6 +163,24 @@ TEST_F(BenchScene, TellsBytesOfAStepASecond) {
   EXPECT_NEAR(row.gigabytes_per_second.value() * row.ms_per_step.value() * 1e6, 4752, 1e-6);
 }
 
+/// A program that tells that its numbers are not in single precision.
+class NotInSingle final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  bool is_in_single() const override { return false; }
+};
+constexpr BackendInfo not_in_single{"double", "", "larger numbers", false, {}, make_other<NotInSingle>,
+                                    {},       {}};
+
+TEST_F(BenchScene, TellsNoBytesOfNumbersThatAreNotInSingle) {
+  job_.backends = {&not_in_single};
+  job_.integrators.resize(1);
+  const ResultRow row = run().front();
+  EXPECT_GT(row.ms_per_step, 0);
+  EXPECT_EQ(row.gigabytes_per_second, std::nullopt);
+  EXPECT_EQ(row.roofline_fraction, std::nullopt);
+}
+
 TEST_F(BenchScene, SaysHowManyProcessorsTheSamplesTook) {
   job_.backends = {find_backend("serial"), &stumbling};
   job_.integrators = {find_integrator("semi-euler")};

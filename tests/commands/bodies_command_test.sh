@@ -130,13 +130,13 @@ mkfifo pipe.json && expect 2 'not a regular file' run --scene pipe.json
 # Another TetGen makes another mesh: said on stderr and in the note, and no published time stands beside it.
 other=$(tetgen_that "exec '$(command -v tetgen)' \"\${1}q\" \"\$2\"")
 PATH=$other:$PATH ends 0 bench --scene bodies3858 --backend serial --integrator semi-euler --rounds 1 --out other
-difference='the mesh has 3858 nodes and [0-9]* springs where the scene states 3858 and 24317'
+difference='the mesh of /bodies/list/0 has 700 nodes and [0-9]* springs where the scene states 700 and 4307'
 grep -q "bodies3858: $difference" err || fail "another mesh: $(cat err)"
 grep -q ",ok,\"\?$difference" other/timings.csv || fail "another mesh is not noted: $(cat other/timings.csv)"
 [ -z "$(column_of other/timings.csv paper_ms)" ] || fail "a published time stands beside another mesh"
 [ ! -e other/table3.md ] || fail "another mesh stands in Table 3"
 PATH=$other:$PATH ends 0 run --scene torus-small --duration 0.001
-grep -q 'torus-small: the mesh has 620 nodes and .* where the scene states 620 and 3690' err || fail "run does not tell: $(cat err)"
+grep -q 'torus-small: the mesh of /bodies/list/0 has 620 nodes and .* where the scene states 620 and 3690' err || fail "run does not tell: $(cat err)"
 
 # Programs that are no TetGen.
 PATH=$(tetgen_that 'echo no licence >&2; exit 7'):$PATH expect 2 \

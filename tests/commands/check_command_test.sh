@@ -65,6 +65,10 @@ ends 2 run --scene "$work/typo.json"
 cmp "$work/err" "$work/said" || fail "run and check differ"
 expect 2 'SCENE is missing' check
 expect 2 'no scene is named "cloth2501"' check cloth2501
+# A file without .json is not meant by its bare name.
+cp "$source/scenes/cloth2500.json" "$work/cloth2501"
+expect 2 '"cloth2501" is a file.*\./cloth2501' check cloth2501
+check 0 ./cloth2501
 
 # More than can be meshed or held is refused before it is.
 sed 's/"cells_\([xyz]\)": [0-9]*/"cells_\1": 1000/' "$source/scenes/box-small.json" >"$work/fine-box.json"

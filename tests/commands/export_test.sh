@@ -54,6 +54,11 @@ expect 4 'never' export cloth.h5 --format vtkhdf --out never
 head -c 5000 cloth.h5 >cut.h5
 expect 2 'cut.h5' export cut.h5 --format ply --out never/a.ply
 [ -z "$(ls never)" ] || fail "left: $(ls never)"
+# Files of frames before the one that fails stay, and are told of.
+mkdir part-000002.ply.part
+ends 4 export cloth.h5 --format ply --frames 0-2 --out part.ply
+{ grep -q 'cannot write part-000002.ply' err && grep -q 'wrote part-000000.ply to part-000001.ply, 2 files' err; } ||
+  fail "export says $(cat err)"
 
 # A file that nobody has named stays, unless it is an export: it may be the surface of the scene.
 for format in obj ply; do

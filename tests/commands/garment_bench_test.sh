@@ -106,7 +106,7 @@ combinations() { awk -v scene="$1" '$1 == scene { print $4 }' out; }
   fail "jeans64k does not leave out the rows of Algorithm 1: $(cat out)"
 awk '/^about/ { exit !($2 > 20 && $2 < 600) }' out || fail "the suite is expected to take $(tail -n 1 out)"
 expect 2 'time-budget is too short' bench --scene jeans1k --time-budget 0.1
-expect 2 '.--trace cannot be used with jeans1k, which is a garment' bench --scene jeans1k --trace --out traced
+expect 2 '.--trace cannot be used with jeans1k, which is a garment: .*mssim run --trace' bench --scene jeans1k --trace --out traced
 [ ! -e traced ] || fail "a folder is made for what is refused"
 bench 0 --scene jeans1k --backend serial --integrator semi-euler --time-budget 20 --rounds 2 --format json
 "$mssim" list scenes --format csv >out

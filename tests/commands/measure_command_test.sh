@@ -137,6 +137,14 @@ expect 2 'cloth2500 is a scene without a body to dress' measure cloth2500
 expect 2 'leave out --unit' measure jeans4k --unit mm
 expect 2 '--unit is "mile": give m, dm, cm, mm, inch, foot, or the metres' measure "$work/scan.obj" --unit mile
 expect 2 'cannot look along z' measure "$work/scan.obj" --up z --facing +z
+# The axes of a remedy are the file's, and the file is named once.
+measure 2 "$work/scan.obj" --facing +x
+warns 'scan.obj cannot be measured: .*upright in z and faces +x: .*--up and --facing'
+echo 'v 0 0 zero' >"$work/word.obj"
+for name in none word; do
+  ends 2 measure "$work/$name.obj"
+  [ "$(grep -o "$name.obj" err | wc -l)" -eq 1 ] || fail "the file's name: $(cat err)"
+done
 
 # Openings: a neck is closed, a waist is not.
 person 0.01 +x+y+z neck >"$work/neck.obj"

@@ -245,6 +245,32 @@ TEST_F(BodiesFile, MayStateItsSizeWhichIsComparedNotBelieved) {
   EXPECT_EQ(counts_of(spec).springs_unique, 6U);
 }
 
+TEST_F(BodiesFile, NamesTheBodyWhoseMeshHasAnotherSizeThanIsStated) {
+  put("one.node", node_text({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {3, 3, 3}}));
+  put("one.ele", ele_text({{0, 1, 2, 3}, {1, 2, 3, 4}}));
+  const std::size_t begin = good_.find("{\n      \"shape\""), end = good_.find("]\n  }\n}");
+  const std::string body = good_.substr(begin, end - begin);
+  const auto note_of_bodies_stating = [&](const std::vector<std::string>& sizes) {
+    std::string bodies;
+    for (const std::string& size : sizes)
+      bodies +=
+          (bodies.empty() ? "" : ", ") + with_change(body, R"("unit_m": 0.01)", R"("unit_m": 0.01)" + size);
+    return build_scene(load_scene(scene(with_change(good_, body, bodies)))).note;
+  };
+  const std::string right = R"(, "expected": {"nodes": 5, "springs": 9})",
+                    less = R"(, "expected": {"nodes": 4, "springs": 8})",
+                    more = R"(, "expected": {"nodes": 6, "springs": 10})";
+  EXPECT_EQ(note_of_bodies_stating({right, ""}), "");
+  const auto tells_of = [](const char* place, const char* stated) {
+    return AllOf(HasSubstr(place), HasSubstr("5 nodes and 9 springs"), HasSubstr(stated));
+  };
+  EXPECT_THAT(note_of_bodies_stating({less, ""}), tells_of("/bodies/list/0 ", "4 and 8"));
+  EXPECT_THAT(note_of_bodies_stating({"", right, more}), tells_of("/bodies/list/2 ", "6 and 10"));
+  // Their sums are right.
+  EXPECT_THAT(note_of_bodies_stating({less, more}),
+              AllOf(tells_of("/bodies/list/0 ", "4 and 8"), HasSubstr("2 bodies")));
+}
+
 TEST_F(BodiesFile, TakesTheShapeOfAnotherScene) {
   const auto other = scene(with_shape("scene", R"({"name": "box-small"})"));
   EXPECT_EQ(counts_of(load_scene(other)).nodes, counts_of(find_scene("box-small")).nodes);

@@ -176,8 +176,10 @@ BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comp
 
 void require_traceable(const SceneSpec& spec) {
   if (std::holds_alternative<GarmentSpec>(spec.content))
-    throw UsageError("--trace cannot be used with " + spec.name +
-                     ", which is a garment: its verification is not a continuous motion; leave --trace out");
+    throw UsageError(
+        "--trace cannot be used with {}, which is a garment: its verification is not a continuous motion; "
+        "leave --trace out, and trace the dressing with mssim run --trace",
+        spec.name);
   if (const auto problem = trace_name_problem(spec.name + ".h5"))
     throw UsageError("--trace names traces after their scene, and " + *problem);
 }

@@ -26,6 +26,7 @@ class AheadBackend final : public Backend {
   int steps_per_pass() const override { return backend_->steps_per_pass(); }
   std::optional<std::uint64_t> stored_springs() const override { return backend_->stored_springs(); }
   bool runs_on_host() const override { return backend_->runs_on_host(); }
+  bool is_in_single() const override { return backend_->is_in_single(); }
   std::string note() const override { return backend_->note(); }
   std::string reason_not_to_time() const override { return backend_->reason_not_to_time(); }
   std::string reason_for_excess() const override { return backend_->reason_for_excess(); }

@@ -135,6 +135,9 @@ class Backend {
   virtual std::optional<std::uint64_t> stored_springs() const { return std::nullopt; }
   /// Do the steps run on this machine's CPU and memory, with whose peaks the roofline compares?
   virtual bool runs_on_host() const { return true; }
+  /// Does it compute in single precision? The roofline counts numbers of four bytes. False only of a program
+  /// that says so: the row of mssim's own backends knows (BackendInfo::in_double).
+  virtual bool is_in_single() const { return true; }
   /// Caveats for readers of its times, for example iteration limits that its steps have reached; or empty.
   virtual std::string note() const { return {}; }
   /// Why its times are meaningless on this machine although its steps are right; or empty.

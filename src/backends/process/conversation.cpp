@@ -190,9 +190,10 @@ bool take_introduction(Introduction& introduction, const std::string& line) {
     introduction.threads = count_of("threads", most_threads, line, text);
   else if (word == "pass")
     introduction.steps_per_pass = count_of("steps", most_steps_per_pass, line, text);
-  else if (word == "precision" && !text.empty())
+  else if (word == "precision" && !text.empty()) {
+    introduction.is_in_single = text == "single";
     append_sentence(introduction.note, shown + " precision");
-  else if (word == "note" && !text.empty())
+  } else if (word == "note" && !text.empty())
     append_sentence(introduction.note, shown);
   else if (word == "untimed" && !text.empty())
     introduction.untimed = shown;

@@ -81,7 +81,8 @@ inline constexpr std::size_t longest_shown = 300;
 struct Introduction {
   std::string device = "cpu";
   int threads = 0;
-  int steps_per_pass = 0;  ///< as Backend::steps_per_pass
+  int steps_per_pass = 0;    ///< as Backend::steps_per_pass
+  bool is_in_single = true;  ///< as Backend::is_in_single
   std::string note;
   std::string untimed;
   bool tells_costs = false;  ///< it supports the request `costs`

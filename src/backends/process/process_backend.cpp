@@ -177,6 +177,7 @@ class ProcessBackend final : public WindowBackend {
   bool runs_on_host() const override {
     return introduction_.device == "cpu" || introduction_.device.starts_with("cpu ");
   }
+  bool is_in_single() const override { return introduction_.is_in_single; }
   std::string note() const override { return introduction_.note; }
   std::string reason_not_to_time() const override { return introduction_.untimed; }
   std::string reason_for_excess() const override { return "the program takes them"; }

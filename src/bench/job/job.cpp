@@ -174,7 +174,6 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   Combination combination;
   combination.integrator = &integrator;
   combination.start = &start;
-  combination.in_double = info.in_double;
   combination.energy = PackageEnergy(job.root);
   ResultRow& row = combination.row;
   row.scene = job.name;
@@ -208,6 +207,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     append_sentence(row.note, combination.backend->note());
     append_sentence(row.note, excess_of(info, *combination.backend, job.execution));
     combination.on_host = combination.backend->runs_on_host();
+    combination.in_single = !info.in_double && combination.backend->is_in_single();
     combination.steps_per_pass = combination.backend->steps_per_pass();
     combination.stored_springs = combination.backend->stored_springs();
     restart(combination);

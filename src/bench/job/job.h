@@ -115,7 +115,7 @@ struct Combination {
   ResultRow row;
   const Integrator* integrator = nullptr;
   bool on_host = true;
-  bool in_double = false;  ///< its steps move more bytes than the roofline counts, so it gets none
+  bool in_single = true;  ///< if not, its steps move other bytes than the roofline counts, so it gets none
   int steps_per_pass = 0;
   std::optional<std::uint64_t> stored_springs;
   const State* start = nullptr;         ///< start state of every sample of a round

@@ -187,14 +187,15 @@ int turns_around(const std::vector<std::uint32_t>& loop, const std::vector<Vec3d
   return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
-/// A likely cause of a number out of bounds, and a remedy with the keys of scene files.
+/// A likely cause of a number out of bounds, and a remedy with the keys of scene files. Keys of jeans are
+/// said to be theirs if other garments have the number, too.
 struct Diagnosis {
   std::string_view happened, remedy;
 };
 
 constexpr Diagnosis pierced{"the body comes through", "a larger skin_m or more nodes"};
 constexpr Diagnosis stretched{"the cloth is stretched",
-                              "a wider garment (hip_ease_m, waist_ease_m) or stiffer cloth"};
+                              "a wider garment (of jeans: hip_ease_m, waist_ease_m) or stiffer cloth"};
 
 /// Units of a number.
 struct Unit {
@@ -223,7 +224,7 @@ constexpr auto numbers = std::to_array<FitNumber>({
      millimetres,
      &FitBounds::largest_gap,
      "the largest gap of a seam",
-     {"a seam gapes", "a larger closing_share, or a wider garment (hip_ease_m, waist_ease_m)"}},
+     {"a seam gapes", "a larger closing_share, or a wider garment (of jeans: hip_ease_m, waist_ease_m)"}},
     {"nodes_inside", &Fit::nodes_inside},
     {"deepest_node_mm", &Fit::deepest_node, millimetres, &FitBounds::deepest,
      "the deepest node inside the body", pierced},
@@ -398,7 +399,10 @@ std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, c
         "the seams did not close in time; try a larger seam_force_n_per_m or longest_seaming_s, or a wider "
         "garment");
   if (!result.settled)
-    found.emplace_back("the garment did not come to rest; try more viscous_damping_per_s or more nodes");
+    found.push_back(
+        fmt::format("the garment did not come to rest within {:g} s; try a longer --duration of mssim run, "
+                    "more viscous_damping_per_s or more nodes",
+                    result.simulated_s));
   for (const FitNumber& number : numbers) {
     const std::optional<double> value = value_of(number, fit);
     if (number.bound == nullptr || !value || is_within(number, *value, bounds)) continue;

@@ -312,7 +312,14 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
   const TrunkAndLegs& met = body->profile.trunk_and_legs();
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
   system.topology = std::move(dressed);
-  std::string note = body->note;
+  std::string note;
+  const std::size_t nodes = system.nodes(), springs = system.springs.size();
+  if (const auto& stated = garment.expected; stated && (stated->nodes != nodes || stated->springs != springs))
+    note = fmt::format(
+        "the mesh has {} nodes and {} springs where the scene states {} and {}: another body, or another "
+        "pattern, makes other panels; state what they have",
+        nodes, springs, stated->nodes, stated->springs);
+  append_sentence(note, body->note);
   append_sentence(note, ignored_parts(met));
   return {std::move(system), std::move(note), std::move(body)};
 }
@@ -393,11 +400,6 @@ void check(const SceneSpec& spec) {
   if (garment.pieces) check_pieces(spec.file, pieces_pointer(garment), *garment.pieces, most_nodes);
 }
 
-std::optional<SceneCounts> stated(const SceneSpec& spec) {
-  const std::optional<MeshSize>& expected = garment_of(spec).expected;
-  return expected ? std::optional(SceneCounts{expected->nodes, expected->springs}) : std::nullopt;
-}
-
 /// Measures the body and cuts the garment for it. Throws SceneError if the body cannot be measured or the
 /// pattern does not fit together.
 ///
@@ -408,7 +410,6 @@ SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
   SceneParts parts{{cut->build.placed.size(), cut->build.springs.size()},
-                   stated(spec),
                    [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
   if (const auto* scan = std::get_if<BodyFile>(&garment_of(spec).body)) {
     const Surface& surface = body->surface;
@@ -426,7 +427,11 @@ extern const SceneKind garment_kind{
     .visit_fields = visit_fields,
     .check = check,
     .published_per_spring = {},
-    .stated = stated,
+    .stated = [](const SceneSpec& spec) -> std::optional<SceneCounts> {
+      const std::optional<MeshSize>& expected = garment_of(spec).expected;
+      if (!expected) return std::nullopt;
+      return SceneCounts{expected->nodes, expected->springs};
+    },
     .read = read,
 };
 

@@ -134,7 +134,8 @@ struct SceneCounts {
 /// A built scene.
 struct BuiltScene {
   System system;
-  std::string note = {};  ///< a sentence about its sources, if a reader should know; or empty
+  /// Sentences about its sources, and about sizes that differ from those that its file states; or empty.
+  std::string note = {};
   std::shared_ptr<const MeasuredBody> body = {};  ///< the body that wears a garment, or null
 };
 
@@ -144,8 +145,7 @@ struct BuiltScene {
 /// Copies share the meshes. Estimates of memory do not count them, so drop the parts after the last build of
 /// the scene.
 struct SceneParts {
-  SceneCounts counts;                 ///< nodes and springs of the scene
-  std::optional<SceneCounts> stated;  ///< nodes and springs that the files state; nothing if they state none
+  SceneCounts counts;  ///< nodes and springs of the scene
   /// Builds the scene for whose spec they were read. Throws SceneError for inconsistent content.
   std::function<BuiltScene(const SceneSpec& spec)> build;
   std::vector<std::filesystem::path> files = {};  ///< all that were read, with the scene's own

@@ -140,7 +140,7 @@ struct Method {
 /// Description of the program for mssim.
 struct About {
   std::string device = "cpu";        ///< "cpu", or "cpu " and a text; for others no roofline comparison
-  std::string precision = "double";  ///< "single", "double", ...
+  std::string precision = "double";  ///< "single", or "double" and others; for these no roofline comparison
   std::string note;                  ///< for readers of its times: version, settings
   int threads = 0;                   ///< CPUs that it uses; 0: the number requested
 };

@@ -135,7 +135,7 @@ def say(*, device=None, threads=None, precision=None, note=None):
 
     device      device it runs on (default: cpu; others than "cpu" and "cpu ..." disable the roofline comparison)
     threads     CPUs that it uses (default: the number requested)
-    precision   "single", "double", ...
+    precision   "single" (default), or "double" and others, which disable the roofline comparison
     note        for readers of its times: version, settings
     """
     given = {"device": device, "threads": threads, "precision": precision, "note": note}

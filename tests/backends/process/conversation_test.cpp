@@ -233,8 +233,11 @@ TEST(Answers, SayWhatAProgramIs) {
   EXPECT_EQ(introduction.threads, 3);
   EXPECT_EQ(introduction.steps_per_pass, 4);
   EXPECT_EQ(introduction.note, "single precision; first; second");
+  EXPECT_TRUE(introduction.is_in_single);
   EXPECT_EQ(introduction.untimed, "too crowded");
   EXPECT_TRUE(introduction.tells_costs);
+  EXPECT_FALSE(take_introduction(introduction, "precision double"));
+  EXPECT_FALSE(introduction.is_in_single);
 }
 
 TEST(Answers, RefuseAProgramOrItsScene) {

@@ -94,6 +94,8 @@ TEST(ProcessBackend, SaysWhatTheProgramSaysOfItself) {
   EXPECT_TRUE(backend->runs_on_host());
   EXPECT_EQ(backend->threads(), 1);
   EXPECT_EQ(backend->note(), "double precision; a list of springs");
+  EXPECT_FALSE(backend->is_in_single());
+  EXPECT_FALSE(make(program, system, *find_integrator("verlet"))->is_in_single());
 }
 
 TEST(ProcessBackend, GoesOnAfterARest) {

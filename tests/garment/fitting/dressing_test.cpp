@@ -52,7 +52,7 @@ TEST(DressedJeans, AreFoundOutByTheBoundThatTheyBreak) {
        },
        0.3, false},
       {"the largest gap of a seam is ", [](DressingCase& on) { on.garment().dressing.closing_share = 0; }},
-      {"the garment did not come to rest; try ", [](DressingCase&) {}, 0.3},
+      {"the garment did not come to rest within ", [](DressingCase&) {}, 0.3},
       {"the deepest node inside the body is ", [](DressingCase& on) { let_maps_lie(on, -0.004); }},
       {"rows that do not go once around their limb", [](DressingCase& on) {
          for (Vec3d& node : on.system.start.position) node.z += 0.3;
