@@ -7,6 +7,7 @@
 
 #include "application/outputs.h"
 #include "application/run.h"
+#include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "output/traces/h5md_trace.h"
@@ -95,7 +96,10 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
     const auto fail = [&](const char* reason) {
       row.status = std::string("failed: ") + reason;
       row.verified = false;
-      row.ms_per_step = row.ms_per_step_low = row.ms_per_step_high = row.speedup_vs_serial = std::nullopt;
+      static_cast<SampleStatistics&>(row) = {};
+      if (row.backend == baseline_backend().name)
+        for (ResultRow& other : rows)
+          if (other.integrator == row.integrator) other.speedup_vs_serial.reset();
       failed = true;
     };
     watch.progress(fmt::format("trace {} {}", row.backend, row.integrator), 1);

@@ -14,6 +14,7 @@ namespace mssim {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 ResultRow row(const std::string& scene, const std::string& backend, int rounds = 3) {
@@ -174,6 +175,32 @@ TEST_F(BenchTraceTest, HasTheProvenanceOfTheBench) {
     EXPECT_EQ(text_in(open(folder() / "out/traces" / (scene + "-serial-semi-euler.h5")).get(),
                       "/parameters/provenance"),
               expected);
+}
+
+TEST_F(BenchTraceTest, TakesTheTimesFromARowThatFailsAndTheSpeedupsOverIt) {
+  BackendInfo broken = baseline_backend();
+  broken.make = [](const System&, const Integrator&, double,
+                   const ExecutionOptions&) -> std::unique_ptr<Backend> { throw Unavailable("it is gone"); };
+  SceneJob job;
+  job.backends = {&broken, find_backend("openmp")};
+  std::vector<ResultRow> rows{row("cloth", "serial"), row("cloth", "openmp")};
+  for (ResultRow& measured : rows) {
+    measured.verified = true;
+    static_cast<SampleStatistics&>(measured) = {1, 1, 1, 1, 2, 3, 0.5, 4, 1};
+  }
+  write_file_atomically(folder() / "b.h5", "an earlier trace");
+  PreparedScene scene;
+  scene.dt_s = 1e-4;
+  EXPECT_TRUE(write_bench_traces(
+      job, scene, rows, {"a", "b"}, {}, folder(), true,
+      {.progress = [](const std::string&, double) {}, .after_round = {}, .stop = [] { return false; }}));
+  EXPECT_THAT(rows[0].status, HasSubstr("it is gone"));
+  for (const ResultColumn& column : result_columns) {
+    const auto* value = std::get_if<std::optional<double> ResultRow::*>(&column.value);
+    EXPECT_TRUE(!value || !(rows[0].**value)) << column.name;
+  }
+  EXPECT_EQ(rows[1].ms_per_step, 1);
+  EXPECT_EQ(rows[1].speedup_vs_serial, std::nullopt);
 }
 
 }  // namespace
