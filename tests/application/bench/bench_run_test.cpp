@@ -149,6 +149,13 @@ TEST(TimeBudget, BelievesWhatTheFirstRoundsTook) {
   EXPECT_LT(seconds, 3.4);
 }
 
+TEST(TimeBudget, CorrectsTheDeadlineAfterALongPreparation) {
+  TimeBudget budget(4, {{0.001, 0.0001}, {0, 0.0001}});
+  budget.begin_scene();
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  EXPECT_NEAR(seconds_until(budget.first_round_done()), seconds_until(budget.end()) / 2, 0.1);
+}
+
 TEST(TimeBudget, IsRefusedWhereItIsTooShortForARoundOfEach) {
   EXPECT_THROW(TimeBudget(43, {{10, 1}, {30, 3}}), UsageError);
   EXPECT_NO_THROW(TimeBudget(44, {{10, 1}, {30, 3}}));
