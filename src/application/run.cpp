@@ -207,7 +207,8 @@ void require_precision(const RunOptions& options, const BackendInfo& info, const
         names_of(steps, "or"), options.backend);
 }
 
-/// Makes the chosen backend with make(row, system, integrator, dt_s, execution).
+/// Makes the chosen backend with make(row, system, integrator, dt_s, execution). Throws Unsupported and
+/// Unavailable with the backend's name.
 template <class Make>
 auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                     const Integrator& integrator, const Make& make) {
@@ -215,7 +216,15 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   ExecutionOptions execution = complete(options.execution);
   execution.scene = scene.spec.name;
   execution.scene_file = scene.spec.file;
-  auto backend = make(info, scene.system, integrator, scene.dt_s, execution);
+  auto backend = [&] {
+    try {
+      return make(info, scene.system, integrator, scene.dt_s, execution);
+    } catch (const Unsupported& reason) {
+      throw Unsupported("{}: {}", options.backend, reason.what());
+    } catch (const Unavailable& reason) {
+      throw Unavailable("{}: {}", options.backend, reason.what());
+    }
+  }();
   if (info.uses_device) tell_of_opencl();
   if (const std::string excess = excess_of(info, *backend, execution); !excess.empty())
     std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
