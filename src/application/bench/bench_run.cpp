@@ -162,7 +162,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   for (const PlannedScene& planned : plan.timed) {
     BenchSettings settings = plan.settings;
     settings.backends = planned.backends;
-    if (is_finished(settings, planned.spec.name, results.of_scene(planned.spec.name)))
+    if (is_finished(settings, planned.spec.name, results.of_scene(planned.spec.name), plan.output.folder))
       finished_ones.insert(planned.spec.name);
   }
   ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());

@@ -14,7 +14,6 @@ namespace mssim {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 ResultRow row(const std::string& scene, const std::string& backend, int rounds = 3) {
@@ -50,14 +49,14 @@ TEST(BenchRows, AreFinishedWhenEachHasItsRoundsOrCannotRun) {
   settings.backends = {find_backend("serial"), find_backend("opencl")};
   settings.integrators = {find_integrator("semi-euler")};
   std::vector<ResultRow> rows{row("a", "serial"), row("a", "opencl")};
-  EXPECT_FALSE(is_finished(settings, "a", {}));
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", {}, "out"));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   rows[1].rounds = 2;
-  EXPECT_FALSE(is_finished(settings, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", rows, "out"));
   rows[1].status = "unavailable: no device";
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   rows.pop_back();
-  EXPECT_THROW(is_finished(settings, "a", rows), UsageError);
+  EXPECT_THROW(is_finished(settings, "a", rows, "out"), UsageError);
 }
 
 TEST(BenchRows, AreNotFinishedWithoutTheFramesThatAreAskedFor) {
@@ -67,16 +66,16 @@ TEST(BenchRows, AreNotFinishedWithoutTheFramesThatAreAskedFor) {
   settings.integrators = {find_integrator("semi-euler")};
   std::vector<ResultRow> rows{row("a", "serial")};
   rows[0].dt_s = 1e-3;
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   settings.fps = 60;
-  EXPECT_FALSE(is_finished(settings, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", rows, "out"));
   rows[0].frame_steps = 33;
-  EXPECT_FALSE(is_finished(settings, "a", rows)) << "those of 30 frames per second";
+  EXPECT_FALSE(is_finished(settings, "a", rows, "out")) << "those of 30 frames per second";
   rows[0].frame_steps = 17;
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   rows[0].frame_steps = {};
   rows[0].note = "draped; frames of 17 steps are not timed: samples of this row end after 9 steps";
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
 }
 
 ResultRow row(const std::string& backend, const std::string& status, bool verified) {
