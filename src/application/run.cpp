@@ -9,7 +9,6 @@
 
 #include "backends/backends.h"
 #include "bench/estimates.h"
-#include "bench/verification/verification.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "output/tables/table.h"
@@ -70,7 +69,7 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
     State state = backend.state();
     if (const auto node = first_bad_node(state)) {
       const BlowUp blow_up = find_blow_up(backend, before, count).value_or(BlowUp{count, *node});
-      throw NotVerified("the simulation " + describe(blow_up, plan.dt_s, done));
+      throw NotVerified("the simulation " + describe(blow_up, plan.dt_s, done, plan.remedy));
     }
     done = next;
     watch.on_frame({done, static_cast<double>(done) * plan.dt_s, state, energy_of(system, state), losses()});
@@ -207,7 +206,8 @@ void require_precision(const RunOptions& options, const BackendInfo& info, const
         names_of(steps, "or"), options.backend);
 }
 
-/// Makes the chosen backend with make(row, system, integrator, dt_s, execution).
+/// Makes the chosen backend with make(row, system, integrator, dt_s, execution). Throws Unsupported and
+/// Unavailable with the backend's name.
 template <class Make>
 auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                     const Integrator& integrator, const Make& make) {
@@ -215,7 +215,15 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   ExecutionOptions execution = complete(options.execution);
   execution.scene = scene.spec.name;
   execution.scene_file = scene.spec.file;
-  auto backend = make(info, scene.system, integrator, scene.dt_s, execution);
+  auto backend = [&] {
+    try {
+      return make(info, scene.system, integrator, scene.dt_s, execution);
+    } catch (const Unsupported& reason) {
+      throw Unsupported("{}: {}", options.backend, reason.what());
+    } catch (const Unavailable& reason) {
+      throw Unavailable("{}: {}", options.backend, reason.what());
+    }
+  }();
   if (info.uses_device) tell_of_opencl();
   if (const std::string excess = excess_of(info, *backend, execution); !excess.empty())
     std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
@@ -290,9 +298,10 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
   SettlingRule rule;
   if (options.duration_s) rule.longest_s = static_cast<double>(count_steps(plan)) * plan.dt_s;
   RunRecorder recorder(options.files, scene, headers);
-  const auto require_finite = [](const State& state, std::int64_t iterations) {
+  const auto require_finite = [&plan](const State& state, std::int64_t iterations) {
     if (const auto node = first_bad_node(state))
-      throw NotVerified("the simulation blew up before step {}: node {} is not finite", iterations, *node);
+      throw NotVerified("the simulation blew up before step {}: node {} is not finite; {}", iterations, *node,
+                        plan.remedy);
   };
   const auto record = [&](const State& state, std::int64_t iterations) {
     require_finite(state, iterations);
@@ -437,8 +446,8 @@ int run_scene(RunOptions options) {
   if (options.files.later) AtomicFile(options.files.later->path).remove();
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
-                            options.fps.value_or(std::min(options.usual_fps, 1 / scene.dt_s)),
-                            options.losses};
+                            options.fps.value_or(std::min(options.usual_fps, 1 / scene.dt_s)), options.losses,
+                            options.dt_s ? "take a smaller --dt, or leave it out" : shorter_scene_step};
   return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
                                   : run_simulation(options, info, scene, integrator, plan);
 }

@@ -5,6 +5,7 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "application/choices.h"
@@ -12,6 +13,7 @@
 #include "application/outputs.h"
 #include "application/prepared_scene.h"
 #include "backends/interface/backend.h"
+#include "bench/verification/verification.h"
 #include "model/system.h"
 #include "output/pictures/painter.h"
 #include "output/traces/energy_curve.h"
@@ -26,6 +28,7 @@ struct SimulationPlan {
   double frames_per_second = 0;  ///< of simulated time
   /// Whether to account for energy losses (EnergyLedger), which slows a run down several times.
   bool accounts_for_losses = false;
+  std::string_view remedy = shorter_scene_step;  ///< if the simulation blows up
 };
 
 /// The state of a simulation at one time.

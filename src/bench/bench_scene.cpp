@@ -514,11 +514,11 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(20160101);  // any fixed seed: a run can be repeated
-  const Clock::time_point rounds_end = job.deadline.value_or(Clock::time_point::max()) -
-                                       expected_check(job, all, references) - expected_frames(job, all);
+  const Clock::duration after_rounds = expected_check(job, all, references) + expected_frames(job, all);
+  const auto rounds_end = [&] { return job.deadline.value_or(Clock::time_point::max()) - after_rounds; };
   const FirstRound first{restore(all, job.earlier)};
   SampleSecrets secrets(job, start);
-  secrets.choose(first, rounds_end);
+  secrets.choose(first, rounds_end());
   const auto take = [&](int round, bool kept) {
     const State& from = secrets.begin_round(round);
     if (!kept) secrets.check();
@@ -529,7 +529,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     std::ranges::shuffle(order, random);
     if (round < first.number) continue;
     const int measured = round - first.number;
-    if (measured > 0 && Clock::now() + (Clock::now() - first.start) / measured > rounds_end) break;
+    if (measured > 0 && Clock::now() + (Clock::now() - first.start) / measured > rounds_end()) break;
     if (!take(round, true)) {
       if (round == 0) return {};
       stopped = true;

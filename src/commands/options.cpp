@@ -69,7 +69,9 @@ std::vector<std::size_t> listed_frames(const std::vector<std::string>& words, st
     const std::size_t dash = word.find('-', 1);
     const std::size_t first = frame_number(word.substr(0, dash), frames);
     const std::size_t last = dash == std::string::npos ? first : frame_number(word.substr(dash + 1), frames);
-    if (last < first) throw UsageError("--frames: \"{}\" ends before it begins", printable(word));
+    if (last < first)
+      throw UsageError("--frames: \"{}\" ends before it begins; give the smaller number first",
+                       printable(word));
     for (std::size_t frame = first; frame <= last; ++frame) list.push_back(frame);
   }
   return list;

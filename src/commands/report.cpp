@@ -32,14 +32,14 @@ double seconds_of(const ResultRow& row) {
   return row.dressing ? row.dressing->wall_s : *row.ms_per_step / 1000 * simulated_s / row.dt_s;
 }
 
-/// The largest of each kind that is `wanted` and can be simulated soon.
+/// The largest of each kind that comes with mssim, is `wanted` and can be simulated soon.
 template <class Wanted>
 std::map<ContentKind, const ResultRow*> sitters_of(std::span<const ReportFolder> folders, Wanted wanted) {
   std::map<ContentKind, const ResultRow*> sitters;
   for (const ReportFolder& folder : folders)
     for (const ResultRow& row : folder.rows) {
       if (row.backend != "openmp" || row.integrator != integrator || !counts(row) || !(row.dt_s > 0) ||
-          !wanted(row) || seconds_of(row) > patience_s)
+          !row.scene_as_shipped || !wanted(row) || seconds_of(row) > patience_s)
         continue;
       const ResultRow*& known = sitters[kind_of(row)];
       if (!known || row.nodes > known->nodes) known = &row;
@@ -89,28 +89,23 @@ const FoundCurve* reference_of(const std::string& scene, std::span<const FoundCu
   return found == references.end() || found->time_s.size() < 2 ? nullptr : &*found;
 }
 
-/// Calls `simulate` with the rows of those sitters whose scenes are known.
+/// Calls `simulate` with the sitters' rows.
 template <class Simulate>
 void for_each_sitter(const std::map<ContentKind, const ResultRow*>& sitters,
                      std::vector<std::string>& problems, Simulate simulate) {
   for (const auto& [kind, sitter] : sitters) {
-    const std::string& name = sitter->scene;
     try {
-      if (!sitter->scene_as_shipped)
-        problems.push_back("the scene " + name + " is not known as it was measured, and is not simulated");
-      else
-        simulate(*sitter);
+      simulate(*sitter);
     } catch (const std::exception& error) {
-      problems.push_back(fmt::format("the scene {} cannot be simulated: {}", name, error.what()));
+      problems.push_back(fmt::format("the scene {} cannot be simulated: {}", sitter->scene, error.what()));
     }
   }
 }
 
-/// Simulates scenes of the folders anew, by `openmp`: of each kind of scene the largest that takes no more
-/// than about half a second, as the folder's times tell, for half a second of its time, or until its garment
-/// hangs, to draw it; and of each kind the largest of those that has a reference, named as the scene, for its
-/// energies. Adds a problem where one cannot be simulated, for example because the scene of that name is not
-/// the one that was measured. Throws Interrupted.
+/// Simulates scenes of the folders anew, by `openmp`, if they come with mssim: of each kind of scene the
+/// largest that takes no more than about half a second, as the folder's times tell, for half a second of its
+/// time, or until its garment hangs, to draw it; and of each kind the largest of those that has a reference,
+/// named as the scene, for its energies. Adds a problem where one cannot be simulated. Throws Interrupted.
 void simulate_scenes(ReportInput& input) {
   for_each_sitter(sitters_of(input.folders, [](const ResultRow&) { return true; }), input.problems,
                   [&](const ResultRow& row) { input.pictures.push_back(drawn(row)); });

@@ -13,9 +13,10 @@ namespace mssim {
 namespace {
 
 /// Names in a sentence, each as code.
-std::string names_in(const std::vector<std::string>& names) {
+std::string names_in(const std::vector<std::string>& names, std::string_view last_word = "and") {
   return listed(
-      mapped<std::string>(names, [](const std::string& name) { return latex_prose("`" + name + "`"); }));
+      mapped<std::string>(names, [](const std::string& name) { return latex_prose("`" + name + "`"); }),
+      last_word);
 }
 
 /// All rows, a table for each scene.
@@ -134,7 +135,7 @@ std::string scenes_of(const ReportFolder& folder, const ReportInput& input) {
   if (!garments.empty())
     text += names_in(garments) + (garments.size() == 1 ? " is a garment" : " are garments") +
             ", dressed and draped after Vassilev~\\cite{vassilev}.\n";
-  if (!others.empty()) text += "Neither paper has " + names_in(others) + ".\n";
+  if (!others.empty()) text += "Neither paper has " + names_in(others, "or") + ".\n";
   return text;
 }
 

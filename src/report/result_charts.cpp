@@ -256,7 +256,7 @@ std::vector<Chart> history_charts(const MachineHistory& machine, const std::stri
 
 std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
                                    const std::string& id) {
-  Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of jeans", where_measured(provenance),
+  Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of garments", where_measured(provenance),
                          {"vertices", false}, {"time per iteration (ms)", false});
   for (const ResultRow& row : rows) {
     if (!row.dressing || !counts(row)) continue;

@@ -296,6 +296,17 @@ TEST_F(BenchScene, TakesAsManyRoundsAsFitBeforeADeadlineAndAtLeastOne) {
   EXPECT_GT(run().front().rounds, 3);
 }
 
+TEST_F(BenchScene, ObeysADeadlineThatIsMovedAfterARound) {
+  job_.rounds = 3;
+  job_.deadline = std::chrono::steady_clock::now();
+  const auto later = *job_.deadline + std::chrono::minutes(2);
+  const std::vector<ResultRow> rows =
+      bench_scene(job_, {.progress = [](const std::string&, double) {},
+                         .after_round = [&](const std::vector<ResultRow>&) { job_.deadline = later; },
+                         .stop = [] { return false; }});
+  EXPECT_EQ(rows.front().rounds, 3);
+}
+
 TEST_F(BenchScene, OnlySamplesWhatAnEarlierProcessHasVerified) {
   job_.verified = run();
   job_.verified->at(0).position_error = 1e-7;  // not what a verification would find

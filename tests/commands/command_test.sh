@@ -78,7 +78,9 @@ expect 4 'no/such' run --scene cloth2500 --duration 0.01 --trace "$work/no/such/
 
 # A simulation that blows up: named, and not verified.
 sed 's/"dt_s": 5e-5/"dt_s": 1e-2/' "$source/scenes/cloth2500.json" >"$work/wild.json"
-expect 1 'blew up at step [0-9]* (t = .* s): node [0-9]* is not finite' run --scene "$work/wild.json"
+expect 1 'blew up at step [0-9]* (t = .* s): node [0-9]* is not finite .* dt_s or "auto"$' run --scene "$work/wild.json"
+expect 1 'blew up at step .* --dt, or leave it out$' run --scene cloth2500 --dt 1e-2
+expect 1 'blew up before step .* --dt, or leave it out$' run --scene jeans1k --dt 1.5e-3
 ends 1 bench --scene "$work/wild.json" --backend serial,openmp --rounds 2 --out "$work/results"
 [ "$(column verified | sort -u)" = false ] || fail "a row that blew up is verified"
 [ "$(grep -c '^mssim: wild, \(serial\|openmp\), [a-z0-9-]*: failed: ' "$work/err")" -eq 3 ] && grep -q '^mssim: and 3 more$' "$work/err" ||

@@ -10,6 +10,7 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/obj_text.h"
 #include "tests/support/open_count.h"
+#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 #include "text/error.h"
 
@@ -29,6 +30,8 @@ TEST(ListedFrames, AreRefusedWhereTheyAreNone) {
   for (const char* word :
        {"10", "0-10", "-1", "x", "", "1-", "5-3", "1.5", "1-2-3", "last-0", "all-1", "99999999999999999999"})
     EXPECT_THROW(listed_frames({word}, 10), UsageError) << word;
+  EXPECT_THAT(sentence_of<UsageError>([] { listed_frames({"5-3"}, 10); }),
+              AllOf(HasSubstr("--frames"), HasSubstr("\"5-3\""), HasSubstr("smaller number first")));
 }
 
 TEST(FrameAt, IsTheNearest) {

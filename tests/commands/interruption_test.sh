@@ -59,10 +59,10 @@ sed -n '/^cloth4900: /,$p' out | grep -q ' openmp ' || fail "--resume of a finis
 expect 2 'int already holds results: give another --out, --resume .*or --overwrite' "${bench[@]}" --out int
 cmp -s kept int/samples.csv || fail "a refused bench has changed the folder"
 ends 2 "${scenes[@]}" --backend serial --rounds 6 --out int --resume
-warns 'other backends or integrators of cloth2500'
+warns 'int has other backends or integrators of cloth2500'
 # Also before a scene that comes first is measured.
 ends 2 bench --scene cloth10k,cloth2500,cloth4900 --integrator semi-euler --threads 1 --backend serial --rounds 1 --out int --resume
-warns 'other backends or integrators of cloth2500'
+warns 'int has other backends or integrators of cloth2500'
 ! grep -q cloth10k int/timings.csv || fail "a refused --resume has measured cloth10k"
 cp -r int moved
 sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8/' moved/provenance.json

@@ -140,7 +140,7 @@ grep -q '^here,bodies,,true,a list of springs,$' "$work/out" && grep -q '^mine,b
 XDG_CONFIG_HOME=config HOME=$work ends 0 list backends --format csv
 ! grep '^mine,' "$work/out" || fail "a relative XDG_CONFIG_HOME counts"
 ends 3 "${bench[@]}" --backend mine
-warns 'mine, semi-euler: unsupported: it does not step cloths$'
+warns 'mine, semi-euler: unsupported: it steps bodies only$'
 cp "$2/scenes/cloth2500.json" small.json
 printf '{"command": ["./spring_list"]}' >beside.json
 ends 0 bench --scene ./small.json --backend beside --integrator semi-euler --rounds 2
@@ -180,6 +180,14 @@ grep -q 'spring_list' "$work/out" || fail "compare --ab says: $(cat "$work/out")
 ends 0 run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fall.h5
 grep -q ' spring_list ' "$work/out" || fail "run says: $(cat "$work/out")"
 expect 1 'exits ended with exit code 3 before it answered' run --scene cloth2500 --backend exits --backend-folder backends
+# Its reasons name the backend as it was asked for, and the scenes and integrators that the backend has.
+expect 2 '^mssim: here: .*bodies' run --scene cloth2500 --backend here --backend-folder backends
+describe slow '"integrators": ["rk4", "xpbd"]'
+expect 2 '^mssim: slow: .*midpoint.*rk4 and xpbd' run --scene cloth2500 --integrator midpoint --backend slow --backend-folder backends
+expect 2 '^mssim: ./spring_list: .*xpbd.*explicit' run --scene cloth2500 --integrator xpbd --backend ./spring_list
+expect 2 '^mssim: algorithm1: .*garments' run --scene cloth2500 --backend algorithm1
+printf '{"command": ["no-such-program"]}' >backends/gone.json
+expect 3 '^mssim: gone: .*no-such-program' run --scene cloth2500 --backend gone --backend-folder backends
 nothing_left "run"
 # The frames before a failure are kept: the start and those of two requests.
 ends 1 run --scene cloth2500 --backend exits --backend-folder backends --duration 0.02 --fps 1000 --trace cut.h5 --energy-curve cut.csv

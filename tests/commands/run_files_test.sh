@@ -82,7 +82,7 @@ ends 0 "${fall[@]}" --duration 0.1 --fps 20 --pictures new/shots --size 160x120 
 [ "$(cat err)" = $'mssim: wrote shots.h5 and shots.xdmf\nmssim: wrote 3 pictures into new/shots' ] || fail "a run says it wrote $(cat err)"
 ends 0 render shots.h5 --frames 0 --size 160x120 --view side --out start.png
 cmp -s start.png new/shots/frame-000000.png || fail "the first picture is not the trace's first frame"
-expect 4 'new/shots, which is not empty; empty it or choose another folder' \
+expect 2 'new/shots, which is not empty; empty it or choose another folder' \
   "${fall[@]}" --duration 0.01 --pictures new/shots --trace refused.h5
 [ -z "$(find . -name 'refused*')" ] || fail "a refused run leaves a file"
 expect 2 '--size needs --pictures' "${fall[@]}" --size 160x120

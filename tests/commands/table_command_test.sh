@@ -152,7 +152,7 @@ grep -qF 'scripts/mssim web -{}-{}out web.html' "$work/web/artifact.tex" || fail
 ! grep -q 'end of one round' "$work/web/methods.tex" || fail "the page does not compare the ends of samples"
 grep -q 'end of one round' "$work/table1/methods.tex" || fail "the check of samples is missing"
 # How rows were timed has no number that the files lack: of a run in which all rows failed, and of one of an older version.
-for folder in failed old; do cp -r "$results/table1/zen4" "$work/$folder"; done
+for folder in failed old others; do cp -r "$results/table1/zen4" "$work/$folder"; done
 python3 - "$work" <<'PYTHON'
 import csv, pathlib, sys
 
@@ -176,12 +176,14 @@ change("failed", failed)
 samples = work / "failed/samples.csv"
 samples.write_text(samples.read_text().splitlines()[0] + "\n")
 change("old", lambda header, row: row[:24])
+change("others", lambda header, row: ["7" if name == "nodes" and row is not header else value for name, value in zip(header, row)])
 PYTHON
-for folder in failed old; do ends 0 table "$work/$folder" --format latex --out "$work/$folder-paper"; done
+for folder in failed old others; do ends 0 table "$work/$folder" --format latex --out "$work/$folder-paper"; done
 grep -q 'beyond Tukey' "$work/table1/methods.tex" || fail "the outliers are missing"
 ! grep 'paragraph{Timing' "$work/failed-paper/methods.tex" || fail "nothing was timed"
 grep -q 'paragraph{Timing' "$work/old-paper/methods.tex" || fail "the paragraph on times is missing"
 ! grep -E '\(0 trials|the 0 beyond' "$work/old-paper/methods.tex" || fail "a number that an older file lacks"
+grep -q 'Neither paper has .*cloth200k} or .*cloth350k}\.' "$work/others-paper/methods.tex" || fail "other scenes: $(cat "$work/others-paper/methods.tex")"
 # A garment is in a paper, though some of its rows are not dressed.
 ! grep -q 'Neither paper' "$work/garment/methods.tex" || fail "jeans are in no paper: $(cat "$work/garment/methods.tex")"
 # A commit that is not known cannot be checked out.

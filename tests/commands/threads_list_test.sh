@@ -18,7 +18,7 @@ says 'openmp:1 .*✓\|openmp:1 .*yes'
 ends 0 "${bench[@]}" --threads 2,1 --rounds 3 --resume --out list
 [ "$(column_of list/timings.csv rounds | sort -u)" = 3 ] || fail "after --resume: $(cat list/timings.csv)"
 ends 2 "${bench[@]}" --threads 2 --rounds 3 --resume --out list
-warns 'the folder has other backends or integrators'
+warns 'list has other backends or integrators'
 ends 0 "${bench[@]}" --threads 2 --rounds 1 --overwrite --out list
 [ ! -e list/threads.csv ] || fail "there is a table of one number of threads"
 ends 0 compare list list

@@ -70,7 +70,7 @@ output/tables         text statistics platform bench/machine bench/results
 output/guide          text integrators backends guide output/tables
 garment/output        text garment garment/stepping bench/results hdf5 output/tables
 output/traces         text platform geometry model hdf5 garment/output
-output/pictures       platform geometry render picture model scene/fields garment output/traces
+output/pictures       text platform geometry render picture model scene/fields garment output/traces
 output/exports        text platform geometry model hdf5 output/traces
 output/folders        text platform scene/fields bench/machine bench/results output/tables garment/output
 report                text platform statistics integrators scene/fields charts bench/machine bench/results bench/roofline bench/verification output/tables garment/output output/folders

@@ -46,16 +46,17 @@ bool has_frames(const BenchSettings& settings, const ResultRow& row) {
 }  // namespace
 
 bool is_finished(const BenchSettings& settings, const std::string& scene,
-                 const std::vector<ResultRow>& earlier) {
+                 const std::vector<ResultRow>& earlier, const std::string& folder) {
   if (earlier.empty()) return false;
   std::set<std::pair<std::string, std::string>> asked, measured;
   for (const Integrator* integrator : settings.integrators)
     for (const BackendInfo* backend : settings.backends) asked.emplace(backend->name, integrator->name);
   for (const ResultRow& row : earlier) measured.emplace(row.backend, row.integrator);
   if (asked != measured)
-    throw UsageError("the folder has other backends or integrators of " + scene +
-                     " than this command: --resume needs the same ones; choose another --out, "
-                     "or --overwrite to measure again");
+    throw UsageError(
+        "{} has other backends or integrators of {} than this command: --resume needs the same ones; choose "
+        "another --out, or --overwrite to measure again",
+        folder, scene);
   return std::ranges::all_of(earlier, [&](const ResultRow& row) {
     return row.status != "ok" ||
            (row.rounds >= settings.rounds && has_frames(settings, row) && !has_unchecked_samples(row));

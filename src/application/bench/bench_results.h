@@ -28,11 +28,11 @@ class BenchRows {
   std::vector<ResultRow> rows_;
 };
 
-/// Whether an earlier run completed every requested combination of the scene, with frames and the check of
-/// its samples. Throws UsageError if it measured other combinations, because samples of different rows are
-/// compared round by round.
+/// Whether an earlier run into `folder` completed every requested combination of the scene, with frames and
+/// the check of its samples. Throws UsageError if it measured other combinations, because samples of
+/// different rows are compared round by round.
 bool is_finished(const BenchSettings& settings, const std::string& scene,
-                 const std::vector<ResultRow>& earlier);
+                 const std::vector<ResultRow>& earlier, const std::string& folder);
 
 /// The content of a folder written by `mssim bench --out`.
 struct MeasuredRun {

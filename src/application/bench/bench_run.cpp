@@ -7,6 +7,7 @@
 
 #include "application/outputs.h"
 #include "application/run.h"
+#include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "output/traces/h5md_trace.h"
@@ -95,7 +96,10 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
     const auto fail = [&](const char* reason) {
       row.status = std::string("failed: ") + reason;
       row.verified = false;
-      row.ms_per_step = row.ms_per_step_low = row.ms_per_step_high = row.speedup_vs_serial = std::nullopt;
+      static_cast<SampleStatistics&>(row) = {};
+      if (row.backend == baseline_backend().name)
+        for (ResultRow& other : rows)
+          if (other.integrator == row.integrator) other.speedup_vs_serial.reset();
       failed = true;
     };
     watch.progress(fmt::format("trace {} {}", row.backend, row.integrator), 1);
@@ -126,19 +130,28 @@ TimeBudget::TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> 
   end_ = present_start_ + duration_of(*seconds);
 }
 
-std::optional<TimeBudget::Clock::time_point> TimeBudget::begin_scene() {
+std::optional<TimeBudget::Clock::time_point> TimeBudget::deadline() const {
   if (!end_) return std::nullopt;
-  present_start_ = Clock::now();
+  const Clock::time_point now = Clock::now();
   const double scale = expected_ > 0 ? taken_ / expected_ : 1;
-  const double rounds = rounds_within(seconds_of(*end_ - present_start_) / scale, total(scenes_));
-  present_ = scenes_.front();
-  scenes_.erase(scenes_.begin());
-  return present_start_ + duration_of(scale * present_.with(rounds));
+  std::vector<ExpectedTime> left = scenes_;
+  left.push_back(present_);
+  const double rounds = rounds_within(seconds_of(*end_ - now) / scale, total(left));
+  return now + duration_of(scale * present_.with(rounds));
 }
 
-void TimeBudget::first_round_done() {
+std::optional<TimeBudget::Clock::time_point> TimeBudget::begin_scene() {
+  present_start_ = Clock::now();
+  present_ = scenes_.front();
+  scenes_.erase(scenes_.begin());
+  return deadline();
+}
+
+std::optional<TimeBudget::Clock::time_point> TimeBudget::first_round_done() {
   expected_ += present_.preparation + present_.round;
   taken_ += seconds_of(Clock::now() - present_start_);
+  present_.preparation = -present_.round;  // of all its rounds, one is done
+  return deadline();
 }
 
 void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
@@ -149,7 +162,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   for (const PlannedScene& planned : plan.timed) {
     BenchSettings settings = plan.settings;
     settings.backends = planned.backends;
-    if (is_finished(settings, planned.spec.name, results.of_scene(planned.spec.name)))
+    if (is_finished(settings, planned.spec.name, results.of_scene(planned.spec.name), plan.output.folder))
       finished_ones.insert(planned.spec.name);
   }
   ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
@@ -181,7 +194,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
         .progress = [&](const std::string& activity, double done) { progress.update(activity, done); },
         .after_round =
             [&](const std::vector<ResultRow>& measured) {
-              if (std::exchange(first_round, false)) budget.first_round_done();
+              if (std::exchange(first_round, false)) job.deadline = budget.first_round_done();
               results.keep(job.name, measured);
             },
         .stop = [&] { return stop.requested(); }};

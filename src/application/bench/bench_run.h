@@ -51,13 +51,16 @@ class TimeBudget {
   std::optional<Clock::time_point> end() const { return end_; }
   /// When the next scene, which begins now, must have been measured and checked; none without a limit.
   std::optional<Clock::time_point> begin_scene();
-  /// Must be called after the scene's first round, whose time corrects the expectations.
-  void first_round_done();
+  /// Must be called after the scene's first round. Its time and that of the preparation correct the
+  /// expectations. Returns the scene's corrected deadline.
+  std::optional<Clock::time_point> first_round_done();
 
  private:
+  std::optional<Clock::time_point> deadline() const;
+
   std::optional<Clock::time_point> end_;
   std::vector<ExpectedTime> scenes_;  ///< those that have not begun
-  ExpectedTime present_;
+  ExpectedTime present_;              ///< what remains of the present scene
   Clock::time_point present_start_;
   double expected_ = 0, taken_ = 0;  ///< seconds before the first round, for all scenes so far
 };

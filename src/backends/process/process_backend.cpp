@@ -103,7 +103,7 @@ std::invoke_result_t<Work> failing_alone(const Work& work) {
 void require_support(const BackendProgram& program, const System& system, const Integrator& integrator) {
   const bool cloth = std::holds_alternative<GridPatch>(system.topology);
   if (!(cloth ? program.steps_cloths : program.steps_bodies))
-    throw Unsupported(std::string("it does not step ") + (cloth ? "cloths" : "bodies"));
+    throw Unsupported("it steps {} only", cloth ? "bodies" : "cloths");
   if (const std::string reason = unsupported_reason(program, integrator); !reason.empty())
     throw Unsupported(reason);
 }
@@ -297,10 +297,11 @@ class ProcessBackend final : public WindowBackend {
 
 std::string unsupported_reason(const BackendProgram& program, const Integrator& integrator) {
   // Without stages to send, a program that only reads stages would do nothing in a step.
-  if (program.integrators.empty() && !is_implicit(integrator)) return {};
-  return std::ranges::find(program.integrators, integrator.name) != program.integrators.end()
-             ? std::string()
-             : "it has no " + std::string(integrator.name);
+  const std::vector<std::string>& known = program.integrators;
+  if (known.empty() ? !is_implicit(integrator) : std::ranges::find(known, integrator.name) != known.end())
+    return {};
+  return fmt::format("it has no {}, only {}", integrator.name,
+                     known.empty() ? "explicit integrators" : listed(known));
 }
 
 std::string method_text(const Integrator& integrator) {

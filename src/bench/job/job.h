@@ -102,6 +102,7 @@ struct SceneJob : BenchSettings {
   std::optional<WindowedCloth> windowed = {};
   double dt_s = 0;
   /// Except for the first, no round begins if its samples could probably not be checked before the deadline.
+  /// BenchWatch::after_round may change it.
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   /// Approximate share of the time before the rounds in the whole; for the progress only.
   double preparation = 0.3;

@@ -105,10 +105,18 @@ struct Samples {
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
 };
 
+/// Values that follow from a row's samples. Empty unless the row is ok.
+struct SampleStatistics {
+  std::optional<double> ms_per_step, ms_per_step_low, ms_per_step_high, ms_per_step_min;
+  std::optional<double> springs_per_second, gigabytes_per_second, roofline_fraction;
+  std::optional<double> speedup_vs_serial;
+  int outliers = 0;
+};
+
 /// One combination of scene, backend and integrator, measured and verified: a row of timings.csv, whose
 /// columns are described by result_columns. Missing values (a failed row's times, a time that was never
 /// published) are empty.
-struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, FrameTimes, Samples {
+struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, FrameTimes, Samples, SampleStatistics {
   std::string scene;
   /// Whether the scene is, to the byte, the one that mssim ships under its name; only such a scene can be a
   /// paper's. Not a column.
@@ -120,12 +128,10 @@ struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, FrameTimes, Sampl
   std::string integrator;
   double dt_s = 0;
   int rounds = 0;
-  std::optional<double> ms_per_step, ms_per_step_low, ms_per_step_high, ms_per_step_min;
-  std::optional<double> springs_per_second, gigabytes_per_second, roofline_fraction;
-  std::optional<double> speedup_vs_serial, paper_ms;
+  std::optional<double> paper_ms;
   bool verified = false;
   std::string status = "ok", note;
-  int warm_up_trials = 0, outliers = 0;
+  int warm_up_trials = 0;
 
   // Written to files of their own, like the samples.
   std::string program_output;              ///< last output of the backend's program, if there is one

@@ -190,12 +190,10 @@ std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t
   return BlowUp{bad, *node};
 }
 
-std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before) {
+std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before, std::string_view remedy) {
   const std::int64_t step = steps_before + blow_up.step;
-  return fmt::format(
-      "blew up at step {} (t = {:.6g} s): node {} is not finite in single precision; take a smaller dt_s or "
-      "\"auto\"",
-      step, static_cast<double>(step) * dt_s, blow_up.node);
+  return fmt::format("blew up at step {} (t = {:.6g} s): node {} is not finite in single precision; {}", step,
+                     static_cast<double>(step) * dt_s, blow_up.node, remedy);
 }
 
 double position_deviation(const System& system, const State& reference, const State& state) {

@@ -43,9 +43,13 @@ std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int step
 std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t>(int steps)>& bad_node_after,
                                    int steps);
 
+/// Remedy for a simulation that blows up with the scene's time step.
+inline constexpr std::string_view shorter_scene_step = "take a smaller dt_s or \"auto\"";
+
 /// "blew up at step 12 (t = 0.0012 s): node 34 is not finite; ..." with the remedy. `steps_before` is added
 /// to the step number.
-std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before = 0);
+std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before = 0,
+                     std::string_view remedy = shorter_scene_step);
 /// Follows the remedy of describe() for a backend, which may be the only one that blows up.
 inline constexpr std::string_view unless_alone = " if other backends blow up, too";
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <system_error>
 #include <utility>
 
 #include "geometry/geometry.h"
 #include "picture/legend.h"
 #include "scene/fields/fields.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
@@ -211,9 +211,8 @@ PictureFolder::PictureFolder(std::filesystem::path folder, TraceContent content,
       lock_(make_folder(folder_)),
       content_(std::move(content)),
       options_(options) {
-  std::error_code error;
-  if (!std::filesystem::is_empty(folder_, error) || error)
-    throw WriteError("cannot put pictures into {}, which is not empty; empty it or choose another folder",
+  if (!std::filesystem::is_empty(folder_))
+    throw UsageError("cannot put pictures into {}, which is not empty; empty it or choose another folder",
                      folder_.string());
 }
 

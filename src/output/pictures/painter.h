@@ -78,8 +78,8 @@ class Painter {
 /// unknown: if something leaves the picture, the following ones are taken from farther away.
 class PictureFolder {
  public:
-  /// Creates the folder and its parents. Throws WriteError, also if the folder is not empty or another writer
-  /// has it.
+  /// Creates the folder and its parents. Throws UsageError if the folder is not empty; WriteError, also if
+  /// another writer has it.
   PictureFolder(std::filesystem::path folder, TraceContent content, const PictureOptions& options);
   PictureFolder(const PictureFolder&) = delete;
   PictureFolder& operator=(const PictureFolder&) = delete;

@@ -157,12 +157,12 @@ std::string line_of(const RowCells& cells, const RowLayout& layout, bool colours
   return line + '\n';
 }
 
-/// "cloth2500: 2,500 nodes, 14,502 springs (29,004 as published)", the last part if it fits.
+/// "cloth2500: 2,500 nodes, 14,502 springs (29,004 as Hong et al. count)", the last part if it fits.
 std::string scene_line(const ResultRow& row, const Terminal& terminal) {
   const std::string name = escaped(row.scene);
   std::string sizes = fmt::format(": {} nodes, {} springs", grouped(row.nodes), grouped(row.springs_unique));
   if (row.springs_published) {
-    const std::string published = fmt::format(" ({} as published)", grouped(*row.springs_published));
+    const std::string published = fmt::format(" ({} as Hong et al. count)", grouped(*row.springs_published));
     if (width_of(name + sizes + published) <= static_cast<std::size_t>(terminal.width.value_or(INT_MAX)))
       sizes += published;
   }

@@ -49,17 +49,17 @@ TEST(BenchRows, AreFinishedWhenEachHasItsRoundsOrCannotRun) {
   settings.backends = {find_backend("serial"), find_backend("opencl")};
   settings.integrators = {find_integrator("semi-euler")};
   std::vector<ResultRow> rows{row("a", "serial"), row("a", "opencl")};
-  EXPECT_FALSE(is_finished(settings, "a", {}));
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", {}, "out"));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   rows[1].note = "a remark; " + std::string(unchecked_samples);
-  EXPECT_FALSE(is_finished(settings, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", rows, "out"));
   rows[1].note = "a remark";
   rows[1].rounds = 2;
-  EXPECT_FALSE(is_finished(settings, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", rows, "out"));
   rows[1].status = "unavailable: no device";
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   rows.pop_back();
-  EXPECT_THROW(is_finished(settings, "a", rows), UsageError);
+  EXPECT_THROW(is_finished(settings, "a", rows, "out"), UsageError);
 }
 
 TEST(BenchRows, AreNotFinishedWithoutTheFramesThatAreAskedFor) {
@@ -69,16 +69,16 @@ TEST(BenchRows, AreNotFinishedWithoutTheFramesThatAreAskedFor) {
   settings.integrators = {find_integrator("semi-euler")};
   std::vector<ResultRow> rows{row("a", "serial")};
   rows[0].dt_s = 1e-3;
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   settings.fps = 60;
-  EXPECT_FALSE(is_finished(settings, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", rows, "out"));
   rows[0].frame_steps = 33;
-  EXPECT_FALSE(is_finished(settings, "a", rows)) << "those of 30 frames per second";
+  EXPECT_FALSE(is_finished(settings, "a", rows, "out")) << "those of 30 frames per second";
   rows[0].frame_steps = 17;
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
   rows[0].frame_steps = {};
   rows[0].note = "draped; frames of 17 steps are not timed: samples of this row end after 9 steps";
-  EXPECT_TRUE(is_finished(settings, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows, "out"));
 }
 
 ResultRow row(const std::string& backend, const std::string& status, bool verified) {
@@ -151,6 +151,13 @@ TEST(TimeBudget, BelievesWhatTheFirstRoundsTook) {
   EXPECT_LT(seconds, 3.4);
 }
 
+TEST(TimeBudget, CorrectsTheDeadlineAfterALongPreparation) {
+  TimeBudget budget(4, {{0.001, 0.0001}, {0, 0.0001}});
+  budget.begin_scene();
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  EXPECT_NEAR(seconds_until(budget.first_round_done()), seconds_until(budget.end()) / 2, 0.1);
+}
+
 TEST(TimeBudget, IsRefusedWhereItIsTooShortForARoundOfEach) {
   EXPECT_THROW(TimeBudget(43, {{10, 1}, {30, 3}}), UsageError);
   EXPECT_NO_THROW(TimeBudget(44, {{10, 1}, {30, 3}}));
@@ -177,6 +184,32 @@ TEST_F(BenchTraceTest, HasTheProvenanceOfTheBench) {
     EXPECT_EQ(text_in(open(folder() / "out/traces" / (scene + "-serial-semi-euler.h5")).get(),
                       "/parameters/provenance"),
               expected);
+}
+
+TEST_F(BenchTraceTest, TakesTheTimesFromARowThatFailsAndTheSpeedupsOverIt) {
+  BackendInfo broken = baseline_backend();
+  broken.make = [](const System&, const Integrator&, double,
+                   const ExecutionOptions&) -> std::unique_ptr<Backend> { throw Unavailable("it is gone"); };
+  SceneJob job;
+  job.backends = {&broken, find_backend("openmp")};
+  std::vector<ResultRow> rows{row("cloth", "serial"), row("cloth", "openmp")};
+  for (ResultRow& measured : rows) {
+    measured.verified = true;
+    static_cast<SampleStatistics&>(measured) = {1, 1, 1, 1, 2, 3, 0.5, 4, 1};
+  }
+  write_file_atomically(folder() / "b.h5", "an earlier trace");
+  PreparedScene scene;
+  scene.dt_s = 1e-4;
+  EXPECT_TRUE(write_bench_traces(
+      job, scene, rows, {"a", "b"}, {}, folder(), true,
+      {.progress = [](const std::string&, double) {}, .after_round = {}, .stop = [] { return false; }}));
+  EXPECT_THAT(rows[0].status, HasSubstr("it is gone"));
+  for (const ResultColumn& column : result_columns) {
+    const auto* value = std::get_if<std::optional<double> ResultRow::*>(&column.value);
+    EXPECT_TRUE(!value || !(rows[0].**value)) << column.name;
+  }
+  EXPECT_EQ(rows[1].ms_per_step, 1);
+  EXPECT_EQ(rows[1].speedup_vs_serial, std::nullopt);
 }
 
 }  // namespace

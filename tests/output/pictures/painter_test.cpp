@@ -197,7 +197,7 @@ TEST_F(PicturesOfARun, AreWhatAPainterDrawsOfAllSoFar) {
 TEST_F(PicturesOfARun, NeedAFolderOfTheirOwn) {
   put("used/notes.txt", "mine");
   put("file", "no folder");
-  EXPECT_THROW(pictures_in(folder() / "used"), WriteError);
+  EXPECT_THROW(pictures_in(folder() / "used"), UsageError);
   EXPECT_THROW(pictures_in(folder() / "file"), WriteError);
   EXPECT_EQ(names_in(folder() / "used"), std::set<std::string>{"notes.txt"});
   const PictureFolder first = pictures_in(folder() / "pictures");

@@ -137,7 +137,7 @@ std::size_t widest_line(const std::string& text) {
 TEST(RowTable, ShowsABlockForEachSceneWithBarsInOneScale) {
   const std::vector<ResultRow> all = table_rows();
   EXPECT_EQ(table_of({all.begin(), all.end() - 1}, {.width = 74, .utf8 = true}),
-            "cloth2500: 2,500 nodes, 14,502 springs (29,004 as published)\n"
+            "cloth2500: 2,500 nodes, 14,502 springs (29,004 as Hong et al. count)\n"
             "  integrator  backend  ms/step        interval  verified  speed-up\n"
             "  semi-euler  serial     0.100    0.0500–0.200  ✓         1.00×  █▏\n"
             "              openmp    0.0125  0.00625–0.0250  ✓         8.00×  █████████\n"
@@ -145,7 +145,7 @@ TEST(RowTable, ShowsABlockForEachSceneWithBarsInOneScale) {
             "              opencl                            ✗         failed\n"
             "  opencl: failed: step 3 | node 7 is not finite\n"
             "\n"
-            "cloth350k: 350,000 nodes, 14,502 springs (4,188,004 as published)\n"
+            "cloth350k: 350,000 nodes, 14,502 springs (4,188,004 as Hong et al. count)\n"
             "  integrator  backend  ms/step        interval  verified  speed-up\n"
             "  semi-euler  serial      1.50      0.750–3.00  ✓         1.00×  █▏\n");
 }
