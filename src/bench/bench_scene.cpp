@@ -140,8 +140,7 @@ int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
   if (job.windowed) return verification_steps;
   const int checkable =
       checkable_steps(integrator, {job.system->nodes(), job.system->springs.size(), false, false});
-  return comparable_steps(*job.system, integrator, job.dt_s,
-                          steps_before_drift(*job.system, integrator, job.dt_s, checkable));
+  return comparable_steps(*job.system, integrator, job.dt_s, checkable);
 }
 
 /// Results of an integrator's reference.

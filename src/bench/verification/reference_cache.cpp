@@ -134,7 +134,7 @@ Reference recall_reference(const ReferenceCache& cache, const System& system, co
     fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
     found->energy = energy_of(system, found->state);
     found->integrator = &integrator;
-    found->tolerance = comparison_tolerance(system, integrator, dt_s, found->steps);
+    found->tolerance = position_tolerance(system, integrator, found->steps);
     found->recalled = true;
     return *std::move(found);
   }

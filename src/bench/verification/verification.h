@@ -105,25 +105,16 @@ ModeBound mode_bound(const System& system);
 /// system's modes (stability.h), which lie between those of its spectrum. `most` if it is stable.
 int comparable_steps(const System& system, const Integrator& integrator, double dt_s, int most);
 
-/// Steps from the start, at least verification_steps and else at most `most`, until roundings of velocities
-/// may exceed position_tolerance: those of xpbd do not behave like a random walk. `most` for other
-/// integrators.
-int steps_before_drift(const System& system, const Integrator& integrator, double dt_s, int most);
-
 /// Largest position error, in mean rest lengths, that single precision may cause in `steps` steps.
 ///
 /// A stage that writes the new position rounds it by at most u = 2^-24 of its magnitude. Independent
 /// roundings add up like a random walk, with the square root of their number. Float backends behave like
 /// that: after 100 steps of all cloths, methods with one such stage end 8 to 12 u |x| away from the
 /// reference, RK4 with four of them 24 to 53. The tolerance is four times the square root. An implicit step
-/// writes the position once. The small steps of xpbd write it more often, but carry the error of each sum.
-/// tests/bench/verification/verification_test.cpp proves that a missing spring or pin, or one kind of spring
-/// 1 % too stiff, exceeds the tolerance.
+/// writes the position once. The small steps of xpbd write it and the velocity more often, but carry the
+/// error of each sum. tests/bench/verification/verification_test.cpp proves that a missing spring or pin, or
+/// one kind of spring 1 % too stiff, exceeds the tolerance.
 double position_tolerance(const System& system, const Integrator& integrator, int steps);
-
-/// The tolerance on the position error of a comparison after `steps` steps from the start, in mean rest
-/// lengths: position_tolerance, and what roundings of velocities add in xpbd's small steps.
-double comparison_tolerance(const System& system, const Integrator& integrator, double dt_s, int steps);
 
 /// Largest such tolerance, in mean rest lengths, and largest fraction of the energy in motion that is allowed
 /// for roundings. With larger ones a comparison would not show much.
