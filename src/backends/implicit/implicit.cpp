@@ -74,11 +74,11 @@ constexpr SolverSteps local_global{
     .openmp_memory = {.node = 150 + matrix_bytes, .doubling_node = cloth_entries * block_bytes}};
 
 constexpr SolverSteps constraints{.serial = of_one_integrator<make_serial_constraints>,
-                                  .serial_memory = {.node = 41, .spring = 16 + 20},
+                                  .serial_memory = {.node = 53, .spring = 16 + 20},
                                   .reference = of_one_integrator<make_constraints_reference>,
-                                  .reference_memory = {.node = 81, .spring = 16 + 32},
+                                  .reference_memory = {.node = 105, .spring = 16 + 32},
                                   .openmp = of_one_integrator<make_openmp_constraints>,
-                                  .openmp_memory = {.node = 40}};
+                                  .openmp_memory = {.node = 52}};
 
 struct Row {
   Solver solver;
