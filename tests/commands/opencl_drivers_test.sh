@@ -96,7 +96,7 @@ died='the OpenCL driver "Portable Computing Language" ended with signal 6 when i
 FAKE_OPENCL=dies ends 3 "${scene[@]}" --backend hybrid,openmp,opencl --out dying
 [ "$(column_of dying/timings.csv verified | grep -c true)" -eq 1 ] || fail "openmp is not verified: $(cat dying/timings.csv)"
 [ "$(tr -s '"' <dying/timings.csv | grep -c "unavailable: $died")" -eq 2 ] || fail "timings.csv does not say who died: $(cat dying/timings.csv)"
-FAKE_OPENCL=dies expect 3 "^mssim: $died\$" run --scene cloth2500 --backend opencl --duration 0.01
+FAKE_OPENCL=dies expect 3 "^mssim: opencl: $died\$" run --scene cloth2500 --backend opencl --duration 0.01
 # One that compiles for ever: mssim says what it waits for, and a signal ends both.
 FAKE_OPENCL=hangs begins "${scene[@]}" --backend opencl --out hanging
 soon 60 grep -q 'the OpenCL driver "Portable Computing Language" is compiling the kernels of opencl with semi-euler' err ||
