@@ -79,15 +79,16 @@ mkdir "$repository/later"
 grep -q 'HEAD~1 has no folder later/' "$place/err" || fail 'it says which folder is missing'
 
 # Two comparisons in one repository start their own programs.
+starters=()
 for name in first second; do
   tool "$name" <<<'printf "%s\n" "${0##*/}" "$PWD" "$@"; exit 1'
   (cd "$repository/scripts" && runs 1 HEAD~1 --mssim="$tools/$name" --build=true --backend ./mine)
-  mapfile -t "$name" < <(sed -n 5,6p "$place/out")
+  starters+=("$(sed -n 5p "$place/out")" "$(sed -n 6p "$place/out")")
 done
 code=0
-"${first[0]}" measured >"$place/out" || code=$?
+"${starters[0]}" measured >"$place/out" || code=$?
 [[ $code == 1 && $(cat "$place/out") == "first
 $repository/build/ci-regression/$old/scripts
 measured" ]] || fail 'the second comparison changes what the first one starts for its base'
-[[ $("${second[1]}" || true) == "second
+[[ $("${starters[3]}" || true) == "second
 $repository/scripts" ]] || fail 'the program is started in the present tree'
