@@ -11,17 +11,27 @@
 namespace mssim {
 namespace {
 
+/// The state after 10 ms.
+TrustedState trusted_after_10_ms(const System& system, double wanted_error = 1e-9) {
+  return trusted_state(system,
+                       {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = wanted_error});
+}
+
+StepLimit limit_of(std::string_view integrator, double stable_s = 2.2e-4) {
+  StepLimit limit;
+  limit.integrator = find_integrator(integrator);
+  limit.measured = {.stable_s = stable_s, .unstable_s = 1.01 * stable_s};
+  return limit;
+}
+
 /// Points of a method on serial over 10 ms, the limit taken as given, and the trusted state's own error if it
 /// is.
 std::vector<WorkPoint> curve_of(std::string_view integrator, double stable_s, double wanted_error,
                                 double own_error = 0) {
   const System system = cloth_system(8, 8);
-  TrustedState trusted =
-      trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-9});
+  TrustedState trusted = trusted_after_10_ms(system);
   trusted.own_error = std::max(trusted.own_error, own_error);
-  StepLimit limit;
-  limit.integrator = find_integrator(integrator);
-  limit.measured = {.stable_s = stable_s, .unstable_s = 1.01 * stable_s};
+  const StepLimit limit = limit_of(integrator, stable_s);
   GuidedMethod method{limit.integrator, find_backend("serial"), {}};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, wanted_error);
   std::vector<WorkPoint> points;
@@ -82,11 +92,8 @@ TEST(WorkCurve, IsUnsupportedWithoutSpendingTimeWhereTheBackendLacksTheIntegrato
 
 TEST(WorkCurve, EndsWithAProgramThatPostponesItsSteps) {
   const System system = cloth_system(30, 30);
-  const TrustedState trusted =
-      trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-3});
-  StepLimit limit;
-  limit.integrator = find_integrator("semi-euler");
-  limit.measured = {.stable_s = 2.2e-4, .unstable_s = 2.21e-4};
+  const TrustedState trusted = trusted_after_10_ms(system, 1e-3);
+  const StepLimit limit = limit_of("semi-euler");
   GuidedMethod method{limit.integrator, &postponing, {}};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-3);
   EXPECT_FALSE(curve.next());
@@ -97,11 +104,8 @@ TEST(WorkCurve, EndsWithAProgramThatPostponesItsSteps) {
 
 TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
   const System system = cloth_system(8, 8);
-  const TrustedState trusted =
-      trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-9});
-  StepLimit limit;
-  limit.integrator = find_integrator("semi-euler");
-  limit.measured = {.stable_s = 2.2e-4, .unstable_s = 2.21e-4};
+  const TrustedState trusted = trusted_after_10_ms(system);
+  const StepLimit limit = limit_of("semi-euler");
   std::vector<std::string> statuses;
   for (const int points : {0, 1, 2}) {  // none, one that diverges, and one that counts
     GuidedMethod method{limit.integrator, find_backend("serial"), {}};
@@ -124,8 +128,7 @@ TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
 
 TEST(WorkCurve, TimesAStepOnABackendThatIsNotTheLimits) {
   const System system = cloth_system(8, 8);
-  const TrustedState trusted =
-      trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-9});
+  const TrustedState trusted = trusted_after_10_ms(system);
   StepLimit limit;
   limit.integrator = find_integrator("rk4");
   limit.backend = "openmp";
