@@ -11,6 +11,7 @@
 #include "backends/backends.h"
 #include "backends/described/backend_description.h"
 #include "backends/devices/drivers.h"
+#include "bench/results/result.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "integrators/all_integrators.h"
@@ -153,6 +154,15 @@ Table list_claims(const ListOptions& /*options*/) {
   return table;
 }
 
+Table list_columns(const ListOptions& /*options*/) {
+  Table table;
+  for (const ResultColumn& column : result_columns)
+    table.add({{"column", column.name},
+               {"unit", column.unit.empty() ? Cell() : Cell(column.unit)},
+               {"meaning", column.meaning}});
+  return table;
+}
+
 /// The TABLE of what can be listed: a table, or the schema of a JSON file, which is printed as it is.
 struct Listed {
   std::string_view name;
@@ -166,6 +176,7 @@ constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
                                                  {"integrators", list_integrators},
                                                  {"devices", list_devices},
                                                  {"claims", list_claims},
+                                                 {"columns", list_columns},
                                                  {"schema", nullptr, scene_schema},
                                                  {"claims-schema", nullptr, claims_schema},
                                                  {"backend-schema", nullptr, description_schema},

@@ -11,10 +11,7 @@ valid() {
   /usr/bin/python3 -W ignore "$source/tests/support/check_json.py" "$source/docs/schemas/$name.schema.json${1#"$name"}" "${@:2}" || fail "$*"
 }
 
-# Four schemas follow from the tables by which the program writes or reads.
-for name in backend bench history timings; do
-  "$mssim" list "$name-schema" | cmp - "$source/docs/schemas/$name.schema.json" || fail "renew it: mssim list $name-schema"
-done
+"$source/scripts/write-schemas" --check "$mssim" || fail "a committed schema, or docs/bench.md, differs"
 
 for file in "$source"/docs/schemas/*; do
   grep -q "(schemas/${file##*/})" "$source/docs/reading-results.md" || fail "docs/reading-results.md does not name $file"
@@ -54,7 +51,7 @@ valid ../../results/published/claims "$source/results/published/claims.json" \
   --optional needs,test,integrators,slow_integrator,gains_more_than,device,of --wrong 'claims/0/test/device="phone"'
 
 # Listings.
-for subject in scenes suites backends methods integrators devices claims; do
+for subject in scenes suites backends methods integrators devices claims columns; do
   ends 0 list "$subject" --format json
   valid "listings#list-$subject" out
 done

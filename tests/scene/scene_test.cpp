@@ -308,11 +308,6 @@ TEST(DidYouMean, KnowsOtherNames) {
   EXPECT_EQ(did_you_mean("GPU", names, others), " (did you mean opencl?)");
 }
 
-TEST(SceneSchema, IsCommittedAsTheFieldsOfTheReaderAre) {
-  EXPECT_EQ(text_of(source_file("scenes/scene.schema.json")), scene_schema())
-      << "write it anew, with mssim list schema";
-}
-
 /// Checks an object's description and those of all its fields.
 void check_descriptions(const json& object, const std::string& place) {
   EXPECT_GT(object.value("description", std::string()).size(), 10U) << place;

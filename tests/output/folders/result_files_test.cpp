@@ -38,16 +38,6 @@ TEST(ResultColumns, AreWhereTheyWere) {
   EXPECT_NO_THROW(CsvTable("timings.csv", timings_csv({})).require_columns(known));
 }
 
-TEST(ResultColumns, AreThoseOfTheDocumentation) {
-  Table table;
-  for (const ResultColumn& column : result_columns)
-    table.add({{"column", '`' + std::string(column.name) + '`'},
-               {"unit", column.unit},
-               {"what it is", column.meaning}});
-  const std::string wanted = '\n' + markdown({table}) + '\n';
-  EXPECT_THAT(text_of(source_file("docs/bench.md")), HasSubstr(wanted));
-}
-
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
   std::vector<ResultRow> rows{measured_row("serial", 1.0 / 3, 1.0), measured_row("openmp", 0.1, M_PI),
                               failed_row("opencl", "failed: \"x\", at\r\nstep 3")};
