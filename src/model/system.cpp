@@ -169,11 +169,8 @@ namespace {
 
 /// Of the springs for which `counts` is true.
 template <class Counts>
-StiffnessBound bound_of_springs(const System& system, Counts counts) {
-  struct Sum {
-    double stiffness = 0, damping = 0;
-  };
-  std::vector<Sum> node(system.nodes());
+ModeBound::Part bound_of_springs(const System& system, Counts counts) {
+  std::vector<ModeBound::Part> node(system.nodes());  // N/m, N s/m
   for (const Spring& spring : system.springs) {
     if (!counts(spring)) continue;
     const auto law = linear_spring(system.materials[spring.kind], static_cast<double>(spring.rest_length));
@@ -182,7 +179,7 @@ StiffnessBound bound_of_springs(const System& system, Counts counts) {
       node[end].damping += spring_damping_along(law.constants);
     }
   }
-  StiffnessBound bound;
+  ModeBound::Part bound;
   for (std::size_t i = 0; i < node.size(); ++i) {
     bound.stiffness = std::max(bound.stiffness, 2 * node[i].stiffness / system.node_mass[i]);
     bound.damping = std::max(bound.damping, 2 * node[i].damping / system.node_mass[i]);
@@ -192,9 +189,9 @@ StiffnessBound bound_of_springs(const System& system, Counts counts) {
 
 }  // namespace
 
-StiffnessBound stiffness_bound(const System& system) {
-  StiffnessBound bound = bound_of_springs(system, [](const Spring& /*spring*/) { return true; });
-  bound.damping += system.viscous_damping;
+ModeBound mode_bound(const System& system) {
+  const auto [stiffness, damping] = bound_of_springs(system, [](const Spring& /*spring*/) { return true; });
+  ModeBound bound{stiffness, damping + system.viscous_damping, system.viscous_damping};
   constexpr double rounding = 1e-9;
   const auto damps_as_all = [&](const SpringMaterial& a) {
     return std::ranges::all_of(system.materials, [&](const SpringMaterial& b) {
@@ -204,7 +201,7 @@ StiffnessBound stiffness_bound(const System& system) {
   };
   if (std::ranges::all_of(system.materials, damps_as_all)) return bound;
   for (std::size_t kind = 0; kind < system.materials.size(); ++kind)
-    bound.materials.push_back(
+    bound.parts.push_back(
         bound_of_springs(system, [&](const Spring& spring) { return spring.kind == kind; }));
   return bound;
 }

@@ -174,9 +174,7 @@ std::vector<double> energies(const System& system, const Integrator& integrator,
 }
 
 double explicit_limit_s(const System& system) {
-  const StiffnessBound bound = stiffness_bound(system);
-  return largest_stable_dt(*find_integrator("semi-euler"),
-                           {bound.stiffness, bound.damping, system.viscous_damping});
+  return largest_stable_dt(*find_integrator("semi-euler"), mode_bound(system));
 }
 
 TEST(EnergyWithoutDamping, FallsInEveryStepOfBackwardEuler) {

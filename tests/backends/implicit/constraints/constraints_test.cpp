@@ -160,9 +160,7 @@ void expect_stable(SceneSpec spec) {
   for (auto& spring : cloth.springs) spring.stiffness *= 1000;
   System system = build_system(spec);
   system.floor.height = -100;
-  const StiffnessBound bound = stiffness_bound(system);
-  const double dt_s =
-      50 * largest_stable_dt(integrators[0], {bound.stiffness, bound.damping, system.viscous_damping});
+  const double dt_s = 50 * largest_stable_dt(integrators[0], mode_bound(system));
   const double start = energy_of(system, system.start).total();
   for (const auto& backend : all_backends(system, dt_s))
     for (int round = 0; round < 30; ++round) {
