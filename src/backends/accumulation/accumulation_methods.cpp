@@ -234,7 +234,7 @@ constexpr MemoryUse with_both_ends{.node = 33, .pair_node = 24, .spring = 32};
 constexpr MemoryUse in_padded_rows{.pair_node = 24, .storage = Storage::separate};
 
 /// A method that uses the plain list.
-constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, auto make,
+constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, BackendMaker* make,
                                      const MemoryUse& memory, std::string_view extra_memory,
                                      std::string_view springs_computed, Repeatable repeatable,
                                      ThreadStack stack = ThreadStack::openmp) {

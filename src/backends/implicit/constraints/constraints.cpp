@@ -353,16 +353,18 @@ State SpringBatches::state() const {
   return state;
 }
 
-std::unique_ptr<Backend> make_serial_constraints(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_serial_constraints(const System& system, const Integrator& /*integrator*/,
+                                                 double dt_s, const ExecutionOptions& /*options*/) {
   return std::make_unique<SerialConstraints<float>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_constraints_reference(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_constraints_reference(const System& system, const Integrator& /*integrator*/,
+                                                    double dt_s, const std::function<bool()>& /*stop*/) {
   return std::make_unique<SerialConstraints<double>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_openmp_constraints(const System& system, double dt_s,
-                                                 const ExecutionOptions& options) {
+std::unique_ptr<Backend> make_openmp_constraints(const System& system, const Integrator& /*integrator*/,
+                                                 double dt_s, const ExecutionOptions& options) {
   return make_vector_backend<QuarteredRows, SpringBatches>(system, dt_s, options);
 }
 

@@ -188,16 +188,18 @@ LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix
 template struct LocalGlobalNodes<NodeRows>;
 template struct LocalGlobalNodes<NodeSlices>;
 
-std::unique_ptr<Backend> make_serial_local_global(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_serial_local_global(const System& system, const Integrator& /*integrator*/,
+                                                  double dt_s, const ExecutionOptions& /*options*/) {
   return std::make_unique<LocalGlobalSerial<float>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_local_global_reference(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_local_global_reference(const System& system, const Integrator& /*integrator*/,
+                                                     double dt_s, const std::function<bool()>& /*stop*/) {
   return std::make_unique<LocalGlobalSerial<double>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_openmp_local_global(const System& system, double dt_s,
-                                                  const ExecutionOptions& options) {
+std::unique_ptr<Backend> make_openmp_local_global(const System& system, const Integrator& /*integrator*/,
+                                                  double dt_s, const ExecutionOptions& options) {
   return make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(system, dt_s, options);
 }
 

@@ -15,6 +15,8 @@
 namespace mssim {
 namespace {
 
+const Integrator& xpbd = *find_integrator("xpbd");
+
 TEST(SpringOrder, HasTwelveColoursOfAClothInWhichNoTwoSpringsShareANode) {
   for (const auto& [rows, columns] : std::vector<std::pair<std::uint32_t, std::uint32_t>>{
            {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}}) {
@@ -77,9 +79,9 @@ System one_spring(SpringMaterial material) {
 /// Every way to take steps of xpbd.
 std::vector<std::unique_ptr<Backend>> all_backends(const System& system, double dt_s) {
   std::vector<std::unique_ptr<Backend>> backends;
-  backends.push_back(make_constraints_reference(system, dt_s));
-  backends.push_back(make_serial_constraints(system, dt_s));
-  backends.push_back(make_openmp_constraints(system, dt_s, {2, ""}));
+  backends.push_back(make_reference(system, xpbd, dt_s));
+  backends.push_back(make_serial_constraints(system, xpbd, dt_s, {}));
+  backends.push_back(make_openmp_constraints(system, xpbd, dt_s, {2, ""}));
   return backends;
 }
 
@@ -126,7 +128,7 @@ TEST(Xpbd, ConvergesToTheOscillatorWithOrderOneInSmallSteps) {
     std::vector<double> errors;
     for (const std::uint32_t substeps : {200U, 400U, 800U}) {
       system.solver.substeps = substeps;
-      const auto backend = make_constraints_reference(system, end_s / 5);
+      const auto backend = make_reference(system, xpbd, end_s / 5);
       backend->step(5);
       const State state = backend->state();
       errors.push_back(std::abs(state.position[1].x - state.position[0].x - 1 - exact));
@@ -144,7 +146,7 @@ TEST(Xpbd, ConvergesWithGrowingSubstepsToWhatRk4Finds) {
   std::vector<double> errors;
   for (const std::uint32_t substeps : {5U, 10U, 20U, 40U}) {
     system.solver.substeps = substeps;
-    const auto backend = make_constraints_reference(system, 1e-4);
+    const auto backend = make_reference(system, xpbd, 1e-4);
     backend->step(200);
     errors.push_back(largest_distance(backend->state().position, exact->state().position));
   }
@@ -258,8 +260,6 @@ TEST(Xpbd, GoesOnFromAStateAsIfNothingHadHappened) {
 
 // xpbd in vectors, for every instruction set that this processor has.
 
-const Integrator& xpbd = *find_integrator("xpbd");
-
 /// Single rows and columns, fewer columns than lanes, and whole vectors inside; enough rows for threads.
 const std::vector<std::pair<std::uint32_t, std::uint32_t>> cloth_sizes{
     {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}, {66, 131}, {113, 65}};
@@ -330,7 +330,7 @@ TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
   for (const auto& [rows, columns] : cloth_sizes) {
     System system = cloth_system(rows, columns);
     system.floor.height = -100;
-    const auto reference = make_constraints_reference(system, long_s);
+    const auto reference = make_reference(system, xpbd, long_s);
     const auto backend = make_vector_backend<QuarteredRows, SpringBatches>(
         system, long_s, 2, cloth_kernels()[GetParam()].instruction_set);
     reference->step(1);
@@ -405,7 +405,7 @@ TEST_P(EachXpbdKernel, TreatsTheFloorLikeTheReference) {
   System block = solid_block(3, 4, 5, 0.02);
   for (Vec3d& v : block.start.velocity) v = {0.5, -4, 0.25};
   for (const System& system : {sheet, block}) {
-    const auto reference = make_constraints_reference(system, backend_dt_s);
+    const auto reference = make_reference(system, xpbd, backend_dt_s);
     const auto backend = make(system, 2);
     reference->step(100);
     backend->step(100);

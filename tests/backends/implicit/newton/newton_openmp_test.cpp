@@ -48,7 +48,7 @@ TEST_P(EachNewtonKernelAndIntegrator, AgreesWithTheReferenceWithLongSteps) {
   for (System system : {cloth_system(37, 23), solid_block(5, 4, 7)}) {
     system.solver.tolerance = 1e-6;
     const auto reference = make_reference(system, integrator(), long_dt_s);
-    const auto serial = make_serial_newton(system, integrator(), long_dt_s);
+    const auto serial = make_serial_newton(system, integrator(), long_dt_s, {});
     const auto simulation = make(system, 2, long_dt_s);
     for (Backend* backend : {reference.get(), serial.get(), simulation.get()}) backend->step(2);
     const std::vector<Vec3d> expected = reference->state().position;
