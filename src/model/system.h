@@ -132,6 +132,12 @@ struct State {
   std::vector<Vec3d> position;  ///< [nodes] m
   std::vector<Vec3d> velocity;  ///< [nodes] m/s
   bool draped = false;          ///< a garment: all seams are closed, and gravity and friction act
+
+  /// Appends a node.
+  void add(const Vec3d& x, const Vec3d& v) {
+    position.push_back(x);
+    velocity.push_back(v);
+  }
 };
 
 /// The plane y = height through which nothing may fall (kernels/node_laws.h).

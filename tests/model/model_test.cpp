@@ -80,10 +80,7 @@ TEST(Energy, IsTheSumOfEachNodesAndSprings) {
 
 TEST(RoundToSingle, LeavesNothingThatAFloatCannotHold) {
   State state;
-  for (int i = 1; i < 50; ++i) {
-    state.position.push_back({1.0 / i, -3.0 / i, 1e-3 * i});
-    state.velocity.push_back({0.1 * i, 0.7 / i, -1e-9 / i});
-  }
+  for (int i = 1; i < 50; ++i) state.add({1.0 / i, -3.0 / i, 1e-3 * i}, {0.1 * i, 0.7 / i, -1e-9 / i});
   const State exact = state;
   round_to_single(state);
   for (std::size_t i = 0; i < state.position.size(); ++i)
@@ -134,8 +131,7 @@ State state_of(std::size_t nodes) {
   State state;
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto x = static_cast<double>(i);
-    state.position.push_back({x, 0.5 * x, 1 / (x + 1)});
-    state.velocity.push_back({-x, 3, 0});
+    state.add({x, 0.5 * x, 1 / (x + 1)}, {-x, 3, 0});
   }
   return state;
 }

@@ -33,10 +33,8 @@ State PaddedRows::state() const {
   state.velocity.reserve(layout.rows * layout.columns);
   for (std::size_t row = 0; row < layout.rows; ++row) {
     const float* in = base[index(Pair::state)] + layout.offset(row, 0);
-    for (std::size_t column = 0; column < layout.columns; ++column, ++in) {
-      state.position.push_back(read_vector(in, layout.pitch));
-      state.velocity.push_back(read_vector(in + 3 * layout.pitch, layout.pitch));
-    }
+    for (std::size_t column = 0; column < layout.columns; ++column, ++in)
+      state.add(read_vector(in, layout.pitch), read_vector(in + 3 * layout.pitch, layout.pitch));
   }
   return state;
 }

@@ -103,8 +103,7 @@ State read_records(const Real* records, std::span<const std::uint32_t> slot) {
   State state;
   for (const std::uint32_t number : slot) {
     const Real* const record = records + std::size_t{number} * record_floats;
-    state.position.push_back(read_vector(record, 1));
-    state.velocity.push_back(read_vector(record + record_floats / 2, 1));
+    state.add(read_vector(record, 1), read_vector(record + record_floats / 2, 1));
   }
   return state;
 }

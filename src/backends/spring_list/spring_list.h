@@ -57,10 +57,8 @@ class SpringList {
     State state;
     state.position.reserve(nodes());
     state.velocity.reserve(nodes());
-    for (const Node& node : array(Pair::state)) {
-      state.position.push_back(vec3_cast<double>(node.x));
-      state.velocity.push_back(vec3_cast<double>(node.v));
-    }
+    for (const Node& node : array(Pair::state))
+      state.add(vec3_cast<double>(node.x), vec3_cast<double>(node.v));
     return state;
   }
 

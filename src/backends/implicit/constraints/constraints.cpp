@@ -248,8 +248,7 @@ State QuarteredRows::state() const {
   for (std::size_t row = 0; row < layout.rows; ++row)
     for (std::size_t column = 0; column < layout.columns; ++column) {
       const std::size_t x = layout.offset(row, column);
-      state.position.push_back(vector_at(x));
-      state.velocity.push_back(vector_at(x + 3 * layout.pitch));
+      state.add(vector_at(x), vector_at(x + 3 * layout.pitch));
     }
   return state;
 }
