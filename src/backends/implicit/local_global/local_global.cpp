@@ -178,7 +178,7 @@ LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix
       dt(static_cast<float>(dt_s)),
       iterations(system.solver.iterations),
       fronts(factor.front_floats) {
-  for (const std::uint32_t row : factor.order) {
+  for (const std::uint32_t row : factor.fronts.order) {
     const std::uint32_t node = matrix.node[row];
     places.push_back({nodes.offset(node), static_cast<float>(system.node_mass[node])});
   }
