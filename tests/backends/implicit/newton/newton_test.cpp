@@ -62,16 +62,13 @@ TEST(ImplicitEuler, IsTheSolutionOfItsLinearSystem) {
   for (const System& system : small_systems())
     for (const double dt_s : steps_s) {
       const double drifted = residual_of_linear_step(system, system.start.velocity, dt_s);
-      const auto reference = make_newton_reference(system, implicit_euler, dt_s, {});
-      reference->step(1);
-      const State after = reference->state();
+      const State after = state_after(*make_newton_reference(system, implicit_euler, dt_s, {}), 1);
       EXPECT_LT(residual_of_linear_step(system, after.velocity, dt_s), 1e-10 * drifted)
           << system.nodes() << " " << dt_s;
       for (std::size_t i = 0; i < system.nodes(); ++i)
         EXPECT_LT(length(after.position[i] - system.start.position[i] - dt_s * after.velocity[i]), 1e-15);
-      const auto serial = make_serial_newton(system, implicit_euler, dt_s, {});
-      serial->step(1);
-      EXPECT_LT(residual_of_linear_step(system, serial->state().velocity, dt_s), 1e-3 * drifted)
+      const State in_single = state_after(*make_serial_newton(system, implicit_euler, dt_s, {}), 1);
+      EXPECT_LT(residual_of_linear_step(system, in_single.velocity, dt_s), 1e-3 * drifted)
           << system.nodes() << " " << dt_s;
     }
 }
@@ -116,9 +113,8 @@ TEST(NewtonEuler, ChangesVelocitiesWithinItsTolerance) {
     equation.set_state(system.start);
     SolverWork work;
     take_step(equation, newton_euler, goal, work);
-    const auto reference = make_newton_reference(system, newton_euler, dt_s, {});
-    reference->step(1);
-    const std::vector<Vec3d> exact = reference->state().velocity;
+    const std::vector<Vec3d> exact =
+        state_after(*make_newton_reference(system, newton_euler, dt_s, {}), 1).velocity;
     EXPECT_LT(norm(equation.state().velocity, exact),
               (1 + goal.tolerance) * goal.tolerance * norm(exact, system.start.velocity))
         << dt_s;
@@ -145,8 +141,7 @@ TEST_P(NewtonOnThePlainList, FollowsTheReferenceInSinglePrecision) {
       const auto serial = make_serial_newton(system, *GetParam(), dt_s, {});
       const auto reference = make_newton_reference(system, *GetParam(), dt_s, {});
       serial->step(20);
-      reference->step(20);
-      EXPECT_LT(largest_distance(serial->state().position, reference->state().position), 2e-5)
+      EXPECT_LT(largest_distance(serial->state().position, state_after(*reference, 20).position), 2e-5)
           << system.nodes() << " nodes, dt " << dt_s;
       EXPECT_EQ(serial->note(), "");
     }
@@ -164,8 +159,8 @@ TEST_P(NewtonOnThePlainList, TakesTheSameStepsInAnyUnitOfMass) {
         material.damping *= unit;
       }
       const auto serial = make_serial_newton(other, *GetParam(), 2e-3, {});
-      serial->step(5);
-      EXPECT_TRUE(same_state(serial->state(), expected->state())) << system.nodes() << " nodes, " << unit;
+      EXPECT_TRUE(same_state(state_after(*serial, 5), expected->state()))
+          << system.nodes() << " nodes, " << unit;
       EXPECT_EQ(serial->note(), "");
     }
   }
@@ -173,9 +168,7 @@ TEST_P(NewtonOnThePlainList, TakesTheSameStepsInAnyUnitOfMass) {
 
 TEST_P(NewtonOnThePlainList, HoldsPinsExactly) {
   for (const System& system : small_systems()) {
-    const auto serial = make_serial_newton(system, *GetParam(), 2e-3, {});
-    serial->step(30);
-    const State state = serial->state();
+    const State state = state_after(*make_serial_newton(system, *GetParam(), 2e-3, {}), 30);
     EXPECT_TRUE(pins_hold(system, state));
     EXPECT_GT(largest_distance(state.position, system.start.position), 1e-4) << "the others move";
   }
@@ -186,8 +179,7 @@ TEST_P(NewtonOnThePlainList, PutsWhatFallsOntoTheFloor) {
   const auto serial = make_serial_newton(system, *GetParam(), 2e-3, {});
   bool met = false;
   for (int step = 0; step < 30; ++step) {
-    serial->step(1);
-    const State state = serial->state();
+    const State state = state_after(*serial, 1);
     for (const Vec3d& x : state.position) ASSERT_GE(x.y, system.floor.height);
     met = met || has_met_floor(system, state);
   }
@@ -207,8 +199,7 @@ double largest_part_left(const System& system, Backend& backend, double dt_s) {
     const State before = backend.state();
     State drifted = before;
     for (std::size_t i = 0; i < system.nodes(); ++i) drifted.position[i] += dt_s * before.velocity[i];
-    backend.step(1);
-    most = std::max(most, residual_of(system, before, backend.state(), dt_s) /
+    most = std::max(most, residual_of(system, before, state_after(backend, 1), dt_s) /
                               residual_of(system, before, drifted, dt_s));
   }
   EXPECT_EQ(backend.note(), "") << dt_s;
