@@ -33,11 +33,8 @@ struct BackendInfo {
   bool uses_device;              ///< needs an OpenCL device
   /// The stack of its threads, if it creates as many as requested.
   std::optional<ThreadStack> makes_threads;
-  /// Makes a backend for a cloth or bodies and an explicit integrator, at the system's start state. `system`
-  /// must outlive it. Throws Unavailable or Unsupported. Null if a program takes its steps, or if it steps
-  /// garments only.
-  std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
-                                   const ExecutionOptions& options);
+  /// For an explicit integrator. Null if a program takes its steps, or if it steps garments only.
+  BackendMaker* make;
   MemoryUse grid_memory;  ///< for a cloth
   MemoryUse mesh_memory;  ///< for bodies
   /// Approximate time of a step of a cloth or of bodies with an explicit integrator on two cores, relative to
@@ -47,17 +44,13 @@ struct BackendInfo {
   /// Makes a backend that dresses a garment; null if it does not implement Algorithm 1.
   std::unique_ptr<DressingBackend> (*make_dressing)(const System& system, const Integrator& integrator,
                                                     double dt_s, const ExecutionOptions& options) = nullptr;
-  /// Makes a backend for an implicit integrator and a cloth or bodies; null if it has none.
-  std::unique_ptr<Backend> (*make_implicit)(const System& system, const Integrator& integrator, double dt_s,
-                                            const ExecutionOptions& options) = nullptr;
+  BackendMaker* make_implicit = nullptr;  ///< for an implicit integrator; null if it has none
   /// Memory of that backend, for a cloth (`grid`) or bodies; null if `make_implicit` is.
   MemoryUse (*implicit_memory)(const Integrator& integrator, bool grid) = nullptr;
   /// Whether its steps are vector code, for which ExecutionOptions::instruction_set can be chosen.
   bool has_vectors = false;
-  /// Makes `make`'s counterpart that steps in double precision; null if it has none.
-  std::unique_ptr<Backend> (*make_in_double)(const System& system, const Integrator& integrator, double dt_s,
-                                             const ExecutionOptions& options) = nullptr;
-  bool collides_layers = false;  ///< `make_dressing` also dresses garments whose layers touch
+  BackendMaker* make_in_double = nullptr;  ///< `make` in double precision; null if it has none
+  bool collides_layers = false;            ///< `make_dressing` also dresses garments whose layers touch
   /// The program that takes its steps. It must outlive the row.
   const BackendProgram* program = nullptr;
   int threads = 0;  ///< fixed by the row; 0: the number requested

@@ -12,8 +12,7 @@ namespace {
 constexpr GridPatch patch{.rows = 50, .columns = 50, .spacing = 0.01};
 
 void add_node(System& system, const Vec3d& position) {
-  system.start.position.push_back(position);
-  system.start.velocity.emplace_back();
+  system.start.add(position, {});
   system.node_mass.push_back(1e-4);
 }
 

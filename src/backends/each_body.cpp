@@ -32,8 +32,7 @@ std::vector<OneBody> split(const System& scene) {
     place[node] = static_cast<std::uint32_t>(scene_node.size());
     scene_node.push_back(node);
     system.node_mass.push_back(scene.node_mass[node]);
-    system.start.position.push_back(scene.start.position[node]);
-    system.start.velocity.push_back(scene.start.velocity[node]);
+    system.start.add(scene.start.position[node], scene.start.velocity[node]);
   }
   for (const std::uint32_t pin : scene.pins) bodies[body[pin]].system.pins.push_back(place[pin]);
   for (Spring spring : scene.springs) {
@@ -61,10 +60,7 @@ class EachBody final : public Backend {
   void set_state(const State& state) override {
     for (const OneBody& body : bodies_) {
       State its;
-      for (const std::uint32_t node : body.scene_node) {
-        its.position.push_back(state.position[node]);
-        its.velocity.push_back(state.velocity[node]);
-      }
+      for (const std::uint32_t node : body.scene_node) its.add(state.position[node], state.velocity[node]);
       body.backend->set_state(its);
     }
   }

@@ -74,7 +74,7 @@ std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b) {
 }
 
 void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const ExecutionOptions& execution,
-                   const std::function<bool(const std::string& activity, double done)>& go_on) {
+                   const std::function<bool(const std::string& activity)>& go_on) {
   std::vector<SizeCurve*> active;
   for (SizeCurve& curve : curves)
     if (curve.status.empty()) active.push_back(&curve);
@@ -85,7 +85,7 @@ void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const Ex
     for (SizeCurve* curve : active) {
       const std::string activity = pluralize(nodes, "node") + ": " + std::string(curve->integrator->name) +
                                    ' ' + std::string(curve->backend->name);
-      if (!go_on(activity, static_cast<double>(size) / static_cast<double>(cloth_sides.size()))) {
+      if (!go_on(activity)) {
         curve->status = "no time was left for larger cloths";
         continue;
       }

@@ -192,11 +192,10 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
     guide.sizes.push_back(curve);
   }
   const double end = clock.end_of_part(share_of_sizes, 0);
-  measure_sizes(guide.sizes, request.make_cloth, request.execution,
-                [&](const std::string& activity, double /*done*/) {
-                  watch.progress("cloths of " + activity, clock.fraction());
-                  return !watch.stop() && clock.spent() < end;
-                });
+  measure_sizes(guide.sizes, request.make_cloth, request.execution, [&](const std::string& activity) {
+    watch.progress("cloths of " + activity, clock.fraction());
+    return !watch.stop() && clock.spent() < end;
+  });
 }
 
 /// Seconds, rounded up to two digits.

@@ -66,10 +66,10 @@ struct FamilyCloth {
 using ClothMaker = std::function<FamilyCloth(std::uint32_t side)>;
 
 /// Times every curve's method on cloths of increasing size, until two consecutive ones do not keep the lowest
-/// frame rate. `go_on` is called before every sample with the fraction done; if it returns false, the curve
-/// ends and its status gives the reason.
+/// frame rate. `go_on` is called before every sample; if it returns false, the curve ends and its status
+/// gives the reason.
 void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const ExecutionOptions& execution,
-                   const std::function<bool(const std::string& activity, double done)>& go_on);
+                   const std::function<bool(const std::string& activity)>& go_on);
 
 /// The user's requirements.
 struct Wish {

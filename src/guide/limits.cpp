@@ -17,6 +17,11 @@ constexpr std::size_t few_runs = 5;  // of which the fastest is taken
 
 std::string percent_more(double ratio) { return three_digits(100 * (ratio - 1)) + " %"; }
 
+/// Whether theory's step is longer by so much that the page explains it.
+bool is_shorter_than_theory(const StableStep& measured, const StepTheory& theory) {
+  return measured.unstable_s > 0 && measured.stable_s * worth_a_word < theory.shortest_s();
+}
+
 /// A typical step of explicit methods: the limit of semi-implicit Euler by theory.
 double usual_limit(const LimitRequest& request) {
   const double limit =
@@ -154,10 +159,6 @@ StepTheory step_theory(const Integrator& integrator, const System& system, const
     return largest_stable_dt(integrator, modes);
   };
   return {limit_of(start), limit_of(reached), bound_s};
-}
-
-bool is_shorter_than_theory(const StableStep& measured, const StepTheory& theory) {
-  return measured.unstable_s > 0 && measured.stable_s * worth_a_word < theory.shortest_s();
 }
 
 std::string why_they_differ(const Integrator& integrator, const StableStep& measured,

@@ -122,9 +122,6 @@ StepTheory step_theory(const Integrator& integrator, const System& system, const
 std::string why_they_differ(const Integrator& integrator, const StableStep& measured,
                             const StepTheory& theory, bool floor_is_why);
 
-/// Whether theory's step is longer by so much that the page explains it.
-bool is_shorter_than_theory(const StableStep& measured, const StepTheory& theory);
-
 /// A program that has not answered in time. It gets no more requests, because each would lose as much time.
 struct LateProgram {
   const BackendInfo* backend = nullptr;

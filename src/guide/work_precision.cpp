@@ -33,39 +33,30 @@ void put_vector(Numbers& numbers, std::size_t node, const Vec3d& value) {
   numbers[3 * node + 2] = value.z;
 }
 
-/// The time derivative of positions and velocities.
-class MotionOfNodes {
- public:
-  explicit MotionOfNodes(const System& system) : system_(system), force_(system.nodes()) {}
-
-  void operator()(const Numbers& now, Numbers& rate, double /*time_s*/) {
-    const std::size_t nodes = system_.nodes();
-    for (Vec3d& force : force_) force = {};
-    for (const Spring& spring : system_.springs) {
-      const Vec3d d = vector_at(now, spring.second) - vector_at(now, spring.first);
-      const Vec3d u = vector_at(now, nodes + spring.second) - vector_at(now, nodes + spring.first);
-      const auto law = linear_spring(system_.materials[spring.kind], static_cast<double>(spring.rest_length));
-      const Vec3d force = spring_pull(dot(d, d), dot(u, d), law) * d;
-      force_[spring.first] += force;
-      force_[spring.second] -= force;
-    }
-    for (std::size_t node = 0; node < nodes; ++node) {
-      const Vec3d v = vector_at(now, nodes + node);
-      put_vector(rate, node, v);
-      put_vector(rate, nodes + node,
-                 node_acceleration((1 / system_.node_mass[node]) * force_[node], v, system_.viscous_damping,
-                                   system_.gravity));
-    }
-    for (const std::uint32_t pin : system_.pins) {
-      put_vector(rate, pin, {});
-      put_vector(rate, nodes + pin, {});
-    }
+/// Computes the time derivative of positions and velocities. `force`: [nodes] N, scratch.
+void find_rate(const System& system, const Numbers& now, std::vector<Vec3d>& force, Numbers& rate) {
+  const std::size_t nodes = system.nodes();
+  std::ranges::fill(force, Vec3d{});
+  for (const Spring& spring : system.springs) {
+    const Vec3d d = vector_at(now, spring.second) - vector_at(now, spring.first);
+    const Vec3d u = vector_at(now, nodes + spring.second) - vector_at(now, nodes + spring.first);
+    const auto law = linear_spring(system.materials[spring.kind], static_cast<double>(spring.rest_length));
+    const Vec3d pull = spring_pull(dot(d, d), dot(u, d), law) * d;
+    force[spring.first] += pull;
+    force[spring.second] -= pull;
   }
-
- private:
-  const System& system_;
-  std::vector<Vec3d> force_;  // N
-};
+  for (std::size_t node = 0; node < nodes; ++node) {
+    const Vec3d v = vector_at(now, nodes + node);
+    put_vector(rate, node, v);
+    put_vector(rate, nodes + node,
+               node_acceleration((1 / system.node_mass[node]) * force[node], v, system.viscous_damping,
+                                 system.gravity));
+  }
+  for (const std::uint32_t pin : system.pins) {
+    put_vector(rate, pin, {});
+    put_vector(rate, nodes + pin, {});
+  }
+}
 
 /// The system's start with every free node moved by up to `distance`.
 State neighbour_of(const System& system, double distance_m) {
@@ -77,58 +68,42 @@ State neighbour_of(const System& system, double distance_m) {
   return state;
 }
 
-/// Follows two neighbouring trajectories until a condition of a horizon ends them.
-class HorizonWalk {
- public:
-  HorizonWalk(const System& system, double dt_s)
-      : system_(system),
-        dt_s_(dt_s),
-        floorless_(without_floor(system)),
-        near_(make_reference(floorless_, *find_integrator("rk4"), dt_s)),
-        beside_(make_reference(floorless_, *find_integrator("rk4"), dt_s)) {
-    const State neighbour = neighbour_of(system, 1e-7 * mean_rest_length(system));
-    first_distance_ = position_deviation(system, system.start, neighbour);
-    beside_->set_state(neighbour);
-  }
-
-  /// Continues by `steps` steps; false if the horizon ends before that.
-  bool go_on(int steps) {
-    const OnAllProcessCpus unbound;  // a thread not started by OpenMP would share this thread's CPU
-    std::future<void> beside = std::async(as_the_system_can, [&] { beside_->step(steps); });
-    near_->step(steps);
-    beside.get();
-    State state = near_->state();
-    if (first_bad_node(state)) return end_with("the trajectory cannot be followed any longer");
-    if (!is_in_the_air(state, system_.floor)) return end_with("a node reaches the floor");
-    const double parting = position_deviation(system_, state, beside_->state()) / first_distance_;
-    if (!(parting <= allowed_parting)) return end_with("neighbouring trajectories part");
-    steps_ += steps;
-    parting_ = parting;
-    state_ = std::move(state);
-    return true;
-  }
-
-  int steps() const { return steps_; }
-  double span_s() const { return steps_ * dt_s_; }
-  double parting() const { return parting_; }
-  const State& state() const { return state_; }
-  const std::string& why() const { return why_; }
-
- private:
-  bool end_with(const std::string& why) {
-    why_ = why;
-    return false;
-  }
-
-  const System& system_;
-  double dt_s_;
-  System floorless_;  // a node that reaches the floor stays below it until the next check finds it
-  std::unique_ptr<Backend> near_, beside_;
-  double first_distance_ = 0, parting_ = 0;
-  int steps_ = 0;
-  State state_;
-  std::string why_;
+/// A trajectory up to the end of a horizon.
+struct Horizon {
+  int steps = 0;
+  double parting = 0;  ///< TrustedState::parting
+  State state;
+  std::string why;  ///< which condition ended it; empty: none
 };
+
+/// Follows two neighbouring trajectories of rk4 for at most `looks` times `steps` steps, until a condition of
+/// a horizon or `stop` ends them.
+Horizon find_horizon(const System& system, double dt_s, int looks, int steps,
+                     const std::function<bool()>& stop) {
+  // A node that reaches the floor stays below it until the next look finds it.
+  const System floorless = without_floor(system);
+  const auto near = make_reference(floorless, *find_integrator("rk4"), dt_s),
+             beside = make_reference(floorless, *find_integrator("rk4"), dt_s);
+  const State neighbour = neighbour_of(system, 1e-7 * mean_rest_length(system));
+  const double first_distance = position_deviation(system, system.start, neighbour);
+  beside->set_state(neighbour);
+  Horizon horizon;
+  for (int look = 0; look < looks && !stop(); ++look) {
+    const OnAllProcessCpus unbound;  // a thread not started by OpenMP would share this thread's CPU
+    std::future<void> others = std::async(as_the_system_can, [&] { beside->step(steps); });
+    near->step(steps);
+    others.get();
+    State state = near->state();
+    const double parting = position_deviation(system, state, beside->state()) / first_distance;
+    horizon.why = first_bad_node(state)                 ? "the trajectory cannot be followed any longer"
+                  : !is_in_the_air(state, system.floor) ? "a node reaches the floor"
+                  : !(parting <= allowed_parting)       ? "neighbouring trajectories part"
+                                                        : "";
+    if (!horizon.why.empty()) break;
+    horizon = {horizon.steps + steps, parting, std::move(state), {}};
+  }
+  return horizon;
+}
 
 constexpr double enough_s = 0.03;  // for the runs of a point
 
@@ -227,9 +202,10 @@ std::optional<State> independent_state(const System& system, double span_s, doub
     put_vector(numbers, node, system.start.position[node]);
     put_vector(numbers, nodes + node, system.start.velocity[node]);
   }
-  // By reference, because the stepper copies the function.
-  MotionOfNodes motion(system);
-  const auto rate = [&motion](const Numbers& now, Numbers& out, double time_s) { motion(now, out, time_s); };
+  std::vector<Vec3d> force(nodes);
+  const auto rate = [&](const Numbers& now, Numbers& out, double /*time_s*/) {
+    find_rate(system, now, force, out);
+  };
   boost::numeric::odeint::bulirsch_stoer<Numbers> stepper(tolerance, 0);
   const double shortest = 1e-9 * span_s;
   double time_s = 0, step_s = span_s / 100;
@@ -272,22 +248,20 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   const int looks = static_cast<int>(std::min(most_looks, affordable_steps));
   const int steps_a_look = std::max(1, static_cast<int>(std::ceil(longest_s / looks / request.first_dt_s)));
   double dt_s = longest_s / looks / steps_a_look;
-  HorizonWalk walk(system, dt_s);
-  int look = 0;
-  while (look < looks && !request.stop() && walk.go_on(steps_a_look)) ++look;
-  if (look == 0) {
-    trusted.failure = walk.why().empty()
+  const Horizon horizon = find_horizon(system, dt_s, looks, steps_a_look, request.stop);
+  if (horizon.steps == 0) {
+    trusted.failure = horizon.why.empty()
                           ? "it was stopped"
                           : fmt::format("there is no horizon for a comparison: {}, within {} s of the start",
-                                        walk.why(), three_digits(longest_s / looks));
+                                        horizon.why, three_digits(longest_s / looks));
     return trusted;
   }
-  trusted.horizon_s = walk.span_s();
-  trusted.parting = walk.parting();
-  const bool is_cut = walk.why().empty() && longest_s < request.longest_s;
-  trusted.why_there = !walk.why().empty() ? "after that, " + walk.why()
-                      : is_cut            ? "there is no time for a longer reference"
-                                          : "the requested horizon";
+  trusted.horizon_s = horizon.steps * dt_s;
+  trusted.parting = horizon.parting;
+  const bool is_cut = horizon.why.empty() && longest_s < request.longest_s;
+  trusted.why_there = !horizon.why.empty() ? "after that, " + horizon.why
+                      : is_cut             ? "there is no time for a longer reference"
+                                           : "the requested horizon";
   if (is_cut) trusted.short_of_s = short_of_s;
 
   const OnAllProcessCpus unbound;  // a thread not started by OpenMP would share this thread's CPU
@@ -295,8 +269,8 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   std::future<std::optional<State>> other = std::async(as_the_system_can, [&] {
     return independent_state(system, trusted.horizon_s, 1e-8 * mean_rest_length(system), out_of_time);
   });
-  State coarse = walk.state();
-  int steps = walk.steps();
+  State coarse = horizon.state;
+  int steps = horizon.steps;
   do {
     steps *= 2;
     dt_s /= 2;

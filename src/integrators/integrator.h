@@ -173,21 +173,11 @@ constexpr Pair walk_writes_to(const Integrator& integrator, std::size_t stage, P
   return storage_of(integrator, pair, Storage::in_place);
 }
 
-/// Does a step leave the new state in the arrays of `next`, so that the two change roles?
-constexpr bool swaps_state(const Integrator& integrator, Storage storage) {
-  return storage_of(integrator, Pair::next, storage) == Pair::next;
-}
-
-/// Does this storage need arrays for the pair?
-constexpr bool stores(const Integrator& integrator, Pair pair, Storage storage) {
-  return touches(integrator, pair) && storage_of(integrator, pair, storage) == pair;
-}
-
 /// The pairs that this storage needs arrays for.
 inline std::vector<Pair> stored_pairs(const Integrator& integrator, Storage storage) {
   std::vector<Pair> stored;
-  for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (stores(integrator, static_cast<Pair>(i), storage)) stored.push_back(static_cast<Pair>(i));
+  for (const Pair pair : {Pair::state, Pair::next, Pair::trial_a, Pair::trial_b})
+    if (touches(integrator, pair) && storage_of(integrator, pair, storage) == pair) stored.push_back(pair);
   return stored;
 }
 

@@ -42,56 +42,39 @@ std::vector<LinearisedSpring> linearised_springs(const System& system, const Sta
   return springs;
 }
 
-class PowerIteration {
- public:
-  PowerIteration(const System& system, const std::vector<LinearisedSpring>& springs)
-      : system_(system), springs_(springs), x_(system.nodes()), force_(system.nodes()) {
-    std::mt19937 random(19580101);  // any fixed seed: the same vector each time, with one standard library
-    std::uniform_real_distribution<double> component(-1, 1);
-    for (Vec3d& x : x_) x = {component(random), component(random), component(random)};
-    for (const std::uint32_t node : system.pins) x_[node] = {};
-    scale();
-  }
-
-  /// One iteration: returns the Rayleigh quotient of the previous vector.
-  double next() {
-    for (Vec3d& force : force_) force = {};
-    for (const LinearisedSpring& spring : springs_) {
-      const Vec3d pull = spring_jacobian_times(spring.direction, spring.along, spring.across,
-                                               x_[spring.second] - x_[spring.first]);
-      force_[spring.first] -= pull;
-      force_[spring.second] += pull;
-    }
-    for (const std::uint32_t node : system_.pins) force_[node] = {};
-    double quotient = 0;
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      quotient += dot(x_[i], force_[i]);
-      x_[i] = (1 / system_.node_mass[i]) * force_[i];
-    }
-    scale();
-    return quotient;
-  }
-
- private:
-  void scale() {
-    double sum = 0;
-    for (std::size_t i = 0; i < x_.size(); ++i) sum += system_.node_mass[i] * dot(x_[i], x_[i]);
-    if (!(sum > 0)) return;
-    const double factor = 1 / std::sqrt(sum);
-    for (Vec3d& x : x_) x = factor * x;
-  }
-
-  const System& system_;
-  const std::vector<LinearisedSpring>& springs_;
-  std::vector<Vec3d> x_, force_;
-};
-
+/// The Rayleigh quotient to which power iteration with these springs converges (spectrum_at).
 double spectral_radius_of(const System& system, const std::vector<LinearisedSpring>& springs) {
   constexpr int stride = 100, most = 3000;
-  PowerIteration iteration(system, springs);
+  std::mt19937 random(19580101);  // any fixed seed: the same vector each time, with one standard library
+  std::uniform_real_distribution<double> component(-1, 1);
+  std::vector<Vec3d> vector(system.nodes()), force(system.nodes());
+  for (Vec3d& x : vector) x = {component(random), component(random), component(random)};
+  for (const std::uint32_t node : system.pins) vector[node] = {};
+  const auto scale = [&] {
+    double sum = 0;
+    for (std::size_t i = 0; i < vector.size(); ++i) sum += system.node_mass[i] * dot(vector[i], vector[i]);
+    if (!(sum > 0)) return;
+    const double factor = 1 / std::sqrt(sum);
+    for (Vec3d& x : vector) x = factor * x;
+  };
+  scale();
   double before = 0, quotient = 0;
-  for (int done = 0; done < most; done += stride) {
-    for (int i = 0; i < stride; ++i) quotient = iteration.next();
+  for (int done = 1; done <= most; ++done) {
+    for (Vec3d& of_node : force) of_node = {};
+    for (const LinearisedSpring& spring : springs) {
+      const Vec3d pull = spring_jacobian_times(spring.direction, spring.along, spring.across,
+                                               vector[spring.second] - vector[spring.first]);
+      force[spring.first] -= pull;
+      force[spring.second] += pull;
+    }
+    for (const std::uint32_t node : system.pins) force[node] = {};
+    quotient = 0;
+    for (std::size_t i = 0; i < vector.size(); ++i) {
+      quotient += dot(vector[i], force[i]);
+      vector[i] = (1 / system.node_mass[i]) * force[i];
+    }
+    scale();
+    if (done % stride != 0) continue;
     if (!(std::abs(quotient - before) > 1e-3 * std::abs(quotient))) break;
     before = quotient;
   }
@@ -186,11 +169,8 @@ namespace {
 
 /// Of the springs for which `counts` is true.
 template <class Counts>
-StiffnessBound bound_of_springs(const System& system, Counts counts) {
-  struct Sum {
-    double stiffness = 0, damping = 0;
-  };
-  std::vector<Sum> node(system.nodes());
+ModeBound::Part bound_of_springs(const System& system, Counts counts) {
+  std::vector<ModeBound::Part> node(system.nodes());  // N/m, N s/m
   for (const Spring& spring : system.springs) {
     if (!counts(spring)) continue;
     const auto law = linear_spring(system.materials[spring.kind], static_cast<double>(spring.rest_length));
@@ -199,7 +179,7 @@ StiffnessBound bound_of_springs(const System& system, Counts counts) {
       node[end].damping += spring_damping_along(law.constants);
     }
   }
-  StiffnessBound bound;
+  ModeBound::Part bound;
   for (std::size_t i = 0; i < node.size(); ++i) {
     bound.stiffness = std::max(bound.stiffness, 2 * node[i].stiffness / system.node_mass[i]);
     bound.damping = std::max(bound.damping, 2 * node[i].damping / system.node_mass[i]);
@@ -209,9 +189,9 @@ StiffnessBound bound_of_springs(const System& system, Counts counts) {
 
 }  // namespace
 
-StiffnessBound stiffness_bound(const System& system) {
-  StiffnessBound bound = bound_of_springs(system, [](const Spring& /*spring*/) { return true; });
-  bound.damping += system.viscous_damping;
+ModeBound mode_bound(const System& system) {
+  const auto [stiffness, damping] = bound_of_springs(system, [](const Spring& /*spring*/) { return true; });
+  ModeBound bound{stiffness, damping + system.viscous_damping, system.viscous_damping};
   constexpr double rounding = 1e-9;
   const auto damps_as_all = [&](const SpringMaterial& a) {
     return std::ranges::all_of(system.materials, [&](const SpringMaterial& b) {
@@ -221,7 +201,7 @@ StiffnessBound stiffness_bound(const System& system) {
   };
   if (std::ranges::all_of(system.materials, damps_as_all)) return bound;
   for (std::size_t kind = 0; kind < system.materials.size(); ++kind)
-    bound.materials.push_back(
+    bound.parts.push_back(
         bound_of_springs(system, [&](const Spring& spring) { return spring.kind == kind; }));
   return bound;
 }

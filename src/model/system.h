@@ -13,6 +13,7 @@
 
 #include "garment/garment.h"
 #include "geometry/vec3.h"
+#include "integrators/stability.h"
 #include "laws/host_laws.h"
 
 namespace mssim {
@@ -131,6 +132,12 @@ struct State {
   std::vector<Vec3d> position;  ///< [nodes] m
   std::vector<Vec3d> velocity;  ///< [nodes] m/s
   bool draped = false;          ///< a garment: all seams are closed, and gravity and friction act
+
+  /// Appends a node.
+  void add(const Vec3d& x, const Vec3d& v) {
+    position.push_back(x);
+    velocity.push_back(v);
+  }
 };
 
 /// The plane y = height through which nothing may fall (kernels/node_laws.h).
@@ -193,17 +200,10 @@ void round_to_single(State& state);
 /// Rounds a system's initial data to single precision: its start state and its floor's height.
 void round_start_to_single(System& system);
 
-/// Bounds on the springs' effect on one node, for the stability limit.
-struct StiffnessBound {
-  double stiffness = 0;  ///< 1/s^2, at least the largest eigenvalue of K/m
-  double damping = 0;    ///< 1/s, at least the largest eigenvalue of C/m, viscous damping included
-  /// Those of the springs of each material alone, without viscous damping, if materials damp in different
-  /// proportions to their stiffness.
-  std::vector<StiffnessBound> materials = {};
-};
-
-/// Gershgorin's bound: all springs of a node aligned, all neighbours moving against it.
-StiffnessBound stiffness_bound(const System& system);
+/// The bound of the system's modes, for the stability limits of its integrators, by Gershgorin: all springs
+/// of a node aligned, all neighbours moving against it. Has parts, a material each, if materials damp in
+/// different proportions to their stiffness.
+ModeBound mode_bound(const System& system);
 
 /// The largest eigenvalues of a system about a state: they limit the step of an explicit integrator.
 struct Spectrum {

@@ -148,8 +148,7 @@ BodiesPart part_of_bodies(const System& bodies, std::span<const std::uint32_t> p
   System& system = part.system = with_laws_of(bodies);
   const auto add = [&](std::uint32_t node) {
     number[node] = static_cast<std::uint32_t>(system.nodes());
-    system.start.position.push_back(bodies.start.position[node]);
-    system.start.velocity.push_back(bodies.start.velocity[node]);
+    system.start.add(bodies.start.position[node], bodies.start.velocity[node]);
     system.node_mass.push_back(bodies.node_mass[node]);
     part.graph.place.push_back(place[node]);
   };

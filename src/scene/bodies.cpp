@@ -377,9 +377,8 @@ void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const Meshed
   const Vec3d axis = direction_of(body.turn_axis);
   for (const Vec3d& node : shape.mesh.nodes) {
     const Vec3d r = turned(node, axis, body.turn_deg * std::numbers::pi / 180);
-    system.start.position.push_back(body.centre_m + r);
-    system.start.velocity.push_back(body.velocity_m_per_s + cross(body.spin_rad_per_s, r) +
-                                    body.swell_per_s * r);
+    system.start.add(body.centre_m + r,
+                     body.velocity_m_per_s + cross(body.spin_rad_per_s, r) + body.swell_per_s * r);
   }
   for (const auto& [a, b] : shape.edges)
     system.springs.push_back(

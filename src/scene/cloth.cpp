@@ -177,8 +177,7 @@ System build_cloth_window(const SceneSpec& spec, const GridWindow& window) {
         const Vec3d wave = ripple.at(row, column, Ripple::position);
         position += height * Vec3d{ripple_in_plane_share * wave.x, wave.y, ripple_in_plane_share * wave.z};
       }
-      system.start.position.push_back(position);
-      system.start.velocity.push_back(velocity);
+      system.start.add(position, velocity);
     }
   return system;
 }

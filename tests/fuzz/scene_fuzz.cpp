@@ -83,7 +83,7 @@ void check(const System& system) {
   require(std::is_sorted(system.pins.begin(), system.pins.end()), "pins ascend");
   for (const std::uint32_t pin : system.pins)
     require(pin < nodes && system.start.velocity[pin] == Vec3d{}, "pins are nodes at rest");
-  const StiffnessBound bound = stiffness_bound(system);
+  const ModeBound bound = mode_bound(system);
   require(is_positive(bound.stiffness) && std::isfinite(bound.damping), "the stability limit can be found");
 }
 

@@ -502,7 +502,7 @@ TEST(ClothSizes, AreMeasuredUntilAFrameTakesTooLong) {
   curves[1].status = "left out";
   measure_sizes(
       curves, [](std::uint32_t side) { return FamilyCloth{cloth_system(side, side)}; }, {.threads = 1},
-      [](const std::string&, double) { return true; });
+      [](const std::string&) { return true; });
   ASSERT_EQ(curves[0].samples.size(), 2U);
   EXPECT_EQ(curves[0].samples[0].nodes, 256U);
   EXPECT_EQ(curves[0].largest(30)->nodes, 0);
@@ -513,7 +513,7 @@ TEST(ClothSizes, SayThatTheTimeWasOver) {
   std::vector<SizeCurve> curves{size_curve({})};
   measure_sizes(
       curves, [](std::uint32_t side) { return FamilyCloth{cloth_system(side, side)}; }, {.threads = 1},
-      [](const std::string&, double) { return false; });
+      [](const std::string&) { return false; });
   EXPECT_TRUE(curves[0].samples.empty());
   EXPECT_NE(curves[0].status, "");
 }

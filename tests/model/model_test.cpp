@@ -52,18 +52,18 @@ System three_nodes() {
   return system;
 }
 
-TEST(StiffnessBound, IsGershgorinsOfTheNodeWithMost) {
+TEST(ModeBound, IsGershgorinsOfTheNodeWithMost) {
   // Of the middle node: 2 (100 + 60) / 0.5 and 2 (3 + 1) / 0.5, and the air's 0.25.
-  const StiffnessBound bound = stiffness_bound(three_nodes());
+  const ModeBound bound = mode_bound(three_nodes());
   EXPECT_DOUBLE_EQ(bound.stiffness, 640);
   EXPECT_DOUBLE_EQ(bound.damping, 16.25);
   // 3 / 100 and 1 / 60 are different proportions: 2 100 / 0.5 and 2 60 / 0.5, 2 3 / 0.5 and 2 1 / 0.5.
-  ASSERT_EQ(bound.materials.size(), 2U);
-  EXPECT_DOUBLE_EQ(bound.materials[0].stiffness, 400);
-  EXPECT_DOUBLE_EQ(bound.materials[1].stiffness, 240);
-  EXPECT_DOUBLE_EQ(bound.materials[0].damping, 12);
-  EXPECT_DOUBLE_EQ(bound.materials[1].damping, 4);
-  EXPECT_TRUE(stiffness_bound(cloth_system(4, 4)).materials.empty()) << "of its springs all damp alike";
+  ASSERT_EQ(bound.parts.size(), 2U);
+  EXPECT_DOUBLE_EQ(bound.parts[0].stiffness, 400);
+  EXPECT_DOUBLE_EQ(bound.parts[1].stiffness, 240);
+  EXPECT_DOUBLE_EQ(bound.parts[0].damping, 12);
+  EXPECT_DOUBLE_EQ(bound.parts[1].damping, 4);
+  EXPECT_TRUE(mode_bound(cloth_system(4, 4)).parts.empty()) << "of its springs all damp alike";
 }
 
 TEST(Energy, IsTheSumOfEachNodesAndSprings) {
@@ -80,10 +80,7 @@ TEST(Energy, IsTheSumOfEachNodesAndSprings) {
 
 TEST(RoundToSingle, LeavesNothingThatAFloatCannotHold) {
   State state;
-  for (int i = 1; i < 50; ++i) {
-    state.position.push_back({1.0 / i, -3.0 / i, 1e-3 * i});
-    state.velocity.push_back({0.1 * i, 0.7 / i, -1e-9 / i});
-  }
+  for (int i = 1; i < 50; ++i) state.add({1.0 / i, -3.0 / i, 1e-3 * i}, {0.1 * i, 0.7 / i, -1e-9 / i});
   const State exact = state;
   round_to_single(state);
   for (std::size_t i = 0; i < state.position.size(); ++i)
@@ -124,7 +121,7 @@ TEST(Spectrum, OfAStrainedSpringHasWhatItDoesSideways) {
 TEST(Spectrum, IsBelowGershgorinsBoundAndNotFarBelow) {
   const System system = cloth_system(12, 12);
   const Spectrum spectrum = spectrum_at(system, system.start);
-  const StiffnessBound bound = stiffness_bound(system);
+  const ModeBound bound = mode_bound(system);
   EXPECT_LT(spectrum.stiffness, bound.stiffness);
   EXPECT_GT(spectrum.stiffness, 0.2 * bound.stiffness);
   EXPECT_LT(spectrum.damping, bound.damping);
@@ -134,8 +131,7 @@ State state_of(std::size_t nodes) {
   State state;
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto x = static_cast<double>(i);
-    state.position.push_back({x, 0.5 * x, 1 / (x + 1)});
-    state.velocity.push_back({-x, 3, 0});
+    state.add({x, 0.5 * x, 1 / (x + 1)}, {-x, 3, 0});
   }
   return state;
 }

@@ -21,7 +21,7 @@ integrators           geometry laws
 
 garment/contact       kernels text platform geometry laws
 garment               geometry garment/contact
-model                 text geometry laws garment
+model                 text geometry laws integrators garment
 mesh                  text platform geometry model
 garment/body          text geometry
 garment/pattern       text geometry garment garment/body model

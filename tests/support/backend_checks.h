@@ -46,6 +46,12 @@ inline BackendInfo row_named(std::string_view name) {
 /// What makes its backends for explicit integrators.
 inline auto maker_of(const BackendInfo& row) { return row.in_double ? row.make_in_double : row.make; }
 
+/// The state of a backend after further steps.
+inline State state_after(Backend& backend, int steps) {
+  backend.step(steps);
+  return backend.state();
+}
+
 /// Whether positions and velocities are the same to the last bit; else says where they are not.
 inline testing::AssertionResult same_state(const State& found, const State& expected) {
   if (found.position.size() != expected.position.size() || found.velocity.size() != expected.velocity.size())

@@ -159,8 +159,7 @@ inline System two_solid_blocks() {
 /// A small body with a node that hangs on nothing.
 inline System block_and_lone_node() {
   System system = solid_block(3, 3, 3);
-  system.start.position.push_back({0.25, 0.75, 0.125});
-  system.start.velocity.push_back({});
+  system.start.add({0.25, 0.75, 0.125}, {});
   system.node_mass.push_back(0.003);
   return system;
 }

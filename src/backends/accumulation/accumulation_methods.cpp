@@ -21,8 +21,8 @@ namespace {
 
 /// The plain spring list stepped by several threads. All methods on it against the data race of Hong et al.'s
 /// Figure 1 share this step and SpringList's layout, force and update, so they differ only in the
-/// accumulation. A Method is constructed from (const System&, SpringList<float>&, std::size_t threads), and
-/// in every stage each thread calls, with its Team:
+/// accumulation. A Method is constructed from (SpringList<float>&, std::size_t threads), and in every stage
+/// each thread calls, with its Team:
 /// - prepare(team), while others may still be in the previous stage's `finish` and update: it writes only
 ///   data that no other thread accesses there, and reads no node;
 /// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
@@ -34,7 +34,7 @@ class ListMethod final : public Backend {
       : list_(system, integrator, dt_s),
         integrator_(integrator),
         threads_(threads),
-        accumulation_(system, list_, static_cast<std::size_t>(threads)) {}
+        accumulation_(list_, static_cast<std::size_t>(threads)) {}
 
   void set_state(const State& state) override { list_.set_state(state); }
   State state() const override { return list_.state(); }
@@ -94,7 +94,7 @@ class ByteLock {
 /// An accumulation without prepare and finish.
 class Accumulation {
  public:
-  explicit Accumulation(SpringList<float>& list) : list_(list) {}
+  Accumulation(SpringList<float>& list, std::size_t /*threads*/) : list_(list) {}
   void prepare(const Team& /*team*/) {}
   void finish(const Team& /*team*/) {}
 
@@ -111,8 +111,8 @@ class AddingAccumulation : public Accumulation {
 
 class LockPerNode : public AddingAccumulation {
  public:
-  LockPerNode(const System& system, SpringList<float>& list, std::size_t /*threads*/)
-      : AddingAccumulation(list), locks_(system.nodes()) {}
+  LockPerNode(SpringList<float>& list, std::size_t threads)
+      : AddingAccumulation(list, threads), locks_(list.nodes()) {}
 
   void add(const Team& team, Pair gather) {
     for (const Spring& spring : team.slice_of(list_.springs())) {
@@ -139,8 +139,7 @@ void add_atomically(Vec3<float>& sum, const Vec3<float>& force) {
 
 class Atomic : public AddingAccumulation {
  public:
-  Atomic(const System& /*system*/, SpringList<float>& list, std::size_t /*threads*/)
-      : AddingAccumulation(list) {}
+  using AddingAccumulation::AddingAccumulation;
 
   void add(const Team& team, Pair gather) {
     for (const Spring& spring : team.slice_of(list_.springs())) {
@@ -153,8 +152,8 @@ class Atomic : public AddingAccumulation {
 
 class ThreadPrivate : public Accumulation {
  public:
-  ThreadPrivate(const System& system, SpringList<float>& list, std::size_t threads)
-      : Accumulation(list), forces_(threads, std::vector<Vec3<float>>(system.nodes())) {}
+  ThreadPrivate(SpringList<float>& list, std::size_t threads)
+      : Accumulation(list, threads), forces_(threads, std::vector<Vec3<float>>(list.nodes())) {}
 
   void add(const Team& team, Pair gather) {
     std::vector<Vec3<float>>& forces = forces_[team.thread];
@@ -182,8 +181,8 @@ class ThreadPrivate : public Accumulation {
 
 class Colouring : public AddingAccumulation {
  public:
-  Colouring(const System& system, SpringList<float>& list, std::size_t /*threads*/)
-      : AddingAccumulation(list), colouring_(colour_springs(system.springs, system.nodes())) {}
+  Colouring(SpringList<float>& list, std::size_t threads)
+      : AddingAccumulation(list, threads), colouring_(colour_springs(list.springs(), list.nodes())) {}
 
   void add(const Team& team, Pair gather) {
     for (std::size_t colour = 0; colour < colouring_.colours(); ++colour) {
@@ -199,15 +198,15 @@ class Colouring : public AddingAccumulation {
 
 class Gather : public Accumulation {
  public:
-  Gather(const System& system, SpringList<float>& list, std::size_t /*threads*/)
-      : Accumulation(list), begin_(system.nodes() + 1, 0), springs_(2 * system.springs.size()) {
-    for (const Spring& spring : system.springs) {
+  Gather(SpringList<float>& list, std::size_t threads)
+      : Accumulation(list, threads), begin_(list.nodes() + 1, 0), springs_(2 * list.springs().size()) {
+    for (const Spring& spring : list.springs()) {
       ++begin_[spring.first + 1];
       ++begin_[spring.second + 1];
     }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     std::vector<std::size_t> next(begin_);
-    for (Spring spring : system.springs) {
+    for (Spring spring : list.springs()) {
       springs_[next[spring.first]++] = spring;
       std::swap(spring.first, spring.second);
       springs_[next[spring.first]++] = spring;
@@ -234,7 +233,7 @@ constexpr MemoryUse with_both_ends{.node = 33, .pair_node = 24, .spring = 32};
 constexpr MemoryUse in_padded_rows{.pair_node = 24, .storage = Storage::separate};
 
 /// A method that uses the plain list.
-constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, auto make,
+constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, BackendMaker* make,
                                      const MemoryUse& memory, std::string_view extra_memory,
                                      std::string_view springs_computed, Repeatable repeatable,
                                      ThreadStack stack = ThreadStack::openmp) {
@@ -270,20 +269,15 @@ std::span<const AccumulationMethod> accumulation_methods() {
               Repeatable::always),
       of_list("gather", "each node sums its own springs", make_list_method<Gather>, with_both_ends,
               "32 bytes a spring, 8 a node", "twice", Repeatable::always),
-      {{"gather-vectors",
-        "",
-        "vectors of a cloth's nodes sum their own springs, from rows of a layout of its own",
-        false,
-        ThreadStack::openmp,
-        make_gather_vectors,
-        in_padded_rows,
-        {},
-        1,
-        BackendRole::as_published,
-        nullptr,
-        nullptr,
-        nullptr,
-        true},
+      {{.name = "gather-vectors",
+        .paper_configuration = "",
+        .description = "vectors of a cloth's nodes sum their own springs, from rows of a layout of its own",
+        .uses_device = false,
+        .makes_threads = ThreadStack::openmp,
+        .make = make_gather_vectors,
+        .grid_memory = in_padded_rows,
+        .mesh_memory = {},
+        .has_vectors = true},
        "a layout of its own",
        "twice",
        Repeatable::always},

@@ -14,31 +14,19 @@ PaddedRows::PaddedRows(const System& system, const GridPatch& grid, const Integr
     const std::size_t row = node / layout.columns;
     first_pin.resize(row + 1, pins.size());
     const Vec3<float> position = vec3_cast<float>(system.start.position[node]);
-    pins.push_back({layout.offset(row, node % layout.columns), {position.x, position.y, position.z}});
+    pins.push_back({layout.offset(node), {position.x, position.y, position.z}});
   }
   first_pin.resize(layout.rows + 1, pins.size());
 }
 
 void PaddedRows::set_state(const State& state) {
-  for (std::size_t node = 0; node < state.position.size(); ++node) {
-    float* out = base[index(Pair::state)] + layout.offset(node / layout.columns, node % layout.columns);
-    write_vector(out, layout.pitch, state.position[node]);
-    write_vector(out + 3 * layout.pitch, layout.pitch, state.velocity[node]);
-  }
+  float* const x = base[index(Pair::state)];
+  write_fields(layout, state, x, x + 3 * layout.pitch);
 }
 
 State PaddedRows::state() const {
-  State state;
-  state.position.reserve(layout.rows * layout.columns);
-  state.velocity.reserve(layout.rows * layout.columns);
-  for (std::size_t row = 0; row < layout.rows; ++row) {
-    const float* in = base[index(Pair::state)] + layout.offset(row, 0);
-    for (std::size_t column = 0; column < layout.columns; ++column, ++in) {
-      state.position.push_back(read_vector(in, layout.pitch));
-      state.velocity.push_back(read_vector(in + 3 * layout.pitch, layout.pitch));
-    }
-  }
-  return state;
+  const float* const x = base[index(Pair::state)];
+  return read_fields(layout, layout.rows * layout.columns, x, x + 3 * layout.pitch);
 }
 
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,

@@ -14,8 +14,7 @@ namespace mssim {
 /// Every node of a cloth sums the forces of its own springs like `gather`, a vector of nodes at a time. The
 /// comparison with `openmp`, which also has vectors, shows the gain from computing each spring once. Uses the
 /// best instruction set with options.roots. Throws Unsupported except for a cloth.
-std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
-                                             const ExecutionOptions& options);
+BackendMaker make_gather_vectors;
 
 /// A cloth with the components x y z u v w (u v w: velocity).
 using PairRows = RowLayout<6>;

@@ -22,7 +22,6 @@ std::unique_ptr<Backend> make_hybrid(
 /// memory, as published, or by copying (options.memory). Uses System::springs, whatever the topology. Throws
 /// Unavailable if there is no such device or its driver fails, Unsupported if the scene does not fit into its
 /// memory or has too many springs.
-std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
-                                     const ExecutionOptions& options);
+BackendMaker make_hybrid;
 
 }  // namespace mssim

@@ -4,7 +4,6 @@
 #include <array>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "backends/implicit/nodes/solvers.h"
@@ -14,29 +13,13 @@ namespace {
 
 /// The functions for the steps of one solver.
 struct SolverSteps {
-  using Make = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s);
-  using MakeOpenMp = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s,
-                                              const ExecutionOptions& options);
-  using MakeReference = std::unique_ptr<Backend>(const System& system, const Integrator& integrator,
-                                                 double dt_s, const std::function<bool()>& stop);
-
-  Make* serial;
+  BackendMaker* serial;
   MemoryUse serial_memory;
-  MakeReference* reference;
+  ReferenceMaker* reference;
   MemoryUse reference_memory;
-  MakeOpenMp* openmp;
+  BackendMaker* openmp;
   MemoryUse openmp_memory;  ///< for a cloth; for bodies, plus the memory of their slices
 };
-
-/// Adapts a maker for a single integrator, without its `integrator` and `stop` parameters.
-template <auto make, class... More>
-std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrator& /*integrator*/,
-                                           double dt_s, const More&... more) {
-  if constexpr (std::is_invocable_v<decltype(make), const System&, double, const More&...>)
-    return make(system, dt_s, more...);
-  else
-    return make(system, dt_s);
-}
 
 /// Memory of a SpringEquation<float>: per node PlainNodes, six vectors and a block of P; per spring its part
 /// of A.
@@ -66,18 +49,18 @@ constexpr SolverSteps newton{
     .openmp_memory = {.node = 165}};
 
 constexpr SolverSteps local_global{
-    .serial = of_one_integrator<make_serial_local_global>,
+    .serial = make_serial_local_global,
     .serial_memory = {.node = 150 + matrix_bytes, .doubling_node = cloth_entries * entry_bytes},
-    .reference = of_one_integrator<make_local_global_reference>,
+    .reference = make_local_global_reference,
     .reference_memory = {.node = 250 + matrix_bytes, .doubling_node = cloth_entries * entry_bytes},
-    .openmp = of_one_integrator<make_openmp_local_global>,
+    .openmp = make_openmp_local_global,
     .openmp_memory = {.node = 150 + matrix_bytes, .doubling_node = cloth_entries * block_bytes}};
 
-constexpr SolverSteps constraints{.serial = of_one_integrator<make_serial_constraints>,
+constexpr SolverSteps constraints{.serial = make_serial_constraints,
                                   .serial_memory = {.node = 53, .spring = 16 + 20},
-                                  .reference = of_one_integrator<make_constraints_reference>,
+                                  .reference = make_constraints_reference,
                                   .reference_memory = {.node = 105, .spring = 16 + 32},
-                                  .openmp = of_one_integrator<make_openmp_constraints>,
+                                  .openmp = make_openmp_constraints,
                                   .openmp_memory = {.node = 52}};
 
 struct Row {
@@ -124,8 +107,8 @@ MemoryUse openmp_implicit_memory(const Integrator& integrator, bool grid) {
 }
 
 std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
-                                              const ExecutionOptions& /*options*/) {
-  return steps_of(integrator).serial(system, integrator, dt_s);
+                                              const ExecutionOptions& options) {
+  return steps_of(integrator).serial(system, integrator, dt_s, options);
 }
 
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,

@@ -12,8 +12,7 @@ namespace mssim {
 /// a garment, and std::invalid_argument for an explicit integrator; `system` must outlive the backend.
 
 /// On one thread, with plain loops over the spring list in single precision: the baseline.
-std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
-                                              const ExecutionOptions& options);
+BackendMaker make_serial_implicit;
 
 /// The plain code in double precision, whose solvers iterate until they improve no more, or until `stop`
 /// returns true (make_reference in backends/backends.h).
@@ -21,8 +20,7 @@ std::unique_ptr<Backend> make_implicit_reference(const System& system, const Int
                                                  double dt_s, const std::function<bool()>& stop);
 
 /// With vectors and options.threads threads: bitwise identical for every number of threads.
-std::unique_ptr<Backend> make_openmp_implicit(const System& system, const Integrator& integrator, double dt_s,
-                                              const ExecutionOptions& options);
+BackendMaker make_openmp_implicit;
 
 /// Their memory for a cloth (`grid`) or for bodies.
 MemoryUse serial_implicit_memory(const Integrator& integrator, bool grid);

@@ -165,6 +165,11 @@ class Backend {
   virtual std::optional<std::uint64_t> program_peak_bytes() const { return std::nullopt; }
 };
 
+/// Makes a backend for a cloth or bodies, at the system's start state. `system` must outlive it. Throws
+/// Unavailable or Unsupported.
+using BackendMaker = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s,
+                                              const ExecutionOptions& options);
+
 /// Peak memory of a backend, usually reached during construction: bytes per node, per node and pair that the
 /// integrator needs, per node and thread, per node and doubling of the number of nodes, and per spring.
 /// Memory that does not grow with the scene is omitted.

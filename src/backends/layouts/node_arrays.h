@@ -44,6 +44,26 @@ void write_vector(Real* to, std::size_t step, const Vec3d& value) {
   to[2 * step] = static_cast<Real>(value.z);
 }
 
+/// Writes a state, rounded to float, to arrays of positions and of velocities, in which the layout has each
+/// node at offset(node), component_step() floats from a component to the next.
+template <class Layout>
+void write_fields(const Layout& layout, const State& state, float* x, float* v) {
+  for (std::size_t node = 0; node < state.position.size(); ++node) {
+    write_vector(x + layout.offset(node), layout.component_step(), state.position[node]);
+    write_vector(v + layout.offset(node), layout.component_step(), state.velocity[node]);
+  }
+}
+/// Reads the state of `nodes` nodes from such arrays.
+template <class Layout>
+State read_fields(const Layout& layout, std::size_t nodes, const float* x, const float* v) {
+  State state{std::vector<Vec3d>(nodes), std::vector<Vec3d>(nodes)};
+  for (std::size_t node = 0; node < nodes; ++node) {
+    state.position[node] = read_vector(x + layout.offset(node), layout.component_step());
+    state.velocity[node] = read_vector(v + layout.offset(node), layout.component_step());
+  }
+  return state;
+}
+
 /// A node of a cloth that is reset after every update.
 template <class Real>
 struct PlacedPin {
@@ -103,8 +123,7 @@ State read_records(const Real* records, std::span<const std::uint32_t> slot) {
   State state;
   for (const std::uint32_t number : slot) {
     const Real* const record = records + std::size_t{number} * record_floats;
-    state.position.push_back(read_vector(record, 1));
-    state.velocity.push_back(read_vector(record + record_floats / 2, 1));
+    state.add(read_vector(record, 1), read_vector(record + record_floats / 2, 1));
   }
   return state;
 }
@@ -137,6 +156,10 @@ struct RowLayout {
   std::size_t offset(std::size_t row, std::size_t column) const {
     return (row + ring) * row_floats() + margin + column;
   }
+  /// The same for a node by its number in the scene.
+  std::size_t offset(std::size_t node) const { return offset(node / columns, node % columns); }
+  /// Floats from a component of a node to its next one.
+  std::size_t component_step() const { return pitch; }
   /// Floats of an array, with a margin after its last row.
   std::size_t floats() const { return (rows + 2 * ring) * row_floats() + margin; }
 

@@ -22,7 +22,6 @@ std::unique_ptr<Backend> make_opencl(
 /// compute units. Throws Unavailable if there is no such device or its driver fails, Unsupported if the scene
 /// does not fit into its memory, if it has too many nodes or springs, and if springs of different materials
 /// meet in a node.
-std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
-                                     const ExecutionOptions& options);
+BackendMaker make_opencl;
 
 }  // namespace mssim

@@ -62,8 +62,7 @@ State OpenclBackend::read_state(const OpenclBuffer<float>& buffer) const {
       State state;
       for (const std::size_t node : layout_.node) {
         const auto number = [&](std::size_t i) { return double{memory[node + layout_.component[i]]}; };
-        state.position.push_back({number(0), number(1), number(2)});
-        state.velocity.push_back({number(3), number(4), number(5)});
+        state.add({number(0), number(1), number(2)}, {number(3), number(4), number(5)});
       }
       return state;
     });

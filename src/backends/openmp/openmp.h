@@ -14,13 +14,11 @@ namespace mssim {
 /// one with options.roots; for alike bodies a narrower one that needs no more vectors. Throws Unsupported for
 /// a garment, for bodies with springs of different materials at a node, and for more nodes than the layout
 /// can number, and Unavailable if the instruction set has no code here with options.roots.
-std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
-                                     const ExecutionOptions& options);
+BackendMaker make_openmp;
 
 /// make_openmp in double precision: half as many lanes, twice the memory. Roots are always exact, so all
 /// instruction sets that fuse multiply-adds (AVX2, AVX-512, NEON) are bitwise identical.
-std::unique_ptr<Backend> make_openmp_in_double(const System& system, const Integrator& integrator,
-                                               double dt_s, const ExecutionOptions& options);
+BackendMaker make_openmp_in_double;
 
 /// The instruction sets for which its vector code is compiled and which this CPU supports, by Highway's
 /// names, the best first. The order of every sum is the scene's (a column's nodes from the top, a body's

@@ -41,8 +41,7 @@ class SpringList {
     inverse_mass_.reserve(system.nodes());
     for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
     for (const std::uint32_t node : system.pins) pinned_[node] = 1;
-    for (std::size_t pair = 0; pair < pair_kinds; ++pair)
-      if (stores(integrator, static_cast<Pair>(pair), storage)) pairs_[pair].resize(system.nodes());
+    for (const Pair pair : stored_pairs(integrator, storage)) pairs_[index(pair)].resize(system.nodes());
     set_state(system.start);
   }
 
@@ -57,10 +56,8 @@ class SpringList {
     State state;
     state.position.reserve(nodes());
     state.velocity.reserve(nodes());
-    for (const Node& node : array(Pair::state)) {
-      state.position.push_back(vec3_cast<double>(node.x));
-      state.velocity.push_back(vec3_cast<double>(node.v));
-    }
+    for (const Node& node : array(Pair::state))
+      state.add(vec3_cast<double>(node.x), vec3_cast<double>(node.v));
     return state;
   }
 
@@ -111,10 +108,8 @@ class SpringList {
           });
     }
   }
-  /// Ends a step: the last stage's result becomes the state.
-  void end_step() {
-    if (swaps_state(integrator_, storage)) std::swap(place_[index(Pair::state)], place_[index(Pair::next)]);
-  }
+  /// Ends a step: the last stage's result becomes the state, if it is not in the same array.
+  void end_step() { std::swap(place_[index(Pair::state)], place_[index(Pair::next)]); }
 
  private:
   /// All forces of a stage are computed before a node is updated, so pairs may share arrays.

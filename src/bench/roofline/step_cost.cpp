@@ -36,9 +36,7 @@ StepCost step_cost(const Integrator& integrator, const StepSize& size, int steps
 }
 
 double working_set_bytes(const Integrator& integrator, const StepSize& size) {
-  std::size_t pairs = 0;
-  for (std::size_t pair = 0; pair < pair_kinds; ++pair)
-    pairs += std::size_t{stores(integrator, static_cast<Pair>(pair), Storage::in_place)};
+  const std::size_t pairs = stored_pairs(integrator, Storage::in_place).size();
   return static_cast<double>(2 * pairs * bytes_per_slot) * static_cast<double>(size.nodes) +
          size.bytes_per_spring * static_cast<double>(size.springs);
 }

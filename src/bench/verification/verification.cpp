@@ -9,6 +9,7 @@
 #include <random>
 
 #include "backends/backends.h"
+#include "integrators/stability.h"
 #include "laws/host_laws.h"
 #include "platform/machine.h"
 #include "platform/process.h"
@@ -241,14 +242,6 @@ double position_tolerance(const System& system, const Integrator& integrator, in
          largest_coordinate(system.start) / mean_rest_length(system);
 }
 
-ModeBound mode_bound(const System& system) {
-  const StiffnessBound bound = stiffness_bound(system);
-  ModeBound modes{bound.stiffness, bound.damping, system.viscous_damping};
-  for (const StiffnessBound& material : bound.materials)
-    modes.parts.push_back({material.stiffness, material.damping});
-  return modes;
-}
-
 int comparable_steps(const System& system, const Integrator& integrator, double dt_s, int most) {
   ModeBound modes = mode_bound(system);
   if (is_implicit(integrator) || largest_amplification(integrator, dt_s, modes) <= 1 + tolerated_growth)
@@ -416,7 +409,7 @@ State sample_start(const System& system, std::uint32_t number) {
     return low + (high - low) * static_cast<double>(random()) / 0x1p32;
   };
   const double unit = mean_rest_length(system);
-  const double speed = strain * unit * std::sqrt(stiffness_bound(system).stiffness);
+  const double speed = strain * unit * std::sqrt(mode_bound(system).stiffness);
   // A wave for each direction of motion, each along its own direction.
   Vec3d k[3];
   double phase[3];

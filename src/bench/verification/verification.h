@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "integrators/stability.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -96,9 +95,6 @@ inline constexpr double energy_tolerance = 0.01;
 
 /// Number of stages of a step that write, and so round, the new position.
 int position_roundings(const Integrator& integrator);
-
-/// Bound of the system's modes, for the stability limits of its integrators.
-ModeBound mode_bound(const System& system);
 
 /// Steps from the start until a rounding error may have doubled, at least 1 and at most `most`; beyond them a
 /// tolerance for roundings is meaningless. Derived from the factors by which the integrator multiplies the

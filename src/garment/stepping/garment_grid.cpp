@@ -145,10 +145,8 @@ void GarmentGrid::set_state(const State& state) {
 
 State GarmentGrid::state() const {
   State state;
-  for (const std::size_t at : offset) {
-    state.position.push_back(vec3_cast<double>(position.at(at)));
-    state.velocity.push_back(vec3_cast<double>(velocity.at(at)));
-  }
+  for (const std::size_t at : offset)
+    state.add(vec3_cast<double>(position.at(at)), vec3_cast<double>(velocity.at(at)));
   return state;
 }
 

@@ -162,10 +162,9 @@ class PublishedLoops final : public DressingBackend {
 
   State state() const override {
     State state;
-    for (const Node& node : nodes_) {
-      state.position.push_back(vec3_cast<double>(Components<Vector>::of(node.x)));
-      state.velocity.push_back(vec3_cast<double>(Components<Vector>::of(node.v)));
-    }
+    for (const Node& node : nodes_)
+      state.add(vec3_cast<double>(Components<Vector>::of(node.x)),
+                vec3_cast<double>(Components<Vector>::of(node.v)));
     state.draped = progress_.draping;
     return state;
   }

@@ -44,10 +44,7 @@ class SerialDressing final : public DressingBackend {
 
   State state() const override {
     State state;
-    for (const Node& node : nodes_) {
-      state.position.push_back(vec3_cast<double>(node.x));
-      state.velocity.push_back(vec3_cast<double>(node.v));
-    }
+    for (const Node& node : nodes_) state.add(vec3_cast<double>(node.x), vec3_cast<double>(node.v));
     state.draped = progress_.draping;
     return state;
   }

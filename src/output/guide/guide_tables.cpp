@@ -21,23 +21,6 @@ void show_small_numbers(Table& table) {
     if (column.name.ends_with("_s") || column.name.ends_with("_error")) column.align = Align::right;
 }
 
-/// The rows of a scene, without the first column, its name.
-Table of_scene(const Table& all, const std::string& scene) {
-  Table table;
-  if (all.columns.empty()) return table;
-  table.columns.assign(all.columns.begin() + 1, all.columns.end());
-  for (const std::vector<Cell>& row : all.rows)
-    if (std::get<std::string>(row.front().value) == scene)
-      table.rows.emplace_back(row.begin() + 1, row.end());
-  show_small_numbers(table);
-  return table;
-}
-
-const Table& table_named(const std::vector<ResultTable>& tables, std::string_view name) {
-  const auto is_it = [&](const ResultTable& table) { return std::string_view(table.name) == name; };
-  return std::ranges::find_if(tables, is_it)->data;
-}
-
 Table front_table(const SceneGuide& guide) {
   std::vector<const WorkPoint*> front;
   for (const WorkPoint& point : guide.points)
@@ -86,14 +69,31 @@ Table cloths_at_rates(const SceneGuide& guide) {
   return table;
 }
 
-void add_cloths(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
+/// The sizes at which two backends take the same time.
+Table crossovers_table(const SceneGuide& guide) {
+  Table table;
+  for (std::size_t i = 0; i < guide.sizes.size(); ++i)
+    for (std::size_t j = i + 1; j < guide.sizes.size(); ++j) {
+      const SizeCurve &a = guide.sizes[i], &b = guide.sizes[j];
+      if (a.integrator != b.integrator || a.samples.empty() || b.samples.empty()) continue;
+      const auto nodes = crossover(a, b);
+      const bool first_faster = a.samples.front().seconds_a_step <= b.samples.front().seconds_a_step;
+      table.add({{"integrator", a.integrator->name},
+                 {"faster_when_small", (first_faster ? a : b).backend->name},
+                 {"other", (first_faster ? b : a).backend->name},
+                 {"crossover_nodes", nodes ? Cell(std::llround(*nodes)) : Cell()}});
+    }
+  return table;
+}
+
+void add_cloths(Document& page, const SceneGuide& guide) {
   add_table(
       page, "Largest cloths of the family",
       "Numbers of nodes of square cloths with the springs, masses and spacing of this scene, by frames per "
       "second. The step is the longest one above that keeps the error or, if none does, that of the "
       "cheapest stable point. Times between two measured sizes are interpolated on logarithmic axes.",
       cloths_at_rates(guide));
-  Table crossovers = of_scene(table_named(tables, "guide-crossovers"), guide.scene);
+  Table crossovers = crossovers_table(guide);
   std::erase_if(crossovers.rows, [](const std::vector<Cell>& row) {
     return std::holds_alternative<std::monostate>(row.back().value);
   });
@@ -171,7 +171,7 @@ void add_advice(Document& page, const SceneGuide& guide) {
     page.emplace_back(Paragraph{join(sentences, " ")});
 }
 
-void add_scene(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
+void add_scene(Document& page, const SceneGuide& guide) {
   page.emplace_back(Heading{
       2, guide.scene + ": " + pluralize(guide.nodes, "node") + ", " + pluralize(guide.springs, "spring")});
   add_advice(page, guide);
@@ -192,7 +192,7 @@ void add_scene(Document& page, const SceneGuide& guide, const std::vector<Result
       "is a safe bound: it assumes that all springs of a node are parallel and all its neighbours move "
       "against it.",
       limits_table(guide));
-  add_cloths(page, guide, tables);
+  add_cloths(page, guide);
 }
 
 Cell finite(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
@@ -214,8 +214,7 @@ bool is_recommended(const SceneGuide& guide, const WorkPoint& point) {
 /// Adds a point of the method or, if it is null, why the method has none.
 void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method, const WorkPoint* point) {
   const auto of_point = [&](const auto& value) { return point ? Cell(std::invoke(value, *point)) : Cell(); };
-  table.add({{"scene", guide.scene},
-             {"nodes", guide.nodes},
+  table.add({{"nodes", guide.nodes},
              {"springs_unique", guide.springs},
              {"integrator", method.integrator->name},
              {"backend", method.backend->name},
@@ -239,107 +238,80 @@ void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method
              {"recommended", point ? Cell(is_recommended(guide, *point)) : Cell()}});
 }
 
-Table points_table(std::span<const SceneGuide> guides) {
+Table points_table(const SceneGuide& guide) {
   Table table;
-  for (const SceneGuide& guide : guides)
-    for (const GuidedMethod& method : guide.methods) {
-      bool any = false;
-      for (const WorkPoint& point : guide.points)
-        if (is_of(point, method)) {
-          add_point(table, guide, method, &point);
-          any = true;
-        }
-      if (!any) add_point(table, guide, method, nullptr);
+  for (const GuidedMethod& method : guide.methods) {
+    bool any = false;
+    for (const WorkPoint& point : guide.points)
+      if (is_of(point, method)) {
+        add_point(table, guide, method, &point);
+        any = true;
+      }
+    if (!any) add_point(table, guide, method, nullptr);
+  }
+  return table;
+}
+
+Table steps_table(const SceneGuide& guide) {
+  Table table;
+  for (const StepLimit& limit : guide.limits)
+    table.add({{"integrator", limit.integrator->name},
+               {"backend", limit.backend},
+               {"stable_dt_s", found(limit.measured.stable_s)},
+               {"unstable_dt_s", found(limit.measured.unstable_s)},
+               {"theory_dt_s", finite(limit.theory.shortest_s())},
+               {"theory_at_start_dt_s", finite(limit.theory.at_start_s)},
+               {"theory_on_the_way_dt_s", finite(limit.theory.on_the_way_s)},
+               {"gershgorin_dt_s", finite(limit.theory.bound_s)},
+               {"runs", limit.measured.runs},
+               {"span_s", limit.measured.span_s},
+               {"finished", limit.measured.finished},
+               {"why", limit.why},
+               {"status", limit.status}});
+  return table;
+}
+
+Table errors_table(const SceneGuide& guide) {
+  Table table;
+  for (const GuidedMethod& method : guide.methods)
+    for (const double error : errors_around(guide.wish))
+      if (const auto cost = cost_at_error(guide.points, method, error))
+        table.add({{"integrator", method.integrator->name},
+                   {"backend", method.backend->name},
+                   {"position_error", error},
+                   {"wall_s_per_s", cost->seconds_a_second},
+                   {"at_longest_step", cost->at_longest_step},
+                   {"dt_s", cost->dt_s}});
+  return table;
+}
+
+Table sizes_table(const SceneGuide& guide) {
+  Table table;
+  for (const SizeCurve& curve : guide.sizes)
+    for (const SizeCurve::Sample& sample : curve.samples)
+      table.add({{"integrator", curve.integrator->name},
+                 {"backend", curve.backend->name},
+                 {"dt_s", curve.dt_s},
+                 {"nodes", sample.nodes},
+                 {"ms_per_step", 1000 * sample.seconds_a_step}});
+  return table;
+}
+
+Table frames_table(const SceneGuide& guide) {
+  Table table;
+  for (const SizeCurve& curve : guide.sizes)
+    for (const double rate : frame_rates) {
+      const auto largest = curve.largest(rate);
+      table.add({{"integrator", curve.integrator->name},
+                 {"backend", curve.backend->name},
+                 {"dt_s", found(curve.dt_s)},
+                 {"frames_per_second", rate},
+                 {"steps_per_frame", curve.dt_s > 0 ? Cell(steps_a_frame(curve.dt_s, rate)) : Cell()},
+                 {"keeps_error", curve.dt_s > 0 ? Cell(curve.keeps_error) : Cell()},
+                 {"largest_nodes", largest ? Cell(std::llround(largest->nodes)) : Cell()},
+                 {"or_more", largest ? Cell(largest->at_least) : Cell()},
+                 {"status", curve.status}});
     }
-  return table;
-}
-
-Table steps_table(std::span<const SceneGuide> guides) {
-  Table table;
-  for (const SceneGuide& guide : guides)
-    for (const StepLimit& limit : guide.limits)
-      table.add({{"scene", guide.scene},
-                 {"integrator", limit.integrator->name},
-                 {"backend", limit.backend},
-                 {"stable_dt_s", found(limit.measured.stable_s)},
-                 {"unstable_dt_s", found(limit.measured.unstable_s)},
-                 {"theory_dt_s", finite(limit.theory.shortest_s())},
-                 {"theory_at_start_dt_s", finite(limit.theory.at_start_s)},
-                 {"theory_on_the_way_dt_s", finite(limit.theory.on_the_way_s)},
-                 {"gershgorin_dt_s", finite(limit.theory.bound_s)},
-                 {"runs", limit.measured.runs},
-                 {"span_s", limit.measured.span_s},
-                 {"finished", limit.measured.finished},
-                 {"why", limit.why},
-                 {"status", limit.status}});
-  return table;
-}
-
-Table errors_table(std::span<const SceneGuide> guides) {
-  Table table;
-  for (const SceneGuide& guide : guides)
-    for (const GuidedMethod& method : guide.methods)
-      for (const double error : errors_around(guide.wish))
-        if (const auto cost = cost_at_error(guide.points, method, error))
-          table.add({{"scene", guide.scene},
-                     {"integrator", method.integrator->name},
-                     {"backend", method.backend->name},
-                     {"position_error", error},
-                     {"wall_s_per_s", cost->seconds_a_second},
-                     {"at_longest_step", cost->at_longest_step},
-                     {"dt_s", cost->dt_s}});
-  return table;
-}
-
-Table sizes_table(std::span<const SceneGuide> guides) {
-  Table table;
-  for (const SceneGuide& guide : guides)
-    for (const SizeCurve& curve : guide.sizes)
-      for (const SizeCurve::Sample& sample : curve.samples)
-        table.add({{"scene", guide.scene},
-                   {"integrator", curve.integrator->name},
-                   {"backend", curve.backend->name},
-                   {"dt_s", curve.dt_s},
-                   {"nodes", sample.nodes},
-                   {"ms_per_step", 1000 * sample.seconds_a_step}});
-  return table;
-}
-
-Table frames_table(std::span<const SceneGuide> guides) {
-  Table table;
-  for (const SceneGuide& guide : guides)
-    for (const SizeCurve& curve : guide.sizes)
-      for (const double rate : frame_rates) {
-        const auto largest = curve.largest(rate);
-        table.add({{"scene", guide.scene},
-                   {"integrator", curve.integrator->name},
-                   {"backend", curve.backend->name},
-                   {"dt_s", found(curve.dt_s)},
-                   {"frames_per_second", rate},
-                   {"steps_per_frame", curve.dt_s > 0 ? Cell(steps_a_frame(curve.dt_s, rate)) : Cell()},
-                   {"keeps_error", curve.dt_s > 0 ? Cell(curve.keeps_error) : Cell()},
-                   {"largest_nodes", largest ? Cell(std::llround(largest->nodes)) : Cell()},
-                   {"or_more", largest ? Cell(largest->at_least) : Cell()},
-                   {"status", curve.status}});
-      }
-  return table;
-}
-
-Table crossovers_table(std::span<const SceneGuide> guides) {
-  Table table;
-  for (const SceneGuide& guide : guides)
-    for (std::size_t i = 0; i < guide.sizes.size(); ++i)
-      for (std::size_t j = i + 1; j < guide.sizes.size(); ++j) {
-        const SizeCurve &a = guide.sizes[i], &b = guide.sizes[j];
-        if (a.integrator != b.integrator || a.samples.empty() || b.samples.empty()) continue;
-        const auto nodes = crossover(a, b);
-        const bool first_faster = a.samples.front().seconds_a_step <= b.samples.front().seconds_a_step;
-        table.add({{"scene", guide.scene},
-                   {"integrator", a.integrator->name},
-                   {"faster_when_small", (first_faster ? a : b).backend->name},
-                   {"other", (first_faster ? b : a).backend->name},
-                   {"crossover_nodes", nodes ? Cell(std::llround(*nodes)) : Cell()}});
-      }
   return table;
 }
 
@@ -354,10 +326,26 @@ const WorkPoint* point_to_show(const SceneGuide& guide, const GuidedMethod& meth
   return nearest;
 }
 
+/// The rows of every guide, with its scene in the first column.
+Table of_all(std::span<const SceneGuide> guides, Table (*table_of)(const SceneGuide& guide)) {
+  Table all;
+  for (const SceneGuide& guide : guides) {
+    Table table = table_of(guide);
+    if (all.rows.empty() && !table.rows.empty()) {
+      all.columns = std::move(table.columns);
+      all.columns.insert(all.columns.begin(), {"scene"});
+    }
+    for (std::vector<Cell>& row : table.rows) {
+      row.insert(row.begin(), Cell(guide.scene));
+      all.rows.push_back(std::move(row));
+    }
+  }
+  return all;
+}
+
 /// For each scene: the recommendation, the methods, the reference, the front, the largest stable steps with
-/// the reasons for differences from theory, and the largest cloths. `tables`: those of guide_tables().
-Document guide_page(std::span<const SceneGuide> guides, const std::vector<ResultTable>& tables,
-                    const Provenance& provenance) {
+/// the reasons for differences from theory, and the largest cloths.
+Document guide_page(std::span<const SceneGuide> guides, const Provenance& provenance) {
   Document page{
       Heading{1, "Which integrator, which backend, which step"}, measured_on({}, provenance),
       Paragraph{
@@ -365,7 +353,7 @@ Document guide_page(std::span<const SceneGuide> guides, const std::vector<Result
           "the requested error. *position_error*: largest distance of a node from its reference position, in "
           "mean rest lengths. *energy_error*: error of the total energy, relative to kinetic plus elastic "
           "energy. docs/guide.md describes how each number is found."}};
-  for (const SceneGuide& guide : guides) add_scene(page, guide, tables);
+  for (const SceneGuide& guide : guides) add_scene(page, guide);
   return page;
 }
 
@@ -430,11 +418,12 @@ Table guide_summary(const SceneGuide& guide) {
 }
 
 std::vector<ResultTable> guide_tables(std::span<const SceneGuide> guides, const Provenance& provenance) {
-  std::vector<ResultTable> tables{
-      {"guide", points_table(guides), {}},        {"guide-steps", steps_table(guides), {}},
-      {"guide-errors", errors_table(guides), {}}, {"guide-sizes", sizes_table(guides), {}},
-      {"guide-frames", frames_table(guides), {}}, {"guide-crossovers", crossovers_table(guides), {}}};
-  tables.front().page = guide_page(guides, tables, provenance);
+  std::vector<ResultTable> tables{{"guide", of_all(guides, points_table), guide_page(guides, provenance)},
+                                  {"guide-steps", of_all(guides, steps_table), {}},
+                                  {"guide-errors", of_all(guides, errors_table), {}},
+                                  {"guide-sizes", of_all(guides, sizes_table), {}},
+                                  {"guide-frames", of_all(guides, frames_table), {}},
+                                  {"guide-crossovers", of_all(guides, crossovers_table), {}}};
   std::erase_if(tables, [](const ResultTable& table) { return table.data.rows.empty(); });
   return tables;
 }

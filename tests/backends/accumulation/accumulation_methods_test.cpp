@@ -28,9 +28,7 @@ class EachWayAndIntegrator : public testing::TestWithParam<std::tuple<std::size_
     return method().backend.make(system, integrator(), backend_dt_of(integrator()), {threads, ""});
   }
   State after(const System& system, int threads, int steps) const {
-    const auto simulation = make(system, threads);
-    simulation->step(steps);
-    return simulation->state();
+    return state_after(*make(system, threads), steps);
   }
   /// Those that the method steps: a cloth, and bodies where it does not refuse them.
   std::vector<System> steppable(std::initializer_list<System> cloths,
@@ -153,14 +151,11 @@ TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsThe
   constexpr int steps = 101;  // an odd number leaves the state where `next` was
   for (const auto& [rows, columns] : sizes) {
     const System system = bouncing_cloth(rows, columns);
-    const auto alone = make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {1, ""}, best);
-    alone->step(steps);
-    const State expected = alone->state();
+    const State expected = state_after(
+        *make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {1, ""}, best), steps);
     EXPECT_TRUE(rows < 9 || columns < 9 || has_met_floor(system, expected)) << rows << " x " << columns;
     for (const int threads : {1, 2, 3, 7}) {
-      const auto simulation = make(system, threads);
-      simulation->step(steps);
-      const State state = simulation->state();
+      const State state = state_after(*make(system, threads), steps);
       EXPECT_TRUE(same_state(state, expected)) << rows << " x " << columns << ", " << threads;
     }
   }
@@ -178,9 +173,7 @@ TEST_P(EachRowKernelAndIntegrator, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFl
   std::get<ClothSpec>(spec.content).pins = ClothPins{13, 5};
   System system = build_system(spec);
   system.floor.height = system.start.position[system.pins.front()].y + 0.01;
-  const auto simulation = make(system, 3);
-  simulation->step(51);
-  const State state = simulation->state();
+  const State state = state_after(*make(system, 3), 51);
   EXPECT_TRUE(pins_hold(system, state));
   EXPECT_NE(state.position[0], system.start.position[0]) << "the others move";
 }

@@ -22,10 +22,8 @@ System flat_cloth(std::uint32_t rows, std::uint32_t columns, double height) {
   system.gravity = 9.81;
   system.floor.height = -100;
   for (std::uint32_t row = 0; row < rows; ++row)
-    for (std::uint32_t column = 0; column < columns; ++column) {
-      system.start.position.push_back({0.02 * column, height, 0.02 * row});
-      system.start.velocity.push_back({});
-    }
+    for (std::uint32_t column = 0; column < columns; ++column)
+      system.start.add({0.02 * column, height, 0.02 * row}, {});
   return system;
 }
 

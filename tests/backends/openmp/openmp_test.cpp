@@ -23,8 +23,7 @@ System many_bodies() {
   append_body(system, alike_bodies(pinned, 3), {0, 0, 1});
   append_body(system, solid_block(5, 5, 5, 0.002), {0, 0, 2});
   for (int i = 0; i < 3; ++i) {
-    system.start.position.push_back({0, 0.01 + 0.001 * i, 3});
-    system.start.velocity.push_back({0, -1, 0});
+    system.start.add({0, 0.01 + 0.001 * i, 3}, {0, -1, 0});
     system.node_mass.push_back(0.004);
   }
   round_to_single(system.start);

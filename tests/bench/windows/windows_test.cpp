@@ -50,8 +50,7 @@ class WholeInWindows final : public WindowBackend {
     State some;
     for (std::size_t row = window.row; row < window.row + window.rows; ++row)
       for (std::size_t column = window.column; column < window.column + window.columns; ++column) {
-        some.position.push_back(all.position[row * columns_ + column]);
-        some.velocity.push_back(all.velocity[row * columns_ + column]);
+        some.add(all.position[row * columns_ + column], all.velocity[row * columns_ + column]);
         if (row * columns_ + column == wrong_node) some.position.back().z += wrong;
       }
     return some;

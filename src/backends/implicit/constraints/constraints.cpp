@@ -36,22 +36,16 @@ template <class Real>
 class SerialConstraints final : public Backend {
  public:
   SerialConstraints(const System& system, double dt_s)
-      : nodes_(system),
-        rest_(system.nodes()),
-        velocity_rest_(system.nodes()),
-        substeps_(system.solver.substeps),
-        h_(static_cast<Real>(dt_s / system.solver.substeps)) {
+      : nodes_(system), rest_(system.nodes()), velocity_rest_(system.nodes()), steps_(system, dt_s) {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       mobility_.push_back(nodes_.pinned[i] ? Real{} : static_cast<Real>(1 / system.node_mass[i]));
-    const double h_s = dt_s / system.solver.substeps, slowed = 1 + h_s * system.viscous_damping;
-    lost_ = static_cast<Real>(h_s * system.viscous_damping / slowed);
-    fall_ = static_cast<Real>(h_s * system.gravity / slowed);
     springs_.reserve(system.springs.size());
     for (const Spring& spring : spring_order(system).springs)
-      springs_.push_back({spring.first, spring.second,
-                          compliant_spring<Real>(system.materials[spring.kind], spring.rest_length, h_s,
-                                                 static_cast<double>(mobility_[spring.first]) +
-                                                     static_cast<double>(mobility_[spring.second]))});
+      springs_.push_back(
+          {spring.first, spring.second,
+           compliant_spring<Real>(system.materials[spring.kind], spring.rest_length, steps_.small_s,
+                                  static_cast<double>(mobility_[spring.first]) +
+                                      static_cast<double>(mobility_[spring.second]))});
   }
 
   void set_state(const State& state) override {
@@ -73,10 +67,11 @@ class SerialConstraints final : public Backend {
 
   void step(int count) override {
     for (int step = 0; step < count; ++step) {
-      for (std::uint32_t substep = 0; substep < substeps_; ++substep) {
+      for (std::size_t substep = 0; substep < steps_.substeps; ++substep) {
         fall();
         for (const CompliantSpring& spring : springs_) project(spring);
-        for (std::size_t i = 0; i < nodes_.size(); ++i) carry_move(nodes_.x[i], rest_[i], h_, nodes_.v[i]);
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+          carry_move(nodes_.x[i], rest_[i], steps_.h_s, nodes_.v[i]);
       }
       touch_floor();
     }
@@ -90,7 +85,7 @@ class SerialConstraints final : public Backend {
 
   void fall() {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (!nodes_.pinned[i]) carry_fall(nodes_.v[i], velocity_rest_[i], lost_, fall_);
+      if (!nodes_.pinned[i]) carry_fall(nodes_.v[i], velocity_rest_[i], steps_.lost, steps_.fall);
   }
 
   void touch_floor() {
@@ -102,7 +97,7 @@ class SerialConstraints final : public Backend {
   void project(const CompliantSpring& spring) {
     Vec3<Real>&v1 = nodes_.v[spring.first], &v2 = nodes_.v[spring.second];
     const Vec3<Real> u = v2 - v1;
-    const Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first] + h_ * u;
+    const Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first] + steps_.h_s * u;
     const Vec3<Real> impulse = spring_pull(dot(d, d), dot(u, d), spring.law) * d;
     v1 += mobility_[spring.first] * impulse;
     v2 -= mobility_[spring.second] * impulse;
@@ -113,9 +108,7 @@ class SerialConstraints final : public Backend {
   std::vector<Vec3<Real>> velocity_rest_;  // [nodes] m/s, those of their v
   std::vector<Real> mobility_;             // [nodes] 1/kg, 0 if pinned
   std::vector<CompliantSpring> springs_;   // in the order of the method
-  const std::uint32_t substeps_;
-  const Real h_;          // s, the substep
-  Real lost_{}, fall_{};  // of carry_fall
+  const SmallSteps<Real> steps_;
 };
 
 /// A cloth of at most cached_bytes, which the nearest caches hold, needs only one substep per pass; a larger
@@ -196,7 +189,7 @@ SpringColouring spring_order(const System& system) {
 }
 
 QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
-    : SmallSteps(system, dt_s),
+    : SmallSteps<float>(system, dt_s),
       layout(std::get<GridPatch>(system.topology), lanes),
       nodes(layout.rows * layout.row_floats() +
             lanes),  // a vector of the last nodes may begin one node further
@@ -255,15 +248,14 @@ State QuarteredRows::state() const {
   for (std::size_t row = 0; row < layout.rows; ++row)
     for (std::size_t column = 0; column < layout.columns; ++column) {
       const std::size_t x = layout.offset(row, column);
-      state.position.push_back(vector_at(x));
-      state.velocity.push_back(vector_at(x + 3 * layout.pitch));
+      state.add(vector_at(x), vector_at(x + 3 * layout.pitch));
     }
   return state;
 }
 
 SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane_count,
                              std::size_t thread_count)
-    : SmallSteps(system, dt_s), lanes(lane_count) {
+    : SmallSteps<float>(system, dt_s), lanes(lane_count) {
   const std::vector<std::uint32_t> node_at = reverse_cuthill_mckee(system.nodes(), system.springs);
   const std::vector<std::uint32_t> place = places_in(node_at);
   const std::vector<std::size_t> ends = part_ends(system, place);
@@ -292,19 +284,15 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
   // By part, colour and constants.
   const SpringColouring order = spring_order(system);
   using Constants = std::tuple<std::uint32_t, double, double>;
-  std::vector<std::vector<std::map<Constants, std::vector<Spring>>>> sorted(parts.size());
-  for (std::size_t colour = 0; colour < order.colours(); ++colour) {
-    std::vector<std::map<Constants, std::vector<Spring>>> of_part(parts.size());
+  std::vector<std::map<std::size_t, std::map<Constants, std::vector<Spring>>>> sorted(parts.size());
+  for (std::size_t colour = 0; colour < order.colours(); ++colour)
     for (const Spring& spring : order.of_colour(colour))
-      of_part[part_of[spring.first]][{spring.kind, mobility[spring.first], mobility[spring.second]}]
+      sorted[part_of[spring.first]][colour][{spring.kind, mobility[spring.first], mobility[spring.second]}]
           .push_back(spring);
-    for (std::size_t part = 0; part < parts.size(); ++part)
-      if (!of_part[part].empty()) sorted[part].push_back(std::move(of_part[part]));
-  }
   std::size_t vectors = 0;
-  for (const auto& colours_of_part : sorted)
-    for (const auto& colour : colours_of_part)
-      for (const auto& [constants, list] : colour) vectors += (list.size() + lanes - 1) / lanes;
+  for (const auto& of_part : sorted)
+    for (const auto& [colour, of_colour] : of_part)
+      for (const auto& [constants, list] : of_colour) vectors += (list.size() + lanes - 1) / lanes;
   springs = AlignedArray(vectors * 3 * lanes);
   float* entry = springs.data();
   const auto written = [&] { return static_cast<std::size_t>(entry - springs.data()) / (3 * lanes); };
@@ -312,9 +300,9 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
   for (std::size_t part = 0; part < parts.size(); ++part) {
     parts[part].first_colour = colours.size();
     const std::size_t first_vector = written();
-    for (auto& colour : sorted[part]) {
+    for (auto& [colour, of_colour] : sorted[part]) {
       const std::size_t first_batch = batches.size();
-      for (auto& [constants, list] : colour) {
+      for (auto& [constants, list] : of_colour) {
         std::ranges::sort(list, {}, [&](const Spring& spring) { return slot[spring.first]; });
         const double first_mobility = std::get<1>(constants), second_mobility = std::get<2>(constants);
         const auto compliance = [&](const Spring& spring) {
@@ -364,16 +352,18 @@ State SpringBatches::state() const {
   return state;
 }
 
-std::unique_ptr<Backend> make_serial_constraints(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_serial_constraints(const System& system, const Integrator& /*integrator*/,
+                                                 double dt_s, const ExecutionOptions& /*options*/) {
   return std::make_unique<SerialConstraints<float>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_constraints_reference(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_constraints_reference(const System& system, const Integrator& /*integrator*/,
+                                                    double dt_s, const std::function<bool()>& /*stop*/) {
   return std::make_unique<SerialConstraints<double>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_openmp_constraints(const System& system, double dt_s,
-                                                 const ExecutionOptions& options) {
+std::unique_ptr<Backend> make_openmp_constraints(const System& system, const Integrator& /*integrator*/,
+                                                 double dt_s, const ExecutionOptions& options) {
   return make_vector_backend<QuarteredRows, SpringBatches>(system, dt_s, options);
 }
 

@@ -65,22 +65,23 @@ enum ClothColour : std::uint8_t {
 /// method. A cloth has the colours of ClothColour, including empty ones; bodies have those of colour_springs.
 SpringColouring spring_order(const System& system);
 
-/// The substeps of a system.
+/// The substeps of a system, for steps in numbers of type Real.
+template <class Real>
 struct SmallSteps {
   double small_s;        ///< the substep, s
-  float h_s;             ///< the substep in single precision, s
-  float lost;            ///< fraction of the velocity that air damping takes per substep
-  float fall;            ///< m/s, gain by gravity per substep, damped
+  Real h_s;              ///< the same in that precision, s
+  Real lost;             ///< fraction of the velocity that air damping takes per substep
+  Real fall;             ///< m/s, gain by gravity per substep, damped
   std::size_t substeps;  ///< per step
-  Surroundings surroundings;
+  SurroundingsOf<Real> surroundings;
 
   SmallSteps(const System& system, double dt_s)
       : small_s(dt_s / system.solver.substeps),
-        h_s(static_cast<float>(small_s)),
-        lost(static_cast<float>(small_s * system.viscous_damping / (1 + small_s * system.viscous_damping))),
-        fall(static_cast<float>(small_s * system.gravity / (1 + small_s * system.viscous_damping))),
+        h_s(static_cast<Real>(small_s)),
+        lost(static_cast<Real>(small_s * system.viscous_damping / (1 + small_s * system.viscous_damping))),
+        fall(static_cast<Real>(small_s * system.gravity / (1 + small_s * system.viscous_damping))),
         substeps(system.solver.substeps),
-        surroundings(surroundings_of(system)) {}
+        surroundings(surroundings_of<Real>(system)) {}
 };
 
 /// Storage of the nodes of a cloth: the columns of a row in four streams, by the column's number modulo four,
@@ -114,7 +115,7 @@ struct QuarterLayout {
 };
 
 /// A cloth, for vectors of springs of a colour.
-struct QuarteredRows : SmallSteps {
+struct QuarteredRows : SmallSteps<float> {
   static constexpr std::size_t block_rows = 4;  ///< rows per block of a pass
   QuarterLayout layout;
   AlignedArray nodes;  ///< [QuarterLayout::row_floats] for each row; padding is zero
@@ -142,7 +143,7 @@ struct QuarteredRows : SmallSteps {
 /// that neighbours are near each other (reverse Cuthill-McKee), and the springs interleaved. Unconnected
 /// components are stepped separately, in parts, each of which stays in a thread's cache for all substeps of a
 /// call.
-struct SpringBatches : SmallSteps {
+struct SpringBatches : SmallSteps<float> {
   /// Springs of a colour with the same constants, in vectors [begin, end) of `springs`.
   struct Batch {
     std::size_t begin, end;

@@ -187,7 +187,8 @@ struct Placement {
   std::vector<std::uint32_t> place;    ///< [rows] index in the order of elimination
   std::vector<std::uint32_t> part_of;  ///< [places] the part of each
 };
-Placement placement_of(const std::vector<std::uint32_t>& order, const std::vector<Dissection::Part>& parts) {
+Placement placement_of(const Dissection& dissection) {
+  const auto& [order, parts] = dissection;
   Placement all{std::vector<std::uint32_t>(order.size()), std::vector<std::uint32_t>(order.size())};
   for (std::uint32_t i = 0; i < order.size(); ++i) all.place[order[i]] = i;
   for (std::uint32_t part = 0; part < parts.size(); ++part)
@@ -254,8 +255,8 @@ Dissection::Dissection(const StepMatrix& matrix, std::span<const Vec3d> places, 
   Dissector(matrix, places, std::max<std::size_t>(smallest, 1)).dissect_all(*this);
 }
 
-Fronts::Fronts(const StepMatrix& matrix, const Dissection& dissection) : parts(dissection.parts) {
-  const auto [place, part_of] = placement_of(dissection.order, parts);
+Fronts::Fronts(const StepMatrix& matrix, Dissection dissection) : Dissection(std::move(dissection)) {
+  const auto [place, part_of] = placement_of(*this);
   std::vector<std::vector<std::uint32_t>> later(parts.size());
   for (const auto& coupling : matrix.couplings) {
     const auto [low, high] = std::minmax(place[coupling.first], place[coupling.second]);
@@ -300,10 +301,7 @@ std::size_t Fronts::at(std::size_t part, std::uint32_t place) const {
 }
 
 BlockFactor::BlockFactor(const StepMatrix& matrix, std::span<const Vec3d> places, std::size_t lanes)
-    : BlockFactor(matrix, Dissection(matrix, places, smallest_region), lanes) {}
-
-BlockFactor::BlockFactor(const StepMatrix& matrix, const Dissection& dissection, std::size_t lanes)
-    : order(dissection.order), fronts(matrix, dissection) {
+    : fronts(matrix, Dissection(matrix, places, smallest_region)) {
   std::size_t floats = 0;
   for (std::size_t part = 0; part < fronts.parts.size(); ++part) {
     const std::size_t rows = round_up(fronts.rows(part), lanes);
@@ -323,7 +321,7 @@ std::size_t BlockFactor::cost(std::size_t part) const {
 }
 
 void BlockFactor::eliminate_all(const StepMatrix& matrix) {
-  const auto [place, part_of] = placement_of(order, fronts.parts);
+  const auto [place, part_of] = placement_of(fronts);
   std::vector<std::vector<StepMatrix::Coupling>> couplings(blocks.size());  // by place, the earlier first
   for (const auto& coupling : matrix.couplings) {
     const auto [low, high] = std::minmax(place[coupling.first], place[coupling.second]);
@@ -339,7 +337,8 @@ void BlockFactor::eliminate_all(const StepMatrix& matrix) {
       front[std::max(i, j) + std::min(i, j) * rows] += value;
     };
     const std::uint32_t begin = fronts.parts[part].begin;
-    for (std::size_t i = 0; i < pivots; ++i) add(border + i, border + i, matrix.diagonal[order[begin + i]]);
+    for (std::size_t i = 0; i < pivots; ++i)
+      add(border + i, border + i, matrix.diagonal[fronts.order[begin + i]]);
     for (const auto& coupling : couplings[part])
       add(border + coupling.first - begin, fronts.at(part, coupling.second), -coupling.weight);
     for (const std::uint32_t child : fronts.children_of(part)) {

@@ -72,15 +72,14 @@ struct Dissection {
 /// The structure of each part's elimination (the fronts of I. S. Duff and J. K. Reid, 1983). The front of a
 /// part is a list of places: first its border, ascending, which are later places coupled with its rows or
 /// those of earlier parts, then the part's own places.
-struct Fronts {
-  std::vector<Dissection::Part> parts;
+struct Fronts : Dissection {
   std::vector<std::size_t> first_border;   ///< [parts + 1] begin of a part's border
   std::vector<std::uint32_t> border;       ///< places
   std::vector<std::uint32_t> at_parent;    ///< [border] index of that place in the parent's front
   std::vector<std::uint32_t> first_child;  ///< [parts + 1] begin of a part's children
   std::vector<std::uint32_t> children;     ///< parts, ascending
 
-  Fronts(const StepMatrix& matrix, const Dissection& dissection);
+  Fronts(const StepMatrix& matrix, Dissection dissection);
 
   std::size_t pivots(std::size_t part) const { return parts[part].end - parts[part].begin; }
   std::size_t border_size(std::size_t part) const { return first_border[part + 1] - first_border[part]; }
@@ -110,7 +109,6 @@ struct BlockFactor {
     std::size_t front;  ///< offset of its front in the array of fronts, [3][rows]
   };
 
-  std::vector<std::uint32_t> order;  ///< Dissection::order
   Fronts fronts;
   std::vector<Block> blocks;  ///< [parts]
   AlignedArray panels;
@@ -124,7 +122,6 @@ struct BlockFactor {
   std::size_t cost(std::size_t part) const;
 
  private:
-  BlockFactor(const StepMatrix& matrix, const Dissection& dissection, std::size_t lanes);
   void eliminate_all(const StepMatrix& matrix);
 };
 

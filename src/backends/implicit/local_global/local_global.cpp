@@ -9,47 +9,19 @@
 namespace mssim {
 namespace {
 
-/// Solves A s = e for all three coordinates, by the columns of the factor.
-template <class Real>
-class ColumnSolver {
- public:
-  explicit ColumnSolver(ColumnFactor factor)
-      : order_(std::move(factor.order)), first_(std::move(factor.first)), place_(std::move(factor.place)) {
-    for (const double value : factor.value) value_.push_back(static_cast<Real>(value));
-    solution_.resize(order_.size());
-  }
-
-  /// Calls act(row, s of the row) for all rows. `right(row)` is its e.
-  template <class Right, class Act>
-  void solve(Right&& right, Act&& act) {
-    const std::size_t rows = order_.size();
-    for (std::size_t i = 0; i < rows; ++i) solution_[i] = right(order_[i]);
-    for (std::size_t i = 0; i < rows; ++i) {
-      const std::size_t diagonal = first_[i];
-      const Vec3<Real> s = solution_[i] = (1 / value_[diagonal]) * solution_[i];
-      for (std::size_t k = diagonal + 1; k < first_[i + 1]; ++k) solution_[place_[k]] -= value_[k] * s;
-    }
-    for (std::size_t i = rows; i-- > 0;) {
-      const std::size_t diagonal = first_[i];
-      Vec3<Real> s = solution_[i];
-      for (std::size_t k = diagonal + 1; k < first_[i + 1]; ++k) s -= value_[k] * solution_[place_[k]];
-      solution_[i] = (1 / value_[diagonal]) * s;
-    }
-    for (std::size_t i = 0; i < rows; ++i) act(order_[i], solution_[i]);
-  }
-
- private:
-  std::vector<std::uint32_t> order_;
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> place_;
-  std::vector<Real> value_;
-  std::vector<Vec3<Real>> solution_;  ///< [rows]
-};
-
 template <class Real>
 class LocalGlobalSerial final : public Backend {
  public:
-  LocalGlobalSerial(const System& system, double dt_s) : LocalGlobalSerial(system, dt_s, {system, dt_s}) {}
+  LocalGlobalSerial(const System& system, double dt_s)
+      : system_(system), nodes_(system), dt_(static_cast<Real>(dt_s)), force_(system.nodes()) {
+    const StepMatrix matrix(system, dt_s);
+    ColumnFactor factor = factorise(matrix);
+    for (const std::uint32_t row : factor.order) node_.push_back(matrix.node[row]);
+    first_ = std::move(factor.first);
+    place_ = std::move(factor.place);
+    for (const double value : factor.value) value_.push_back(static_cast<Real>(value));
+    solution_.resize(node_.size());
+  }
 
   void set_state(const State& state) override { nodes_.set_state(state); }
   State state() const override { return nodes_.state(); }
@@ -60,8 +32,7 @@ class LocalGlobalSerial final : public Backend {
       w_ = nodes_.v;
       for (std::uint32_t i = 0; i < system_.solver.iterations; ++i) {
         add_up_forces();
-        solver_.solve([&](std::uint32_t row) { return residual(row_node_[row]); },
-                      [&](std::uint32_t row, const Vec3<Real>& s) { w_[row_node_[row]] += s; });
+        correct_velocities();
       }
       for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.x[i] += dt_ * w_[i];
       nodes_.v = w_;
@@ -70,14 +41,6 @@ class LocalGlobalSerial final : public Backend {
   }
 
  private:
-  LocalGlobalSerial(const System& system, double dt_s, const StepMatrix& matrix)
-      : system_(system),
-        nodes_(system),
-        dt_(static_cast<Real>(dt_s)),
-        row_node_(matrix.node),
-        solver_(factorise(matrix)),
-        force_(system.nodes()) {}
-
   /// The local step: the springs' forces at (x + dt w, w), N.
   void add_up_forces() {
     force_.assign(nodes_.size(), {});
@@ -98,13 +61,36 @@ class LocalGlobalSerial final : public Backend {
     return nodes_.mass[node] * (dt_ * a - (w_[node] - nodes_.v[node]));
   }
 
+  /// The global step: w += s, where A s is the residual, for all three coordinates, by the columns of the
+  /// factor.
+  void correct_velocities() {
+    const std::size_t rows = node_.size();
+    for (std::size_t i = 0; i < rows; ++i) solution_[i] = residual(node_[i]);
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::size_t diagonal = first_[i];
+      const Vec3<Real> s = solution_[i] = (1 / value_[diagonal]) * solution_[i];
+      for (std::size_t k = diagonal + 1; k < first_[i + 1]; ++k) solution_[place_[k]] -= value_[k] * s;
+    }
+    for (std::size_t i = rows; i-- > 0;) {
+      const std::size_t diagonal = first_[i];
+      Vec3<Real> s = solution_[i];
+      for (std::size_t k = diagonal + 1; k < first_[i + 1]; ++k) s -= value_[k] * solution_[place_[k]];
+      solution_[i] = (1 / value_[diagonal]) * s;
+    }
+    for (std::size_t i = 0; i < rows; ++i) w_[node_[i]] += solution_[i];
+  }
+
   const System& system_;
   PlainNodes<Real> nodes_;
   const Real dt_;
-  const std::vector<std::uint32_t> row_node_;  ///< [rows] StepMatrix::node
-  ColumnSolver<Real> solver_;
   std::vector<Vec3<Real>> w_;      ///< [nodes] m/s, the velocities sought
   std::vector<Vec3<Real>> force_;  ///< [nodes] N
+
+  std::vector<std::uint32_t> node_;   ///< [rows] the node at each place of the factor
+  std::vector<std::size_t> first_;    ///< ColumnFactor::first
+  std::vector<std::uint32_t> place_;  ///< ColumnFactor::place
+  std::vector<Real> value_;           ///< ColumnFactor::value
+  std::vector<Vec3<Real>> solution_;  ///< [rows] by place
 };
 
 /// Subtrees per thread, enough to balance their costs.
@@ -178,7 +164,7 @@ LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix
       dt(static_cast<float>(dt_s)),
       iterations(system.solver.iterations),
       fronts(factor.front_floats) {
-  for (const std::uint32_t row : factor.order) {
+  for (const std::uint32_t row : factor.fronts.order) {
     const std::uint32_t node = matrix.node[row];
     places.push_back({nodes.offset(node), static_cast<float>(system.node_mass[node])});
   }
@@ -188,16 +174,18 @@ LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix
 template struct LocalGlobalNodes<NodeRows>;
 template struct LocalGlobalNodes<NodeSlices>;
 
-std::unique_ptr<Backend> make_serial_local_global(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_serial_local_global(const System& system, const Integrator& /*integrator*/,
+                                                  double dt_s, const ExecutionOptions& /*options*/) {
   return std::make_unique<LocalGlobalSerial<float>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_local_global_reference(const System& system, double dt_s) {
+std::unique_ptr<Backend> make_local_global_reference(const System& system, const Integrator& /*integrator*/,
+                                                     double dt_s, const std::function<bool()>& /*stop*/) {
   return std::make_unique<LocalGlobalSerial<double>>(system, dt_s);
 }
 
-std::unique_ptr<Backend> make_openmp_local_global(const System& system, double dt_s,
-                                                  const ExecutionOptions& options) {
+std::unique_ptr<Backend> make_openmp_local_global(const System& system, const Integrator& /*integrator*/,
+                                                  double dt_s, const ExecutionOptions& options) {
   return make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(system, dt_s, options);
 }
 

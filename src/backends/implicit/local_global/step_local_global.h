@@ -43,8 +43,8 @@ struct LocalGlobalNodes {
   /// With at most `thread_count` threads. Set a state before the first step.
   LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
       : LocalGlobalNodes(system, {system, dt_s}, dt_s, lanes, thread_count) {}
-  void set_state(const State& state) { write_fields(nodes, state, x, v); }
-  State state() const { return read_fields(nodes, x, v); }
+  void set_state(const State& state) { write_fields(nodes, state, x.data(), v.data()); }
+  State state() const { return read_fields(nodes, nodes.nodes, x.data(), v.data()); }
 
  private:
   LocalGlobalNodes(const System& system, const StepMatrix& matrix, double dt_s, std::size_t lanes,

@@ -44,7 +44,8 @@ constexpr double reference_tolerance = 1e-12;
 
 }  // namespace
 
-std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s) {
+std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& /*options*/) {
   return std::make_unique<NewtonSerial<float>>(system, integrator, dt_s, system.solver.tolerance);
 }
 

@@ -59,8 +59,8 @@ struct VectorEquation {
   std::string note() const { return note_of(work); }
   bool keeps_slopes() const { return y.size() == 0; }
 
-  void set_state(const State& state) { write_fields(nodes, state, x, v); }
-  State state() const { return read_fields(nodes, x, v); }
+  void set_state(const State& state) { write_fields(nodes, state, x.data(), v.data()); }
+  State state() const { return read_fields(nodes, nodes.nodes, x.data(), v.data()); }
 };
 
 }  // namespace mssim

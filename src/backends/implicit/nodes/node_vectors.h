@@ -73,9 +73,7 @@ struct NodeRows {
             (chunk.end + Layout::ring) * layout.row_floats()};
   }
   /// Offset of the x of a node, by its number in the scene, in a field.
-  std::size_t offset(std::size_t node) const {
-    return layout.offset(node / layout.columns, node % layout.columns);
-  }
+  std::size_t offset(std::size_t node) const { return layout.offset(node); }
   /// Floats from a component of a node to its next one.
   std::size_t component_step() const { return layout.pitch; }
 };
@@ -114,25 +112,5 @@ struct NodeSlices {
   std::size_t offset(std::size_t node) const { return record[node] * record_floats; }
   static constexpr std::size_t component_step() { return 1; }
 };
-
-/// Writes a state to fields of positions and velocities. Rounds to float.
-template <class Nodes>
-void write_fields(const Nodes& nodes, const State& state, AlignedArray& x, AlignedArray& v) {
-  for (std::size_t node = 0; node < nodes.nodes; ++node) {
-    write_vector(x.data() + nodes.offset(node), nodes.component_step(), state.position[node]);
-    write_vector(v.data() + nodes.offset(node), nodes.component_step(), state.velocity[node]);
-  }
-}
-
-/// Reads a state from fields of positions (m) and velocities (m/s).
-template <class Nodes>
-State read_fields(const Nodes& nodes, const AlignedArray& x, const AlignedArray& v) {
-  State state{std::vector<Vec3d>(nodes.nodes), std::vector<Vec3d>(nodes.nodes)};
-  for (std::size_t node = 0; node < nodes.nodes; ++node) {
-    state.position[node] = read_vector(x.data() + nodes.offset(node), nodes.component_step());
-    state.velocity[node] = read_vector(v.data() + nodes.offset(node), nodes.component_step());
-  }
-  return state;
-}
 
 }  // namespace mssim

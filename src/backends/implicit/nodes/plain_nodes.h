@@ -46,10 +46,7 @@ struct PlainNodes {
 
   State state() const {
     State state;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      state.position.push_back(vec3_cast<double>(x[i]));
-      state.velocity.push_back(vec3_cast<double>(v[i]));
-    }
+    for (std::size_t i = 0; i < x.size(); ++i) state.add(vec3_cast<double>(x[i]), vec3_cast<double>(v[i]));
     return state;
   }
 

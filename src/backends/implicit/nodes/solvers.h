@@ -7,19 +7,20 @@
 
 namespace mssim {
 
+/// Makes a reference, as make_reference (backends/backends.h) does.
+using ReferenceMaker = std::unique_ptr<Backend>(const System& system, const Integrator& integrator,
+                                                double dt_s, const std::function<bool()>& stop);
+
 /// Backends of the implicit integrators (integrators/all_integrators.h), made in the solvers' folders: serial
 /// ones with plain loops over the spring list on one thread, references the same in double precision, openmp
 /// ones with vectors on options.threads threads, bitwise identical for every number of threads. `system` must
 /// not be a garment and must outlive the backend.
 
 /// implicit-euler and newton-euler.
-std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s);
+BackendMaker make_serial_newton, make_openmp_newton;
 /// Newton's method, until it improves no more. If `stop`, which is called often in a step, returns true, the
 /// step ends early; the state is then useless.
-std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
-                                               double dt_s, const std::function<bool()>& stop = {});
-std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
-                                            const ExecutionOptions& options);
+ReferenceMaker make_newton_reference;
 
 /// fast-springs (integrators/all_integrators.h): backward Euler by local and global steps (Liu, Bargteil,
 /// O'Brien and Kavan 2013). Their local step finds each spring's direction d (Eq. 9), their global step
@@ -37,15 +38,11 @@ std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrat
 /// Euler it is a method of its own. Neither Chebyshev nor Anderson acceleration is applied.
 ///
 /// All throw Unsupported if there is too little memory for the factor of A.
-std::unique_ptr<Backend> make_serial_local_global(const System& system, double dt_s);
-std::unique_ptr<Backend> make_local_global_reference(const System& system, double dt_s);
-std::unique_ptr<Backend> make_openmp_local_global(const System& system, double dt_s,
-                                                  const ExecutionOptions& options);
+BackendMaker make_serial_local_global, make_openmp_local_global;
+ReferenceMaker make_local_global_reference;
 
 /// xpbd.
-std::unique_ptr<Backend> make_serial_constraints(const System& system, double dt_s);
-std::unique_ptr<Backend> make_constraints_reference(const System& system, double dt_s);
-std::unique_ptr<Backend> make_openmp_constraints(const System& system, double dt_s,
-                                                 const ExecutionOptions& options);
+BackendMaker make_serial_constraints, make_openmp_constraints;
+ReferenceMaker make_constraints_reference;
 
 }  // namespace mssim

@@ -15,6 +15,8 @@
 namespace mssim {
 namespace {
 
+const Integrator& xpbd = *find_integrator("xpbd");
+
 TEST(SpringOrder, HasTwelveColoursOfAClothInWhichNoTwoSpringsShareANode) {
   for (const auto& [rows, columns] : std::vector<std::pair<std::uint32_t, std::uint32_t>>{
            {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}}) {
@@ -77,9 +79,9 @@ System one_spring(SpringMaterial material) {
 /// Every way to take steps of xpbd.
 std::vector<std::unique_ptr<Backend>> all_backends(const System& system, double dt_s) {
   std::vector<std::unique_ptr<Backend>> backends;
-  backends.push_back(make_constraints_reference(system, dt_s));
-  backends.push_back(make_serial_constraints(system, dt_s));
-  backends.push_back(make_openmp_constraints(system, dt_s, {2, ""}));
+  backends.push_back(make_reference(system, xpbd, dt_s));
+  backends.push_back(make_serial_constraints(system, xpbd, dt_s, {}));
+  backends.push_back(make_openmp_constraints(system, xpbd, dt_s, {2, ""}));
   return backends;
 }
 
@@ -88,8 +90,7 @@ TEST(Xpbd, TakesASmallStepOfOneSpringAsWorkedOutByHand) {
   System system = one_spring({100, 5});
   system.solver.substeps = 1;
   for (const auto& backend : all_backends(system, 0.1)) {
-    backend->step(1);
-    const State state = backend->state();
+    const State state = state_after(*backend, 1);
     EXPECT_NEAR(state.velocity[0].x, 10.0 / 11, 1e-6);
     EXPECT_NEAR(state.velocity[1].x, -20.0 / 11, 1e-6);
     EXPECT_NEAR(state.position[0].x, 1.0 / 11, 1e-7);
@@ -107,8 +108,7 @@ TEST(Xpbd, LetsNodesFallThroughViscousAirImplicitly) {
   // Twice h = 0.1 s: v = (v - h g) / 1.05.
   const double first = (2 - 1) / 1.05, second = (first - 1) / 1.05;
   for (const auto& backend : all_backends(system, 0.2)) {
-    backend->step(1);
-    const State state = backend->state();
+    const State state = state_after(*backend, 1);
     EXPECT_NEAR(state.velocity[2].y, second, 1e-6);
     EXPECT_NEAR(state.position[2].y, 8 + 0.1 * (first + second), 1e-6);
     EXPECT_NEAR(state.velocity[2].x, 1 / 1.05 / 1.05, 1e-6);
@@ -126,9 +126,7 @@ TEST(Xpbd, ConvergesToTheOscillatorWithOrderOneInSmallSteps) {
     std::vector<double> errors;
     for (const std::uint32_t substeps : {200U, 400U, 800U}) {
       system.solver.substeps = substeps;
-      const auto backend = make_constraints_reference(system, end_s / 5);
-      backend->step(5);
-      const State state = backend->state();
+      const State state = state_after(*make_reference(system, xpbd, end_s / 5), 5);
       errors.push_back(std::abs(state.position[1].x - state.position[0].x - 1 - exact));
     }
     EXPECT_LT(errors.back(), 0.002) << c;
@@ -144,9 +142,8 @@ TEST(Xpbd, ConvergesWithGrowingSubstepsToWhatRk4Finds) {
   std::vector<double> errors;
   for (const std::uint32_t substeps : {5U, 10U, 20U, 40U}) {
     system.solver.substeps = substeps;
-    const auto backend = make_constraints_reference(system, 1e-4);
-    backend->step(200);
-    errors.push_back(largest_distance(backend->state().position, exact->state().position));
+    errors.push_back(largest_distance(state_after(*make_reference(system, xpbd, 1e-4), 200).position,
+                                      exact->state().position));
   }
   for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 1, 0.2);
 }
@@ -160,14 +157,11 @@ void expect_stable(SceneSpec spec) {
   for (auto& spring : cloth.springs) spring.stiffness *= 1000;
   System system = build_system(spec);
   system.floor.height = -100;
-  const StiffnessBound bound = stiffness_bound(system);
-  const double dt_s =
-      50 * largest_stable_dt(integrators[0], {bound.stiffness, bound.damping, system.viscous_damping});
+  const double dt_s = 50 * largest_stable_dt(integrators[0], mode_bound(system));
   const double start = energy_of(system, system.start).total();
   for (const auto& backend : all_backends(system, dt_s))
     for (int round = 0; round < 30; ++round) {
-      backend->step(10);
-      const State state = backend->state();
+      const State state = state_after(*backend, 10);
       ASSERT_FALSE(first_bad_node(state)) << round;
       EXPECT_LE(energy_of(system, state).total(), start + 1e-6 * std::abs(start)) << round;
     }
@@ -185,8 +179,7 @@ TEST(Xpbd, KeepsTheMomentumOfALoneCloth) {
   };
   const Vec3d before = momentum_of(system.start);
   for (const auto& backend : all_backends(system, 1e-3)) {
-    backend->step(50);
-    const State state = backend->state();
+    const State state = state_after(*backend, 50);
     double sizes = 0;
     for (std::size_t i = 0; i < system.nodes(); ++i) sizes += system.node_mass[i] * length(state.velocity[i]);
     EXPECT_LE(length(momentum_of(state) - before), 1e-6 * sizes);
@@ -198,10 +191,8 @@ TEST(Xpbd, MovesNodesThatASmallStepMovesByLessThanARounding) {
   // At 8 m positions in single precision are 1e-6 m apart; a small step moves this node by 1e-7 m.
   System system = one_spring({0, 0});
   system.start.velocity[2] = {0, 0.01, 0};
-  for (const auto& backend : all_backends(system, 1e-4)) {
-    backend->step(1000);
-    EXPECT_NEAR(backend->state().position[2].y, 8.001, 1e-8);
-  }
+  for (const auto& backend : all_backends(system, 1e-4))
+    EXPECT_NEAR(state_after(*backend, 1000).position[2].y, 8.001, 1e-8);
 }
 
 /// Makes a system whose last node falls freely through air, in small steps of 1e-6 s that change its velocity
@@ -237,10 +228,7 @@ TEST(Xpbd, PutsWhatFallsExactlyOntoTheFloor) {
   system.floor.height = 8;
   system.start.position[2].y = 8.0000123;
   system.start.velocity[2] = {0, -0.37, 0};
-  for (const auto& backend : all_backends(system, 1e-4)) {
-    backend->step(1);
-    EXPECT_EQ(backend->state().position[2].y, 8);
-  }
+  for (const auto& backend : all_backends(system, 1e-4)) EXPECT_EQ(state_after(*backend, 1).position[2].y, 8);
 }
 
 TEST(Xpbd, GoesOnFromAStateAsIfNothingHadHappened) {
@@ -248,19 +236,14 @@ TEST(Xpbd, GoesOnFromAStateAsIfNothingHadHappened) {
   auto backends = all_backends(system, 1e-4);
   backends.erase(backends.begin());  // what the reference's sums lose does not fit into a state's doubles
   for (const auto& backend : backends) {
-    backend->step(30);
-    const State middle = backend->state();
-    backend->step(30);
-    const State end = backend->state();
+    const State middle = state_after(*backend, 30);
+    const State end = state_after(*backend, 30);
     backend->set_state(middle);
-    backend->step(30);
-    EXPECT_TRUE(same_state(backend->state(), end));
+    EXPECT_TRUE(same_state(state_after(*backend, 30), end));
   }
 }
 
 // xpbd in vectors, for every instruction set that this processor has.
-
-const Integrator& xpbd = *find_integrator("xpbd");
 
 /// Single rows and columns, fewer columns than lanes, and whole vectors inside; enough rows for threads.
 const std::vector<std::pair<std::uint32_t, std::uint32_t>> cloth_sizes{
@@ -293,14 +276,12 @@ class EachXpbdKernel : public testing::TestWithParam<std::size_t> {
       return fuses(other.instruction_set) == fuses(kernels[GetParam()].instruction_set) &&
              other.exact_roots == kernels[GetParam()].exact_roots;
     });
-    const auto alone = make(system, 1, static_cast<std::size_t>(best - kernels.begin()));
-    alone->step(23);
-    const State expected = alone->state();
+    const State expected =
+        state_after(*make(system, 1, static_cast<std::size_t>(best - kernels.begin())), 23);
     for (const int threads : {1, 2, 3, 7}) {
       const auto backend = make(system, threads);
       backend->step(11);
-      backend->step(12);
-      const State state = backend->state();
+      const State state = state_after(*backend, 12);
       EXPECT_TRUE(same_state(state, expected)) << name << ", " << threads;
     }
   }
@@ -332,7 +313,7 @@ TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
   for (const auto& [rows, columns] : cloth_sizes) {
     System system = cloth_system(rows, columns);
     system.floor.height = -100;
-    const auto reference = make_constraints_reference(system, long_s);
+    const auto reference = make_reference(system, xpbd, long_s);
     const auto backend = make_vector_backend<QuarteredRows, SpringBatches>(
         system, long_s, 2, cloth_kernels()[GetParam()].instruction_set);
     reference->step(1);
@@ -407,7 +388,7 @@ TEST_P(EachXpbdKernel, TreatsTheFloorLikeTheReference) {
   System block = solid_block(3, 4, 5, 0.02);
   for (Vec3d& v : block.start.velocity) v = {0.5, -4, 0.25};
   for (const System& system : {sheet, block}) {
-    const auto reference = make_constraints_reference(system, backend_dt_s);
+    const auto reference = make_reference(system, xpbd, backend_dt_s);
     const auto backend = make(system, 2);
     reference->step(100);
     backend->step(100);
@@ -429,9 +410,7 @@ TEST_P(EachXpbdKernel, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFloor) {
   cloth.floor.height = cloth.start.position[cloth.pins.front()].y + 0.01;
   const System block = pinned(solid_block(4, 5, 6), {0, 17, 118});
   for (const System& system : {cloth, block}) {
-    const auto backend = make(system, 3);
-    backend->step(51);
-    const State state = backend->state();
+    const State state = state_after(*make(system, 3), 51);
     EXPECT_TRUE(pins_hold(system, state));
     EXPECT_NE(state.position[1], system.start.position[1]) << "the others move";
   }

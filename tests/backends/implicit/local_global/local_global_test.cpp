@@ -27,7 +27,7 @@ System with_iterations(System system, std::uint32_t iterations) {
 }
 
 std::unique_ptr<Backend> make_vectors(const System& system, double dt_s, int threads) {
-  return make_openmp_local_global(system, dt_s, {threads, ""});
+  return make_openmp_local_global(system, fast_springs, dt_s, {threads, ""});
 }
 
 /// Largest distance that a node has come from the start.
@@ -39,11 +39,10 @@ TEST(FastSprings, ConvergesToBackwardEuler) {
   for (const double dt_s : {1e-4, 1e-3}) {
     for (const System& system :
          {with_iterations(cloth_system(7, 9), 4000), with_iterations(pinned_block(), 4000)}) {
-      const auto local_global = make_local_global_reference(system, dt_s);
-      const auto newton = make_newton_reference(system, *find_integrator("newton-euler"), dt_s);
+      const auto local_global = make_reference(system, fast_springs, dt_s);
+      const auto newton = make_reference(system, *find_integrator("newton-euler"), dt_s);
       local_global->step(5);
-      newton->step(5);
-      const State expected = newton->state();
+      const State expected = state_after(*newton, 5);
       EXPECT_LT(largest_distance(local_global->state().position, expected.position),
                 1e-8 * motion_of(system, expected))
           << system.nodes() << " nodes, dt " << dt_s;
@@ -57,9 +56,8 @@ TEST(FastSprings, ComesNearerToBackwardEulerWithEveryIteration) {
   double before = HUGE_VAL;
   for (std::uint32_t iterations = 1; iterations <= 12; ++iterations) {
     const System limited = with_iterations(system, iterations);
-    const auto local_global = make_local_global_reference(limited, dt_s);
-    local_global->step(1);
-    const double residual = residual_of(system, system.start, local_global->state(), dt_s);
+    const double residual =
+        residual_of(system, system.start, state_after(*make_reference(limited, fast_springs, dt_s), 1), dt_s);
     EXPECT_LT(residual, before) << iterations;
     before = residual;
   }
@@ -67,12 +65,11 @@ TEST(FastSprings, ComesNearerToBackwardEulerWithEveryIteration) {
 
 TEST(FastSprings, IsStableAtFiftyTimesTheExplicitLimit) {
   for (const System& system : {cloth_system(20, 17), pinned_block()}) {
-    const StiffnessBound bound = stiffness_bound(system);
-    const double dt_s =
-        50 * largest_stable_dt(integrators[0], {bound.stiffness, bound.damping, system.viscous_damping});
+    const double dt_s = 50 * largest_stable_dt(integrators[0], mode_bound(system));
     const double scale = 1e-9 + energy_of(system, system.start).total();
-    for (const auto& simulation : {make_local_global_reference(system, dt_s),
-                                   make_serial_local_global(system, dt_s), make_vectors(system, dt_s, 2)}) {
+    for (const auto& simulation :
+         {make_reference(system, fast_springs, dt_s),
+          make_serial_local_global(system, fast_springs, dt_s, {}), make_vectors(system, dt_s, 2)}) {
       double last = scale;
       for (int step = 0; step < 300; step += 50) {
         simulation->step(50);
@@ -86,18 +83,15 @@ TEST(FastSprings, IsStableAtFiftyTimesTheExplicitLimit) {
 
 TEST(FastSprings, HoldsPinsExactly) {
   for (const System& system : {cloth_system(20, 23), pinned_block()})
-    for (const auto& simulation : {make_local_global_reference(system, 1e-3),
-                                   make_serial_local_global(system, 1e-3), make_vectors(system, 1e-3, 2)}) {
-      simulation->step(30);
-      EXPECT_TRUE(pins_hold(system, simulation->state()));
-    }
+    for (const auto& simulation :
+         {make_reference(system, fast_springs, 1e-3),
+          make_serial_local_global(system, fast_springs, 1e-3, {}), make_vectors(system, 1e-3, 2)})
+      EXPECT_TRUE(pins_hold(system, state_after(*simulation, 30)));
 }
 
 TEST(FastSprings, GivesTheSameBitsAtEveryNumberOfThreads) {
   for (const System& system : {cloth_system(41, 67), two_solid_blocks(), solid_block(9, 9, 9)}) {
-    const auto alone = make_vectors(system, 5e-4, 1);
-    alone->step(10);
-    const State expected = alone->state();
+    const State expected = state_after(*make_vectors(system, 5e-4, 1), 10);
     for (const int threads : {2, 3, 7}) {
       const auto together = make_vectors(system, 5e-4, threads);
       together->step(10);
@@ -134,7 +128,7 @@ TEST(FastSprings, FollowsTheReferenceInSinglePrecision) {
   constexpr double dt_s = 1e-4;
   for (const System& system : systems_to_follow()) {
     const Reference reference = run_reference(system, fast_springs, dt_s);
-    EXPECT_TRUE(agrees(*make_serial_local_global(system, dt_s), system, reference, dt_s));
+    EXPECT_TRUE(agrees(*make_serial_local_global(system, fast_springs, dt_s, {}), system, reference, dt_s));
     EXPECT_TRUE(agrees(*make_vectors(system, dt_s, 2), system, reference, dt_s));
   }
 }
@@ -142,9 +136,7 @@ TEST(FastSprings, FollowsTheReferenceInSinglePrecision) {
 TEST(FastSprings, DoesTheSameWithEachInstructionSet) {
   constexpr double dt_s = 1e-3;
   for (const System& system : systems_to_follow()) {
-    const auto reference = make_local_global_reference(system, dt_s);
-    reference->step(10);
-    const State expected = reference->state();
+    const State expected = state_after(*make_reference(system, fast_springs, dt_s), 10);
     for (const std::string_view set : instruction_sets_of(compiled_kernels<LocalGlobalNodes<NodeRows>>())) {
       const auto vectors =
           make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(system, dt_s, 2, set);
@@ -159,7 +151,7 @@ TEST(FastSprings, DoesTheSameWithEachInstructionSet) {
 
 TEST(FastSprings, TreatsTheFloorLikeTheReference) {
   const System system = sliding_sheet(20, 17);
-  expect_same_bounce(*make_vectors(system, 1e-4, 2), *make_local_global_reference(system, 1e-4), 15);
+  expect_same_bounce(*make_vectors(system, 1e-4, 2), *make_reference(system, fast_springs, 1e-4), 15);
 }
 
 // The factors of fast-springs' matrix against the matrix itself.
