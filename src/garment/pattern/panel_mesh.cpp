@@ -153,17 +153,11 @@ void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
 
 /// m, of the line ends on a boundary
 std::vector<double> arcs_of(const Curve& boundary, const std::vector<double>& fractions) {
-  std::vector<double> arcs;
-  arcs.reserve(fractions.size());
-  for (const double fraction : fractions) arcs.push_back(fraction * boundary.length());
-  return arcs;
+  return mapped<double>(fractions, [&](double fraction) { return fraction * boundary.length(); });
 }
 
 std::vector<Vec3d> points_at(const Curve& boundary, const std::vector<double>& fractions) {
-  std::vector<Vec3d> points;
-  points.reserve(fractions.size());
-  for (const double fraction : fractions) points.push_back(boundary.at(fraction));
-  return points;
+  return mapped<Vec3d>(fractions, [&](double fraction) { return boundary.at(fraction); });
 }
 
 }  // namespace
