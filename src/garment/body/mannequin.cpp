@@ -1,7 +1,6 @@
 #include "garment/body/mannequin.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -14,11 +13,6 @@
 
 namespace mssim {
 namespace {
-
-struct NamedGirth {
-  std::string_view name;
-  GirthAt at;
-};
 
 [[noreturn]] void fail(std::string_view measure, double value, std::string_view unit,
                        const std::string& rest) {
@@ -65,12 +59,9 @@ void require_thighs_below_hip(const BodyMeasures& m) {
 }
 
 void check_measures(const BodyMeasures& m) {
-  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
-                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
-                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
-  for (const NamedGirth& girth : girths) {
-    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
-    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
+  for (const auto& [name, at] : body_girths) {
+    require_between(std::string(name) + " girth", (m.*at).girth, " m", 0.1, 3);
+    require_between(std::string(name) + " height", (m.*at).height, " m", 0.03, 2.5);
   }
   require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
   require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
@@ -103,12 +94,7 @@ class Tube {
 
  private:
   MonotoneCurve curve(double EllipseSection::*edge) const {
-    std::vector<double> heights, values;
-    for (const EllipseSection& section : sections_) {
-      heights.push_back(section.height);
-      values.push_back(section.*edge);
-    }
-    return {heights, values};
+    return {mapped<double>(sections_, &EllipseSection::height), mapped<double>(sections_, edge)};
   }
 
   /// The sections, and rings between them for cells of about the wanted height.
