@@ -90,10 +90,9 @@ void measure_side_distance(const CloseCloth& close, const std::vector<Vec3d>& po
 /// springs, two cells long, may change length by bending.
 bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
   const GarmentPanel& panel = garment.panel_of(spring.first);
-  const std::uint32_t first = spring.first - panel.first_node, second = spring.second - panel.first_node;
   const auto apart = [](std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; };
-  return apart(first / panel.columns, second / panel.columns) <= 1 &&
-         apart(first % panel.columns, second % panel.columns) <= 1;
+  return apart(panel.row_of(spring.first), panel.row_of(spring.second)) <= 1 &&
+         apart(panel.column_of(spring.first), panel.column_of(spring.second)) <= 1;
 }
 
 std::vector<double> elongations(const System& system, const Garment& garment,
@@ -151,7 +150,7 @@ std::vector<std::vector<std::uint32_t>> closed_rows(const Garment& garment) {
       const std::uint32_t right = chain[i].left + garment.panel_of(chain[i].left).columns - 1;
       for (auto [to, end] = sewn_to.equal_range(right); to != end; ++to) {
         const GarmentPanel& next = garment.panel_of(to->second);
-        if ((to->second - next.first_node) % next.columns != 0) continue;  // no left end
+        if (next.column_of(to->second) != 0) continue;  // no left end
         if (&next != &garment.panel_of(start)) {
           if (reached.insert(&next).second) chain.push_back({to->second, i});
           continue;

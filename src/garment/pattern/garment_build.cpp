@@ -179,9 +179,8 @@ CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
   std::set<std::uint32_t> nodes;
   const auto add_beside = [&](std::uint32_t sewn) {
     const GarmentPanel& panel = garment.panel_of(sewn);
-    const std::uint32_t row = (sewn - panel.first_node) / panel.columns;
     for (std::uint32_t column = 0; column < panel.columns; ++column) {
-      const std::uint32_t node = panel.node(row, column);
+      const std::uint32_t node = panel.node(panel.row_of(sewn), column);
       if (length(garment.flat[node] - garment.flat[sewn]) <= close.reach) nodes.insert(node);
     }
   };
