@@ -29,23 +29,19 @@ bool rests(const State& before, const State& after, const SettlingRule& rule) {
 }
 
 /// Delivers the frames of a dressing in their order.
-class FrameDelivery {
- public:
-  explicit FrameDelivery(const DressingFrames& frames) : frames_(frames) {}
+struct FrameDelivery {
+  const DressingFrames& frames;
+  std::int64_t next = 0;
 
   /// Steps after which the next frame is due; none without a receiver.
   std::optional<std::int64_t> due() const {
-    return frames_.on_frame ? std::optional(frames_.grid.step_of(next_)) : std::nullopt;
+    return frames.on_frame ? std::optional(frames.grid.step_of(next)) : std::nullopt;
   }
   void deliver(const State& state, std::int64_t iterations) {
-    if (!frames_.on_frame) return;
-    frames_.on_frame(state, iterations);
-    ++next_;
+    if (!frames.on_frame) return;
+    frames.on_frame(state, iterations);
+    ++next;
   }
-
- private:
-  const DressingFrames& frames_;
-  std::int64_t next_ = 0;
 };
 
 /// Steps from `done` to `end`, and delivers the frames due before `end`.
@@ -302,7 +298,7 @@ DressingResult dress(DressingBackend& backend, const System& system, double dt_s
   backend.set_state(system.start);
   DressingResult result;
   result.state = system.start;
-  FrameDelivery delivery(frames);
+  FrameDelivery delivery{frames};
   delivery.deliver(result.state, 0);
   bool goes_on = longest > 0;
   while (goes_on) {
@@ -384,8 +380,7 @@ std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
     check.name = number.name;
     check.value = per_unit * *value;
     if (number.bound == nullptr) continue;
-    check.bound = per_unit * bounds.*number.bound;
-    check.shown_bound = shown_bound(number, bounds, per_unit);
+    check.bound = shown_bound(number, bounds, per_unit);
     check.within = is_within(number, *value, bounds);
   }
   return checks;
