@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <vector>
 
 #include "garment/contact/body_maps.h"
@@ -69,17 +68,11 @@ class SerialDressing final : public ListDressing<Vec3<Real>> {
     }
   }
 
-  /// The values of `of` for the three nodes of a joint.
-  template <class Of>
-  static auto at_joint(const Joint& joint, const Of& of) {
-    return AtJoint<std::decay_t<decltype(of(0))>>{of(joint.node), of(joint.edge_first),
-                                                  of(joint.edge_second)};
-  }
-  AtJoint<Vector> positions_at(const Joint& joint) const {
-    return at_joint(joint, [&](std::uint32_t i) { return nodes_[i].x; });
+  AtJoint<Vector> at(const Joint& joint, Vector Node::*of) const {
+    return {nodes_[joint.node].*of, nodes_[joint.edge_first].*of, nodes_[joint.edge_second].*of};
   }
   AtJoint<Real> inverse_masses_at(const Joint& joint) const {
-    return at_joint(joint, [&](std::uint32_t i) { return inverse_mass_[i]; });
+    return {inverse_mass_[joint.node], inverse_mass_[joint.edge_first], inverse_mass_[joint.edge_second]};
   }
 
   void add_joint_forces() {  // loop 3
@@ -87,7 +80,7 @@ class SerialDressing final : public ListDressing<Vec3<Real>> {
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
       if (seaming_.sewn[j] != 0) continue;
       const Joint& joint = garment_.joints[j];
-      const auto pull = pull_of_joint(rules_, joint, time_s, positions_at(joint), inverse_masses_at(joint));
+      const auto pull = pull_of_joint(rules_, joint, time_s, at(joint, &Node::x), inverse_masses_at(joint));
       if (!pull) {
         seaming_.sewn[j] = 1;
         continue;
@@ -159,9 +152,9 @@ class SerialDressing final : public ListDressing<Vec3<Real>> {
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
       if (seaming_.sewn[j] == 0) continue;
       const Joint& joint = garment_.joints[j];
-      const AtJoint<Vector> v = at_joint(joint, [&](std::uint32_t i) { return nodes_[i].v; });
-      const AtJoint<Vector> change = closing_of_joint(closing_rule_, static_cast<Real>(joint.edge_share),
-                                                      positions_at(joint), v, inverse_masses_at(joint));
+      const AtJoint<Vector> change =
+          closing_of_joint(closing_rule_, static_cast<Real>(joint.edge_share), at(joint, &Node::x),
+                           at(joint, &Node::v), inverse_masses_at(joint));
       nodes_[joint.node].v += change.node;
       nodes_[joint.edge_first].v += change.first;
       nodes_[joint.edge_second].v += change.second;
