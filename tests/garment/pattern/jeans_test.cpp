@@ -67,6 +67,14 @@ double x_at(const Curve& curve, double y) {
   return points.back().x;
 }
 
+/// Around both legs at a height above the thighs, m.
+double width_at(const JeansDraft& draft, double y) {
+  double width = 0;
+  for (const JeansOutline* half : {&draft.front, &draft.back})
+    width += x_at(half->centre, y) - x_at(half->outer, y);
+  return 2 * width;
+}
+
 /// The largest angle between two successive chords, rad.
 double sharpest_turn(const Curve& curve) {
   double sharpest = 0;
@@ -102,13 +110,11 @@ TEST(JeansDraft, WaistAndHipAreTheBodysWithOffsetAndEase) {
                 0.994 * body.girth(measures.waist_height) + offset + measures.waist_ease, 1e-4);
     // Between waist and hip the side is the smooth curve that comes nearest.
     for (double y = 0.861; y < 0.99; y += 0.01) {
-      double width = 0;
-      for (const JeansOutline* half : {&draft.front, &draft.back})
-        width += x_at(half->centre, y) - x_at(half->outer, y);
       const double fraction = (y - measures.hip_height) / (measures.waist_height - measures.hip_height);
       // The cloth is stretched by 3.1 % around the hip and by 0.6 % around the waist.
       const double wanted = body.girth(y) * (0.969 + 0.025 * fraction);
-      EXPECT_NEAR(2 * width, wanted + offset + fraction * measures.waist_ease, 0.015) << hip << " at " << y;
+      EXPECT_NEAR(width_at(draft, y), wanted + offset + fraction * measures.waist_ease, 0.015)
+          << hip << " at " << y;
     }
   }
 }
@@ -144,14 +150,8 @@ TEST(JeansDraft, EaseMakesTheJeansWiderByItsAmount) {
   const JeansBody body;
   JeansMeasures wide = body.measures();
   wide.hip_ease += 0.06;
-  const auto hip_of = [](const JeansDraft& draft) {
-    double width = 0;
-    for (const JeansOutline* half : {&draft.front, &draft.back})
-      width += x_at(half->centre, 0.86) - x_at(half->outer, 0.86);
-    return 2 * width;
-  };
   // The centre seam's slant is the waist's, and takes its part of it.
-  EXPECT_NEAR(hip_of(draft_jeans(wide)) - hip_of(draft_jeans(body.measures())), 0.06, 0.001);
+  EXPECT_NEAR(width_at(draft_jeans(wide), 0.86) - width_at(draft_jeans(body.measures()), 0.86), 0.06, 0.001);
 }
 
 TEST(JeansDraft, BadMeasuresAreRefused) {
