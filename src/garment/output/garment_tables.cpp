@@ -263,10 +263,8 @@ std::vector<FitNumberRecord> most_of_a_fit(std::span<const ResultRow* const> row
 
 void add_fit(const std::vector<FitNumberRecord>& known, const ResultRow& row, std::vector<Cell>& cells) {
   for (const FitNumberRecord& number : known) {
-    const FitNumberRecord* found = nullptr;
-    if (row.dressing)
-      for (const FitNumberRecord& candidate : row.dressing->fit)
-        if (candidate.name == number.name) found = &candidate;
+    const FitNumberRecord* const found =
+        row.dressing ? found_in(row.dressing->fit, number.name, &FitNumberRecord::name) : nullptr;
     cells.push_back(found ? Cell(found->value) : Cell());
     if (number.within) cells.push_back(found ? Cell(found->within) : Cell());
   }

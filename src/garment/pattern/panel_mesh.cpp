@@ -84,9 +84,7 @@ void require_simple_boundary(const PatternPiece& piece) {
   std::vector<Segment> outline = outline_of(piece);
   const std::size_t count = outline.size();
   // By height, so that each is compared only with those at the same height.
-  std::sort(outline.begin(), outline.end(), [](const Segment& a, const Segment& b) {
-    return a.lowest() != b.lowest() ? a.lowest() < b.lowest() : a.number < b.number;
-  });
+  std::ranges::sort(outline, {}, [](const Segment& s) { return std::pair(s.lowest(), s.number); });
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = i + 1; j < count && outline[j].lowest() <= outline[i].highest(); ++j) {
       const Segment &a = outline[i], &b = outline[j];
