@@ -165,8 +165,8 @@ Verification verify_garment(Backend& backend, const System& system, const Garmen
 }
 
 std::optional<State> draped_state(const SceneJob& job, const std::function<bool()>& stop) {
-  const auto backend =
-      make_openmp_dressing(*job.system, *find_integrator("semi-euler"), job.dt_s, job.execution.threads);
+  const auto backend = make_openmp_dressing(*job.system, *find_integrator("semi-euler"), job.dt_s,
+                                            {.threads = job.execution.threads});
   bool stopped = false;
   DressingResult result = dress(*backend, *job.system, job.dt_s, job.garment->rule,
                                 [&](const State&, std::int64_t) { return !(stopped = stop()); });

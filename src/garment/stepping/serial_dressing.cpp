@@ -190,7 +190,7 @@ class SerialDressing final : public ListDressing<Vec3<Real>> {
 }  // namespace
 
 std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
-                                                      double dt_s) {
+                                                      double dt_s, const ExecutionOptions& /*options*/) {
   require_semi_euler(integrator);
   return std::make_unique<SerialDressing<float>>(system, dt_s);
 }

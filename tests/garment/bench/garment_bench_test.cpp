@@ -175,7 +175,7 @@ struct Jeans {
   GarmentReference reference;
 
   Jeans() {
-    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, 2);
+    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, {.threads = 2});
     const DressingResult result = dress(*backend, system, dt_s, {}, always);
     EXPECT_TRUE(result.settled);
     draped = result.state;
@@ -219,7 +219,7 @@ TEST(GarmentVerification, PassesTheBackendsThatDress) {
   ASSERT_EQ(scene.reference.seaming.size(), 20U);
   ASSERT_EQ(scene.reference.draped.size(), 20U);
   const auto single = make_serial_dressing(scene.system, semi_euler, scene.dt_s);
-  const auto vectors = make_openmp_dressing(scene.system, semi_euler, scene.dt_s, 2);
+  const auto vectors = make_openmp_dressing(scene.system, semi_euler, scene.dt_s, {.threads = 2});
   for (Backend* backend : std::initializer_list<Backend*>{single.get(), vectors.get()}) {
     const Verification found = verify_garment(*backend, scene.system, scene.reference, scene.dt_s);
     EXPECT_FALSE(found.failure) << *found.failure;

@@ -74,7 +74,7 @@ TEST(Dressing, PullsAJointWithItsShareOfTheSeamsForceAndNotWithGravity) {
 
 std::array<std::unique_ptr<DressingBackend>, 2> serial_and_openmp(const System& system) {
   return {make_serial_dressing(system, semi_euler, dressing_dt_s),
-          make_openmp_dressing(system, semi_euler, dressing_dt_s, 2)};
+          make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2})};
 }
 
 TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
@@ -205,13 +205,15 @@ TEST(Dressing, IsTheReferenceButForRounding) {
   };
   expect_near(make_serial_dressing(system, semi_euler, dressing_dt_s), "serial");
   for (const std::string_view instruction_set : openmp_instruction_sets())
-    expect_near(make_openmp_dressing(system, semi_euler, dressing_dt_s, 1, instruction_set), instruction_set);
+    expect_near(make_openmp_dressing(system, semi_euler, dressing_dt_s,
+                                     {.threads = 1, .instruction_set = std::string(instruction_set)}),
+                instruction_set);
 }
 
 /// Steps a garment into its draping by one thread and by several, and returns where one thread has got.
 State state_of_any_number_of_threads(const System& system, double dt_s, int steps) {
   const auto run = [&](int threads) {
-    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, threads);
+    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, {.threads = threads});
     backend->step(steps);
     EXPECT_TRUE(backend->progress().draping);
     return backend->state();
@@ -229,8 +231,8 @@ TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
 
 TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
   const System system = stretched_sheets();
-  const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1);
-  const auto limited = make_openmp_dressing(system, semi_euler, dressing_dt_s, 3);
+  const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 1});
+  const auto limited = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 3});
   one->step(500);
   limited->step(250);
   const int levels = omp_get_max_active_levels();
@@ -264,7 +266,8 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
     // A spring that rounding puts on the other side of the threshold is corrected a step earlier or later.
     EXPECT_LT(largest_distance(expected, exact), 2e-5) << static_cast<int>(correction);
     for (const std::string_view instruction_set : openmp_instruction_sets()) {
-      const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2, instruction_set);
+      const auto vectors = make_openmp_dressing(
+          system, semi_euler, dressing_dt_s, {.threads = 2, .instruction_set = std::string(instruction_set)});
       EXPECT_LT(largest_distance(soon_after(*vectors), expected), 3e-7)
           << instruction_set << " " << static_cast<int>(correction);
     }
