@@ -132,41 +132,35 @@ std::vector<std::vector<std::uint32_t>> closed_rows(const Garment& garment) {
     sewn_to.emplace(joint.node, other);
     sewn_to.emplace(other, joint.node);
   }
-  struct Link {
-    std::uint32_t left;  // end of a row
-    std::size_t before;  // link whose right end is sewn to it
-  };
-  std::set<std::uint32_t> in_a_loop;  // rows, by their left ends
-  // The shortest loop from a row to its panel.
-  const auto loop_from = [&](std::uint32_t start) {
-    std::vector<std::uint32_t> loop;
-    std::vector<Link> chain{{start, 0}};
+  // The shortest way from a row to its panel, as left ends of rows; empty if there is none.
+  const auto way_around = [&](std::uint32_t start) -> std::vector<std::uint32_t> {
+    std::vector<std::vector<std::uint32_t>> ways{{start}};
     std::set<const GarmentPanel*> reached;
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-      const std::uint32_t right = chain[i].left + garment.panel_of(chain[i].left).columns - 1;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const std::uint32_t left = ways[i].back(), right = left + garment.panel_of(left).columns - 1;
       for (auto [to, end] = sewn_to.equal_range(right); to != end; ++to) {
         const GarmentPanel& next = garment.panel_of(to->second);
         if (next.column_of(to->second) != 0) continue;  // no left end
-        if (&next != &garment.panel_of(start)) {
-          if (reached.insert(&next).second) chain.push_back({to->second, i});
-          continue;
-        }
-        for (std::size_t link = i;; link = chain[link].before) {
-          const std::uint32_t left = chain[link].left;
-          in_a_loop.insert(left);
-          for (std::uint32_t column = garment.panel_of(left).columns; column-- > 0;)
-            loop.push_back(left + column);
-          if (link == 0) return loop;
-        }
+        if (&next == &garment.panel_of(start)) return ways[i];
+        if (!reached.insert(&next).second) continue;
+        ways.push_back(ways[i]);
+        ways.back().push_back(to->second);
       }
     }
-    return loop;
+    return {};
   };
+  std::set<std::uint32_t> in_a_loop;  // rows, by their left ends
   std::vector<std::vector<std::uint32_t>> loops;
   for (const GarmentPanel& panel : garment.panels)
     for (std::uint32_t row = 0; row < panel.rows; ++row) {
       if (in_a_loop.contains(panel.node(row, 0))) continue;
-      if (auto loop = loop_from(panel.node(row, 0)); !loop.empty()) loops.push_back(std::move(loop));
+      const std::vector<std::uint32_t> rows = way_around(panel.node(row, 0));
+      if (rows.empty()) continue;
+      in_a_loop.insert(rows.begin(), rows.end());
+      std::vector<std::uint32_t>& loop = loops.emplace_back();
+      for (auto left = rows.rbegin(); left != rows.rend(); ++left)
+        for (std::uint32_t column = garment.panel_of(*left).columns; column-- > 0;)
+          loop.push_back(*left + column);
     }
   return loops;
 }
