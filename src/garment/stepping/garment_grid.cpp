@@ -100,10 +100,7 @@ GarmentGrid::GarmentGrid(const System& system) : offset(system.nodes()) {
     for (const GarmentPanel& panel : garment.panels)
       for (std::uint32_t column = 0; column < panel.columns; ++column)
         held.push_back(offset[panel.node(panel.rows - 1, column)]);
-  position = Float3Arrays(floats);
-  moved = Float3Arrays(floats);
-  velocity = Float3Arrays(floats);
-  pull = Float3Arrays(floats);
+  for (Float3Arrays* arrays : {&position, &moved, &velocity, &pull}) *arrays = Float3Arrays(floats);
   inverse_mass = AlignedArray(floats);
   free = AlignedArray(floats);
   for (AlignedArray& lengths : rest) lengths = AlignedArray(floats);
