@@ -11,7 +11,6 @@
 #include <set>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 #include "garment/layers/cloth_contacts.h"
 #include "laws/host_laws.h"
@@ -194,12 +193,16 @@ struct Unit {
 };
 constexpr Unit plain{1, "", 1}, millimetres{1e3, " mm", 1e3}, per_cent{1, " %", 100};
 
+/// None if the garment has no such number.
+template <auto member>
+std::optional<double> of_fit(const Fit& fit) {
+  return std::optional<double>(fit.*member);
+}
+
 /// A row of the TABLE of a fit's numbers.
 struct FitNumber {
   std::string_view name;
-  std::variant<double Fit::*, std::size_t Fit::*, std::optional<double> Fit::*,
-               std::optional<std::size_t> Fit::*>
-      value;
+  std::optional<double> (*value)(const Fit& fit);
   Unit unit = plain;
   double FitBounds::*bound = nullptr;  ///< on the magnitude; null: none
   std::string_view what{};             ///< in a sentence
@@ -209,24 +212,24 @@ struct FitNumber {
 
 constexpr auto numbers = std::to_array<FitNumber>({
     {"largest_gap_mm",
-     &Fit::largest_gap,
+     of_fit<&Fit::largest_gap>,
      millimetres,
      &FitBounds::largest_gap,
      "the largest gap of a seam",
      {"a seam gapes", "a larger closing_share, or a wider garment (of jeans: hip_ease_m, waist_ease_m)"}},
-    {"nodes_inside", &Fit::nodes_inside},
-    {"deepest_node_mm", &Fit::deepest_node, millimetres, &FitBounds::deepest,
+    {"nodes_inside", of_fit<&Fit::nodes_inside>},
+    {"deepest_node_mm", of_fit<&Fit::deepest_node>, millimetres, &FitBounds::deepest,
      "the deepest node inside the body", pierced},
-    {"deepest_face_mm", &Fit::deepest_face_sample, millimetres, &FitBounds::deepest,
+    {"deepest_face_mm", of_fit<&Fit::deepest_face_sample>, millimetres, &FitBounds::deepest,
      "the deepest point of a face inside the body", pierced},
-    {"elongation_50", &Fit::elongation_50},
-    {"elongation_99", &Fit::elongation_99, per_cent, &FitBounds::elongation_99,
+    {"elongation_50", of_fit<&Fit::elongation_50>},
+    {"elongation_99", of_fit<&Fit::elongation_99>, per_cent, &FitBounds::elongation_99,
      "the 99th percentile of elongations", stretched},
-    {"elongation_999", &Fit::elongation_999, per_cent, &FitBounds::elongation_999,
+    {"elongation_999", of_fit<&Fit::elongation_999>, per_cent, &FitBounds::elongation_999,
      "the 99.9th percentile of elongations", stretched},
-    {"elongation_max", &Fit::elongation_max},
+    {"elongation_max", of_fit<&Fit::elongation_max>},
     {"upper_edge_rise_mm",
-     &Fit::upper_edge_rise,
+     of_fit<&Fit::upper_edge_rise>,
      millimetres,
      &FitBounds::upper_edge_shift,
      "the distance of the upper edge from its place in the pattern",
@@ -236,40 +239,35 @@ constexpr auto numbers = std::to_array<FitNumber>({
       "a lower waist or less ease there (of jeans: waist_height_m, waist_ease_m), more friction, or a longer "
       "step"}},
     {"crotch_rise_mm",
-     &Fit::crotch_rise,
+     of_fit<&Fit::crotch_rise>,
      millimetres,
      &FitBounds::crotch_shift,
      "the distance of the crotch from its place in the pattern",
      {"the crotch was drawn up", "more crotch_ease_m"},
      {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"}},
-    {"rows", &Fit::rows},
+    {"rows", of_fit<&Fit::rows>},
     {"rows_astray",
-     &Fit::rows_astray,
+     of_fit<&Fit::rows_astray>,
      plain,
      &FitBounds::rows_astray,
      "the number of rows that do not go once around their limb",
      {"the garment does not go around the body", "more nodes, or a body whose legs are further apart"}},
     {"crossings",
-     &Fit::crossings,
+     of_fit<&Fit::crossings>,
      plain,
      &FitBounds::crossings,
      "the number of places where layers of the cloth cross",
      {"layers passed through each other",
       "layers that touch (\"layers\"), a larger thickness_m or more nodes"}},
     {"side_distance_mm",
-     &Fit::side_distance,
+     of_fit<&Fit::side_distance>,
      millimetres,
      &FitBounds::side_distance,
      "the largest distance between body and side seams from hip to thigh",
      {"the garment stands off at the sides",
       "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"}},
-    {"side_distance_height_m", &Fit::side_distance_height},
+    {"side_distance_height_m", of_fit<&Fit::side_distance_height>},
 });
-
-/// None if the garment has no such number.
-std::optional<double> value_of(const FitNumber& number, const Fit& fit) {
-  return std::visit([&](auto member) { return std::optional<double>(fit.*member); }, number.value);
-}
 
 /// NaN is within no bound.
 bool is_within(const FitNumber& number, double value, const FitBounds& bounds) {
@@ -367,7 +365,7 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
   std::vector<FitCheck> checks;
   for (const FitNumber& number : numbers) {
-    const std::optional<double> value = value_of(number, fit);
+    const std::optional<double> value = number.value(fit);
     if (!value) continue;
     const double per_unit = number.unit.per_unit;
     FitCheck& check = checks.emplace_back();
@@ -392,7 +390,7 @@ std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, c
                     "more viscous_damping_per_s or more nodes",
                     result.simulated_s));
   for (const FitNumber& number : numbers) {
-    const std::optional<double> value = value_of(number, fit);
+    const std::optional<double> value = number.value(fit);
     if (number.bound == nullptr || !value || is_within(number, *value, bounds)) continue;
     const auto& [happened, remedy] = has_sign(number) && *value < 0 ? number.too_small : number.too_large;
     const Unit& unit = number.unit;
