@@ -218,9 +218,8 @@ TEST(GarmentVerification, PassesTheBackendsThatDress) {
   ASSERT_FALSE(scene.reference.failure);
   ASSERT_EQ(scene.reference.seaming.size(), 20U);
   ASSERT_EQ(scene.reference.draped.size(), 20U);
-  const auto single = make_serial_dressing(scene.system, semi_euler, scene.dt_s);
-  const auto vectors = make_openmp_dressing(scene.system, semi_euler, scene.dt_s, {.threads = 2});
-  for (Backend* backend : std::initializer_list<Backend*>{single.get(), vectors.get()}) {
+  for (const auto& backend : {make_serial_dressing(scene.system, semi_euler, scene.dt_s),
+                              make_openmp_dressing(scene.system, semi_euler, scene.dt_s, {.threads = 2})}) {
     const Verification found = verify_garment(*backend, scene.system, scene.reference, scene.dt_s);
     EXPECT_FALSE(found.failure) << *found.failure;
     EXPECT_GT(found.position_error, 0) << "single precision cannot be exact";
