@@ -30,13 +30,9 @@ void require_corner(const PatternPiece& piece, std::string_view corner, const Ve
 /// The outline, counter-clockwise. At corners, where curves meet only approximately, it uses one curve's
 /// point; otherwise the gap would look like a crossing.
 std::vector<Segment> outline_of(const PatternPiece& piece) {
-  std::vector<Vec3d> points;
-  std::vector<PanelEdge> edges;
+  std::vector<Segment> outline;
   const auto add = [&](PanelEdge edge, auto begin, auto end) {
-    for (auto point = begin; point + 1 != end; ++point) {
-      points.push_back(*point);
-      edges.push_back(edge);
-    }
+    for (auto point = begin; point + 1 != end; ++point) outline.push_back({*point, {}, edge, outline.size()});
   };
   const auto &lower = piece.bottom.points(), &upper = piece.top.points();
   const auto &to_left = piece.left.points(), &to_right = piece.right.points();
@@ -44,10 +40,7 @@ std::vector<Segment> outline_of(const PatternPiece& piece) {
   add(PanelEdge::right, to_right.begin(), to_right.end());
   add(PanelEdge::top, upper.rbegin(), upper.rend());
   add(PanelEdge::left, to_left.rbegin(), to_left.rend());
-  std::vector<Segment> outline;
-  outline.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    outline.push_back({points[i], points[(i + 1) % points.size()], edges[i], i});
+  for (Segment& segment : outline) segment.to = outline[(segment.number + 1) % outline.size()].from;
   return outline;
 }
 
@@ -209,9 +202,7 @@ Curve Curve::followed_by(const Curve& next) const {
 }
 
 Curve Curve::mirrored() const {
-  std::vector<Vec3d> points = points_;
-  for (Vec3d& point : points) point.x = -point.x;
-  return Curve(std::move(points));
+  return Curve(mapped<Vec3d>(points_, [](const Vec3d& p) { return Vec3d{-p.x, p.y, p.z}; }));
 }
 
 std::vector<std::size_t> PanelMesh::edge_nodes(PanelEdge edge) const {
