@@ -38,19 +38,16 @@ std::vector<Chord> chords_at(const Surface& body, double height) {
 }
 
 /// The box of one side of a section, and the covered part of its width.
-class Half {
- public:
-  void add(const Chord& chord) {
-    covered_ += std::max(0.0, chord.to.x - std::max(chord.from.x, most_.x));
-    least_ = {std::min(least_.x, chord.from.x), std::min({least_.z, chord.from.z, chord.to.z})};
-    most_ = {std::max(most_.x, chord.to.x), std::max({most_.z, chord.from.z, chord.to.z})};
-  }
-  double covered() const { return covered_; }
-  PlanPoint middle() const { return {(least_.x + most_.x) / 2, (least_.z + most_.z) / 2}; }
+struct Half {
+  PlanPoint least{HUGE_VAL, HUGE_VAL}, most{-HUGE_VAL, -HUGE_VAL};
+  double covered = 0;
 
- private:
-  PlanPoint least_{HUGE_VAL, HUGE_VAL}, most_{-HUGE_VAL, -HUGE_VAL};
-  double covered_ = 0;
+  void add(const Chord& chord) {
+    covered += std::max(0.0, chord.to.x - std::max(chord.from.x, most.x));
+    least = {std::min(least.x, chord.from.x), std::min({least.z, chord.from.z, chord.to.z})};
+    most = {std::max(most.x, chord.to.x), std::max({most.z, chord.from.z, chord.to.z})};
+  }
+  PlanPoint middle() const { return {(least.x + most.x) / 2, (least.z + most.z) / 2}; }
 };
 
 /// The gap between the legs at this height; none if the section does not divide into two halves of about
@@ -68,11 +65,10 @@ std::optional<LegGap> leg_gap(const Surface& body, double height) {
   for (std::size_t i = 1; i < chords.size(); ++i) {
     const LegGap gap{height, reached, chords[i].from.x, {}, {}};
     reached = std::max(reached, chords[i].to.x);
-    if (gap.high - gap.low <= least_gap * all.covered()) continue;
+    if (gap.high - gap.low <= least_gap * all.covered) continue;
     Half right, left;
     for (std::size_t j = 0; j < chords.size(); ++j) (j < i ? right : left).add(chords[j]);
-    const double narrower = std::min(right.covered(), left.covered());
-    const double wider = std::max(right.covered(), left.covered());
+    const auto [narrower, wider] = std::minmax({right.covered, left.covered});
     if (narrower < best_share * wider) continue;
     best_share = narrower / wider;
     best = {gap.height, gap.low, gap.high, right.middle(), left.middle()};
