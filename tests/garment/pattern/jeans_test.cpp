@@ -51,6 +51,9 @@ struct JeansBody {
   std::function<double(double)> leg_axis() const {
     return [body = *this](double y) { return body.leg_x(y) + 0.01; };
   }
+  GarmentPattern pattern(std::uint32_t nodes, const PanelMaterial& cloth = {}) const {
+    return jeans_pattern(measures(), nodes, cloth, leg_axis());
+  }
 };
 
 constexpr std::array hips{0.88, 0.98, 1.15};
@@ -87,7 +90,7 @@ double sharpest_turn(const Curve& curve) {
 }
 
 GarmentBuild build_for(const JeansBody& body, std::uint32_t nodes, const PanelMaterial& cloth = {}) {
-  return build_garment(jeans_pattern(body.measures(), nodes, cloth, body.leg_axis()), body.depths());
+  return build_garment(body.pattern(nodes, cloth), body.depths());
 }
 
 TEST(JeansDraft, SeamsFitTogether) {
@@ -224,9 +227,7 @@ TEST(Jeans, PanelsAndSeamsAreNamedByTheWearersSides) {
 }
 
 TEST(Jeans, EverythingBelongsToTheSameNodes) {
-  PanelMaterial cloth;
-  cloth.waistband.height = 0.035;
-  const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
+  const GarmentBuild build = build_for(JeansBody{}, 4'000, {.waistband = {.height = 0.035}});
   std::size_t nodes = 0, springs = 0;
   for (const GarmentPanel& panel : build.garment.panels) {
     EXPECT_EQ(panel.first_node, nodes);
@@ -319,7 +320,7 @@ TEST(Jeans, LieCloseAsFarUpAsTheBodyIsWidestWhateverTheirOwnHip) {
 
 TEST(Jeans, HaveACrotchOfFourNodesWhateverElseIsSewn) {
   const JeansBody body;
-  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  GarmentPattern pattern = body.pattern(1'000);
   const Garment alone = build_garment(pattern, body.depths()).garment;
   ASSERT_EQ(alone.crotch.size(), 4U);
   for (const std::uint32_t node : alone.crotch)
@@ -335,9 +336,7 @@ TEST(Jeans, HaveACrotchOfFourNodesWhateverElseIsSewn) {
 }
 
 TEST(Jeans, TheWaistbandsJointsPullHarder) {
-  PanelMaterial cloth;
-  cloth.waistband.height = 0.035;
-  const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
+  const GarmentBuild build = build_for(JeansBody{}, 4'000, {.waistband = {.height = 0.035}});
   const GarmentPanel& panel = build.garment.panels[0];
   std::size_t strong = 0;
   for (const Joint& joint : build.garment.joints) {
@@ -360,7 +359,7 @@ TEST(Jeans, AllNodesStartOutsideTheBody) {
 
 TEST(GarmentBuild, TwoPanelsOfOneNameAreRefused) {
   const JeansBody body;
-  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  GarmentPattern pattern = body.pattern(1'000);
   pattern.panels[2].piece.name = "front left";
   EXPECT_EQ(input_error_of([&] { build_garment(pattern, body.depths()); }),
             "front left: two panels have this name; rename one of them");
@@ -368,7 +367,7 @@ TEST(GarmentBuild, TwoPanelsOfOneNameAreRefused) {
 
 TEST(GarmentBuild, BadClothIsNamedByItsPanel) {
   const JeansBody body;
-  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  GarmentPattern pattern = body.pattern(1'000);
   pattern.panels[1].cloth.area_density = -1;
   EXPECT_THAT(input_error_of([&] { build_garment(pattern, body.depths()); }),
               StartsWith("back left: the cloth's area"));
