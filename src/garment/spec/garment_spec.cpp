@@ -76,11 +76,8 @@ Curve curve_of(const BoundarySpec& boundary) {
 }
 
 PatternPanel panel_of(const PieceSpec& piece, const PanelMaterial& cloth) {
-  const auto boundary = [&](PanelEdge edge) {
-    return curve_of(piece.boundaries.at(static_cast<std::size_t>(edge)));
-  };
-  return {{piece.name, boundary(PanelEdge::bottom), boundary(PanelEdge::top), boundary(PanelEdge::left),
-           boundary(PanelEdge::right)},
+  const auto& [bottom, top, left, right] = piece.boundaries;  // by PanelEdge
+  return {{piece.name, curve_of(bottom), curve_of(top), curve_of(left), curve_of(right)},
           piece.grid,
           piece.cloth.value_or(cloth),
           piece.placement,
