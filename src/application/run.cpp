@@ -344,10 +344,8 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
                 {"wall_s", seconds},
                 {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}});
   for (const FitCheck& check : fit_checks(fit, {}))
-    fitting.add({{"fit", check.name},
-                 {"value", check.value},
-                 {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
-                 {"within", check.within}});
+    fitting.add(
+        {{"fit", check.name}, {"value", check.value}, {"bound", check.bound}, {"within", check.within}});
   if (!options.silent)
     std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << to_text(fitting);
   const std::vector<std::string> found = misfits(result, fit, {});

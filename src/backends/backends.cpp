@@ -29,16 +29,6 @@ constexpr MemoryUse packed{.node = 64, .pair_node = 32, .spring = 50};
 // A program's own memory is unknown: assume a plain list in double precision and the state's file.
 constexpr MemoryUse own_program{.node = 64, .pair_node = 24, .spring = 40};
 
-std::unique_ptr<DressingBackend> dress_serially(const System& system, const Integrator& integrator,
-                                                double dt_s, const ExecutionOptions& /*options*/) {
-  return make_serial_dressing(system, integrator, dt_s);
-}
-
-std::unique_ptr<DressingBackend> dress_by_openmp(const System& system, const Integrator& integrator,
-                                                 double dt_s, const ExecutionOptions& options) {
-  return make_openmp_dressing(system, integrator, dt_s, options.threads, options.instruction_set);
-}
-
 std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Integrator& integrator,
                                                  double dt_s, const ExecutionOptions& options) {
   const OpenclDevice device = device_for(options);
@@ -58,12 +48,12 @@ constexpr MemoryUse doubled(MemoryUse single) {
 constexpr auto table = std::to_array<BackendInfo>({
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
      false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, BackendRole::baseline,
-     dress_serially, make_serial_implicit, serial_implicit_memory, false, make_serial_in_double, true},
+     make_serial_dressing, make_serial_implicit, serial_implicit_memory, false, make_serial_in_double, true},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, ThreadStack::usual,
      make_threads_mutex, spring_list_memory, spring_list_memory, 1.2},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     ThreadStack::openmp, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, dress_by_openmp,
+     ThreadStack::openmp, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, make_openmp_dressing,
      make_openmp_implicit, openmp_implicit_memory, true, make_openmp_in_double, true},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
      device_slices, 0.12, BackendRole::contender, dress_by_opencl},

@@ -73,6 +73,8 @@ struct GarmentPanel {
   std::uint32_t node(std::uint32_t row, std::uint32_t column) const {
     return first_node + row * columns + column;
   }
+  std::uint32_t row_of(std::uint32_t node) const { return (node - first_node) / columns; }
+  std::uint32_t column_of(std::uint32_t node) const { return (node - first_node) % columns; }
 };
 
 /// An element of a seam: a node, and the point of another panel's boundary to which it is sewn. That point is

@@ -74,7 +74,8 @@ TEST(GoldenBits, OfSheetsWhoseSeamsClose) {
   EXPECT_EQ(hash_after_100_steps(*make_serial_dressing(system, semi_euler(), dt_s)), expected.serial);
   for (const std::string_view set : openmp_instruction_sets())
     for (const int threads : {1, 3})
-      EXPECT_EQ(hash_after_100_steps(*make_openmp_dressing(system, semi_euler(), dt_s, threads, set)),
+      EXPECT_EQ(hash_after_100_steps(*make_openmp_dressing(
+                    system, semi_euler(), dt_s, {.threads = threads, .instruction_set = std::string(set)})),
                 fuses(set) ? expected.fused : expected.not_fused)
           << set << ", " << threads << " threads";
 }

@@ -31,8 +31,8 @@ void make_coarse(SceneSpec& spec) {
   if (garment->jeans) garment->jeans->nodes = std::min(garment->jeans->nodes, jeans_nodes);
   if (!garment->pieces) return;
   for (PieceSpec& piece : garment->pieces->panels) {
-    piece.rows = std::min(piece.rows, most_rows);
-    piece.columns = std::min(piece.columns, most_rows);
+    piece.grid.rows = std::min(piece.grid.rows, most_rows);
+    piece.grid.columns = std::min(piece.grid.columns, most_rows);
   }
 }
 

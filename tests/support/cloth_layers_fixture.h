@@ -30,16 +30,14 @@ struct LayeredCloth {
       }
     }
   }
-  void set_node_velocity(std::uint32_t node, const Vec3<float>& speed) {
-    velocity[0][node] = speed.x;
-    velocity[1][node] = speed.y;
-    velocity[2][node] = speed.z;
+  static void set(std::array<std::vector<float>, 3>& of, std::size_t node, const Vec3<float>& value) {
+    of[0][node] = value.x;
+    of[1][node] = value.y;
+    of[2][node] = value.z;
   }
+  void set_node_velocity(std::uint32_t node, const Vec3<float>& speed) { set(velocity, node, speed); }
 
   Coordinates coordinates() const { return {position[0], position[1], position[2]}; }
-  NodeArrays arrays() {
-    return {{position[0], position[1], position[2]}, {velocity[0], velocity[1], velocity[2]}};
-  }
   Vec3d point(std::uint32_t node) const { return vec3_cast<double>(point_of(coordinates(), node)); }
   Vec3d speed(std::uint32_t node) const {
     return vec3_cast<double>(point_of({velocity[0], velocity[1], velocity[2]}, node));
@@ -53,6 +51,19 @@ struct LayeredCloth {
     Vec3d sum;
     for (std::uint32_t node = 0; node < mass.size(); ++node) sum += double{mass[node]} * speed(node);
     return sum;
+  }
+  /// A step of a collision of it.
+  void collide(ClothClothCollision& collision, double dt) {
+    collision.collide(
+        dt,
+        [&](std::size_t i) {
+          const auto node = static_cast<std::uint32_t>(i);
+          return NodeState{vec3_cast<float>(point(node)), vec3_cast<float>(speed(node))};
+        },
+        [&](std::size_t node, const NodeState& state) {
+          set(position, node, state.position);
+          set(velocity, node, state.velocity);
+        });
   }
   ClothClothCollision collision(const ClothClothSettings& settings = {}, int threads = 1) const {
     return {garment, mass, settings, threads};

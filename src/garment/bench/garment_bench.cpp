@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
-#include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "garment/stepping/dressing_backend.h"
@@ -148,26 +148,25 @@ Verification verify_garment(Backend& backend, const System& system, const Garmen
   const double drift =
       (seaming.energy_error + draped.energy_error) / (seaming.energy_in_motion + draped.energy_in_motion);
   result.energy_drift = drift;
-  std::ostringstream why;
-  const auto hold = [&](double error, double bound, const char* whose) {
-    if (!why.str().empty() || error <= bound) return;
-    why << "position error " << error << " of a rest length" << whose << " exceeds " << bound << " after "
-        << stretch_steps << " steps";
+  const auto hold = [&](double error, double bound, std::string_view whose) {
+    if (result.failure || error <= bound) return;
+    result.failure = fmt::format("position error {:g} of a rest length{} exceeds {:g} after {} steps", error,
+                                 whose, bound, stretch_steps);
   };
   hold(of_node, reference.tolerance, ", of one node while the seams close,");
   hold(of_half, reference.tolerance / 4, ", of half of the nodes when draped,");
   hold(of_most, reference.tolerance, ", of a tenth of the nodes when draped,");
   hold(any, reference.farthest, ", of one node when draped,");
-  if (why.str().empty() && !(std::abs(drift) <= energy_tolerance))
-    why << "energy is off by " << drift << " of kinetic plus elastic energy, more than " << energy_tolerance
-        << ", after " << stretch_steps << " steps";
-  if (!why.str().empty()) result.failure = why.str();
+  if (!result.failure && !(std::abs(drift) <= energy_tolerance))
+    result.failure =
+        fmt::format("energy is off by {:g} of kinetic plus elastic energy, more than {:g}, after {} steps",
+                    drift, energy_tolerance, stretch_steps);
   return result;
 }
 
 std::optional<State> draped_state(const SceneJob& job, const std::function<bool()>& stop) {
-  const auto backend =
-      make_openmp_dressing(*job.system, *find_integrator("semi-euler"), job.dt_s, job.execution.threads);
+  const auto backend = make_openmp_dressing(*job.system, *find_integrator("semi-euler"), job.dt_s,
+                                            {.threads = job.execution.threads});
   bool stopped = false;
   DressingResult result = dress(*backend, *job.system, job.dt_s, job.garment->rule,
                                 [&](const State&, std::int64_t) { return !(stopped = stop()); });

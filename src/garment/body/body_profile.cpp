@@ -38,19 +38,16 @@ std::vector<Chord> chords_at(const Surface& body, double height) {
 }
 
 /// The box of one side of a section, and the covered part of its width.
-class Half {
- public:
-  void add(const Chord& chord) {
-    covered_ += std::max(0.0, chord.to.x - std::max(chord.from.x, most_.x));
-    least_ = {std::min(least_.x, chord.from.x), std::min({least_.z, chord.from.z, chord.to.z})};
-    most_ = {std::max(most_.x, chord.to.x), std::max({most_.z, chord.from.z, chord.to.z})};
-  }
-  double covered() const { return covered_; }
-  PlanPoint middle() const { return {(least_.x + most_.x) / 2, (least_.z + most_.z) / 2}; }
+struct Half {
+  PlanPoint least{HUGE_VAL, HUGE_VAL}, most{-HUGE_VAL, -HUGE_VAL};
+  double covered = 0;
 
- private:
-  PlanPoint least_{HUGE_VAL, HUGE_VAL}, most_{-HUGE_VAL, -HUGE_VAL};
-  double covered_ = 0;
+  void add(const Chord& chord) {
+    covered += std::max(0.0, chord.to.x - std::max(chord.from.x, most.x));
+    least = {std::min(least.x, chord.from.x), std::min({least.z, chord.from.z, chord.to.z})};
+    most = {std::max(most.x, chord.to.x), std::max({most.z, chord.from.z, chord.to.z})};
+  }
+  PlanPoint middle() const { return {(least.x + most.x) / 2, (least.z + most.z) / 2}; }
 };
 
 /// The gap between the legs at this height; none if the section does not divide into two halves of about
@@ -68,11 +65,10 @@ std::optional<LegGap> leg_gap(const Surface& body, double height) {
   for (std::size_t i = 1; i < chords.size(); ++i) {
     const LegGap gap{height, reached, chords[i].from.x, {}, {}};
     reached = std::max(reached, chords[i].to.x);
-    if (gap.high - gap.low <= least_gap * all.covered()) continue;
+    if (gap.high - gap.low <= least_gap * all.covered) continue;
     Half right, left;
     for (std::size_t j = 0; j < chords.size(); ++j) (j < i ? right : left).add(chords[j]);
-    const double narrower = std::min(right.covered(), left.covered());
-    const double wider = std::max(right.covered(), left.covered());
+    const auto [narrower, wider] = std::minmax({right.covered, left.covered});
     if (narrower < best_share * wider) continue;
     best_share = narrower / wider;
     best = {gap.height, gap.low, gap.high, right.middle(), left.middle()};
@@ -179,11 +175,11 @@ BodyProfile::BodyProfile(const Surface& surface, std::string name)
       left_foot_(lowest_point(1)),
       crotch_(find_crotch()) {}
 
-std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> intervals) {
+std::vector<HeightRange> BodyProfile::merged(std::vector<HeightRange> intervals) {
   constexpr double joins = 1e-6;  // m, more than gaps by rounding between triangles that share a point
-  std::ranges::sort(intervals, {}, &Interval::low);
-  std::vector<Interval> pieces;
-  for (const Interval& interval : intervals)
+  std::ranges::sort(intervals, {}, &HeightRange::low);
+  std::vector<HeightRange> pieces;
+  for (const HeightRange& interval : intervals)
     if (pieces.empty() || interval.low > pieces.back().high + joins)
       pieces.push_back(interval);
     else
@@ -191,10 +187,10 @@ std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> int
   return pieces;
 }
 
-std::vector<BodyProfile::Interval> BodyProfile::heights_in_the_middle() const {
-  std::vector<Interval> intervals;
+std::vector<HeightRange> BodyProfile::heights_in_the_middle() const {
+  std::vector<HeightRange> intervals;
   for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
-    Interval interval{highest(), lowest()};
+    HeightRange interval{highest(), lowest()};
     cut(corners_of(body_.surface, t), &Vec3d::x, 0, [&](const Vec3d& point) {
       interval = {std::min(interval.low, point.y), std::max(interval.high, point.y)};
     });
@@ -206,7 +202,7 @@ std::vector<BodyProfile::Interval> BodyProfile::heights_in_the_middle() const {
 std::optional<double> BodyProfile::find_crotch() const {
   // The trunk is the longest piece: feet may touch each other or an object.
   const auto trunk = std::ranges::max_element(
-      middle_, {}, [](const Interval& interval) { return interval.high - interval.low; });
+      middle_, {}, [](const HeightRange& interval) { return interval.high - interval.low; });
   if (trunk == middle_.end()) return std::nullopt;
   constexpr double shortest_leg = 0.01;  // m: the lowest point of a round underside need not be at x = 0
   if (std::max(right_foot_, left_foot_) >= trunk->low - shortest_leg) return std::nullopt;
@@ -246,8 +242,8 @@ std::vector<PlanPoint> BodyProfile::section(double y) const {
 double BodyProfile::hull_girth(double y) const { return hull_perimeter(section(y)); }
 
 std::vector<PlanPoint> BodyProfile::leg_section(double y, int side) const {
-  for (const Interval& joined : middle_)
-    if (y >= joined.low && y <= joined.high)
+  for (const HeightRange& joined : middle_)
+    if (joined.contains(y))
       throw InputError(name_ + ": its legs are not apart at x = 0 at the height " + shown(y) +
                        " m; give a height outside " + shown(joined.low) + " to " + shown(joined.high) + " m");
   std::vector<PlanPoint> points = section(y);
@@ -307,9 +303,8 @@ double BodyProfile::within_leg(double y, int side) const {
 }
 
 bool BodyProfile::legs_are_apart(double y) const {
-  return std::ranges::none_of(middle_, [&](const Interval& joined) {
-    return std::ranges::any_of(std::array{within_leg(y, -1), within_leg(y, 1)},
-                               [&](double height) { return height >= joined.low && height <= joined.high; });
+  return std::ranges::none_of(middle_, [&](const HeightRange& joined) {
+    return joined.contains(within_leg(y, -1)) || joined.contains(within_leg(y, 1));
   });
 }
 

@@ -74,10 +74,6 @@ class BodyProfile {
   double half_width(double y) const;
 
  private:
-  struct Interval {
-    double low = 0, high = 0;
-  };
-
   /// The corners of the section's outline, in no order.
   std::vector<PlanPoint> section(double y) const;
   /// Its part on one side of x = 0.
@@ -87,15 +83,15 @@ class BodyProfile {
   /// The height of the lowest point on one side of x = 0, m; infinite without points there.
   double lowest_point(int side) const;
   /// The union of `intervals`, in pieces, bottom up.
-  static std::vector<Interval> merged(std::vector<Interval> intervals);
-  std::vector<Interval> heights_in_the_middle() const;
+  static std::vector<HeightRange> merged(std::vector<HeightRange> intervals);
+  std::vector<HeightRange> heights_in_the_middle() const;
   std::optional<double> find_crotch() const;
 
   std::string name_;
   TrunkAndLegs body_;
   HeightSlices slices_;
-  std::vector<Interval> middle_;   ///< heights at which the section reaches x = 0
-  double right_foot_, left_foot_;  ///< m, lowest_point() at x < 0 and at x > 0
+  std::vector<HeightRange> middle_;  ///< heights at which the section reaches x = 0
+  double right_foot_, left_foot_;    ///< m, lowest_point() at x < 0 and at x > 0
   std::optional<double> crotch_;
 };
 

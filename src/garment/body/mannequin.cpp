@@ -1,7 +1,6 @@
 #include "garment/body/mannequin.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -14,11 +13,6 @@
 
 namespace mssim {
 namespace {
-
-struct NamedGirth {
-  std::string_view name;
-  GirthAt at;
-};
 
 [[noreturn]] void fail(std::string_view measure, double value, std::string_view unit,
                        const std::string& rest) {
@@ -65,12 +59,9 @@ void require_thighs_below_hip(const BodyMeasures& m) {
 }
 
 void check_measures(const BodyMeasures& m) {
-  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
-                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
-                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
-  for (const NamedGirth& girth : girths) {
-    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
-    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
+  for (const auto& [name, at] : body_girths) {
+    require_between(std::string(name) + " girth", (m.*at).girth, " m", 0.1, 3);
+    require_between(std::string(name) + " height", (m.*at).height, " m", 0.03, 2.5);
   }
   require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
   require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
@@ -80,116 +71,83 @@ void check_measures(const BodyMeasures& m) {
   require_thighs_below_hip(m);
 }
 
-class Tube {
- public:
-  Tube(Surface& surface, const std::vector<EllipseSection>& sections, std::uint32_t around,
-       double cell_height)
-      : surface_(surface), sections_(sections), around_(around), cell_height_(cell_height) {
-    for (std::uint32_t j = 0; j < around; ++j) {
-      const double angle = 2 * std::numbers::pi * j / around;
-      directions_.push_back({std::cos(angle), 0, std::sin(angle)});
+/// The longest straight distance between two sections along an edge of their boxes.
+double way_between(const EllipseSection& a, const EllipseSection& b) {
+  const double sideways = std::max({std::abs(b.x_min - a.x_min), std::abs(b.x_max - a.x_max),
+                                    std::abs(b.z_min - a.z_min), std::abs(b.z_max - a.z_max)});
+  const double up = b.height - a.height;
+  return std::sqrt(sideways * sideways + up * up);
+}
+
+/// The sections, and rings between them for cells of about the wanted height, m.
+std::vector<EllipseSection> interpolated(const std::vector<EllipseSection>& sections, double cell_height) {
+  const auto curve = [&](double EllipseSection::*edge) -> MonotoneCurve {
+    return {mapped<double>(sections, &EllipseSection::height), mapped<double>(sections, edge)};
+  };
+  const auto x_min = curve(&EllipseSection::x_min), x_max = curve(&EllipseSection::x_max);
+  const auto z_min = curve(&EllipseSection::z_min), z_max = curve(&EllipseSection::z_max);
+  std::vector<EllipseSection> rings{sections.front()};
+  for (std::size_t i = 0; i + 1 < sections.size(); ++i) {
+    const EllipseSection& below = sections[i];
+    const EllipseSection& above = sections[i + 1];
+    const auto rows = static_cast<int>(std::ceil(way_between(below, above) / cell_height));
+    for (int row = 1; row < rows; ++row) {
+      const double y = below.height + (above.height - below.height) * row / rows;
+      rings.push_back({y, x_min(y), x_max(y), z_min(y), z_max(y)});
+    }
+    rings.push_back(above);
+  }
+  return rings;
+}
+
+Vec3d centre(const EllipseSection& ring) {
+  return {(ring.x_min + ring.x_max) / 2, ring.height, (ring.z_min + ring.z_max) / 2};
+}
+
+/// Adds the points of a ring in these directions from its centre.
+void add_ring(Surface& surface, const EllipseSection& ring, const std::vector<Vec3d>& directions) {
+  const double a = ring.half_width();
+  const double b = ring.half_depth();
+  const auto spoke = [&](std::size_t j) {
+    const Vec3d& direction = directions[j % directions.size()];
+    return Vec3d{a * direction.x, 0, b * direction.z};
+  };
+  double inscribed = 0;
+  for (std::size_t j = 0; j < directions.size(); ++j) inscribed += length(spoke(j + 1) - spoke(j));
+  const double larger = ellipse_perimeter(a, b) / inscribed;
+  for (std::size_t j = 0; j < directions.size(); ++j)
+    surface.points.push_back(rounded(centre(ring) + larger * spoke(j)));
+}
+
+/// Adds the cells between the ring of n points that starts at point `lower` and the next.
+void add_belt(Surface& surface, std::uint32_t lower, std::uint32_t n) {
+  for (std::uint32_t j = 0; j < n; ++j) {
+    const std::uint32_t a = lower + j, b = lower + (j + 1) % n;
+    const std::uint32_t c = a + n, d = b + n;
+    // The diagonal alternates between quarters, so that the body is symmetric.
+    if (4 * j / n % 2 == 0) {
+      surface.triangles.push_back({a, c, b});
+      surface.triangles.push_back({b, c, d});
+    } else {
+      surface.triangles.push_back({a, c, d});
+      surface.triangles.push_back({a, d, b});
     }
   }
+}
 
-  void add() {
-    const std::vector<EllipseSection> rings = interpolated();
-    const auto first = static_cast<std::uint32_t>(surface_.points.size());
-    for (const EllipseSection& ring : rings) add_ring(ring);
-    const auto last = static_cast<std::uint32_t>(surface_.points.size()) - around_;
-    for (std::uint32_t ring = first; ring < last; ring += around_) add_belt(ring);
-    add_end(first, sections_.front(), false);
-    add_end(last, sections_.back(), true);
+/// Closes the ring of n points that starts at point `ring`.
+void add_end(Surface& surface, std::uint32_t ring, std::uint32_t n, const EllipseSection& section,
+             bool is_top) {
+  const auto middle = static_cast<std::uint32_t>(surface.points.size());
+  surface.points.push_back(rounded(centre(section)));
+  for (std::uint32_t j = 0; j < n; ++j) {
+    const std::uint32_t a = ring + j, b = ring + (j + 1) % n;
+    if (is_top)
+      surface.triangles.push_back({middle, b, a});
+    else
+      surface.triangles.push_back({middle, a, b});
   }
-
- private:
-  MonotoneCurve curve(double EllipseSection::*edge) const {
-    std::vector<double> heights, values;
-    for (const EllipseSection& section : sections_) {
-      heights.push_back(section.height);
-      values.push_back(section.*edge);
-    }
-    return {heights, values};
-  }
-
-  /// The sections, and rings between them for cells of about the wanted height.
-  std::vector<EllipseSection> interpolated() const {
-    const auto x_min = curve(&EllipseSection::x_min), x_max = curve(&EllipseSection::x_max);
-    const auto z_min = curve(&EllipseSection::z_min), z_max = curve(&EllipseSection::z_max);
-    std::vector<EllipseSection> rings{sections_.front()};
-    for (std::size_t i = 0; i + 1 < sections_.size(); ++i) {
-      const EllipseSection& below = sections_[i];
-      const EllipseSection& above = sections_[i + 1];
-      const auto rows = static_cast<int>(std::ceil(way_between(below, above) / cell_height_));
-      for (int row = 1; row < rows; ++row) {
-        const double y = below.height + (above.height - below.height) * row / rows;
-        rings.push_back({y, x_min(y), x_max(y), z_min(y), z_max(y)});
-      }
-      rings.push_back(above);
-    }
-    return rings;
-  }
-
-  /// The longest straight distance between two sections along an edge of their boxes.
-  static double way_between(const EllipseSection& a, const EllipseSection& b) {
-    const double sideways = std::max({std::abs(b.x_min - a.x_min), std::abs(b.x_max - a.x_max),
-                                      std::abs(b.z_min - a.z_min), std::abs(b.z_max - a.z_max)});
-    const double up = b.height - a.height;
-    return std::sqrt(sideways * sideways + up * up);
-  }
-
-  static Vec3d centre(const EllipseSection& ring) {
-    return {(ring.x_min + ring.x_max) / 2, ring.height, (ring.z_min + ring.z_max) / 2};
-  }
-
-  void add_ring(const EllipseSection& ring) {
-    const double a = ring.half_width();
-    const double b = ring.half_depth();
-    const auto spoke = [&](std::size_t j) {
-      const Vec3d& direction = directions_[j % directions_.size()];
-      return Vec3d{a * direction.x, 0, b * direction.z};
-    };
-    double inscribed = 0;
-    for (std::size_t j = 0; j < directions_.size(); ++j) inscribed += length(spoke(j + 1) - spoke(j));
-    const double larger = ellipse_perimeter(a, b) / inscribed;
-    for (std::size_t j = 0; j < directions_.size(); ++j)
-      surface_.points.push_back(rounded(centre(ring) + larger * spoke(j)));
-  }
-
-  /// The cells between the ring that starts at point `lower` and the next.
-  void add_belt(std::uint32_t lower) {
-    const std::uint32_t n = around_;
-    for (std::uint32_t j = 0; j < n; ++j) {
-      const std::uint32_t a = lower + j, b = lower + (j + 1) % n;
-      const std::uint32_t c = a + n, d = b + n;
-      // The diagonal alternates between quarters, so that the body is symmetric.
-      if (4 * j / n % 2 == 0) {
-        surface_.triangles.push_back({a, c, b});
-        surface_.triangles.push_back({b, c, d});
-      } else {
-        surface_.triangles.push_back({a, c, d});
-        surface_.triangles.push_back({a, d, b});
-      }
-    }
-  }
-
-  void add_end(std::uint32_t ring, const EllipseSection& section, bool is_top) {
-    const auto middle = static_cast<std::uint32_t>(surface_.points.size());
-    surface_.points.push_back(rounded(centre(section)));
-    for (std::uint32_t j = 0; j < around_; ++j) {
-      const std::uint32_t a = ring + j, b = ring + (j + 1) % around_;
-      if (is_top)
-        surface_.triangles.push_back({middle, b, a});
-      else
-        surface_.triangles.push_back({middle, a, b});
-    }
-  }
-
-  Surface& surface_;
-  const std::vector<EllipseSection>& sections_;
-  std::uint32_t around_;
-  double cell_height_;             ///< m
-  std::vector<Vec3d> directions_;  ///< of a ring's points
-};
+}
 
 double between(double from, double to, double fraction) { return from + (to - from) * fraction; }
 
@@ -356,7 +314,17 @@ EllipseSection section_of_girth(double height, double girth, double aspect, doub
 void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, std::uint32_t around,
               double cell_height) {
   assert(sections.size() >= 2 && around >= 4 && around % 4 == 0 && cell_height > 0);
-  Tube(surface, sections, around, cell_height).add();
+  std::vector<Vec3d> directions;
+  for (std::uint32_t j = 0; j < around; ++j) {
+    const double angle = 2 * std::numbers::pi * j / around;
+    directions.push_back({std::cos(angle), 0, std::sin(angle)});
+  }
+  const auto first = static_cast<std::uint32_t>(surface.points.size());
+  for (const EllipseSection& ring : interpolated(sections, cell_height)) add_ring(surface, ring, directions);
+  const auto last = static_cast<std::uint32_t>(surface.points.size()) - around;
+  for (std::uint32_t ring = first; ring < last; ring += around) add_belt(surface, ring, around);
+  add_end(surface, first, around, sections.front(), false);
+  add_end(surface, last, around, sections.back(), true);
 }
 
 Surface mannequin(const BodyMeasures& measures, std::uint32_t cells_around) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "geometry/surface.h"
@@ -32,6 +34,12 @@ struct BodyMeasures {
 
   bool operator==(const BodyMeasures&) const = default;
 };
+
+/// The names of its girths, from the top down.
+inline constexpr std::array body_girths{
+    std::pair{"bust", &BodyMeasures::bust}, std::pair{"waist", &BodyMeasures::waist},
+    std::pair{"hip", &BodyMeasures::hip},   std::pair{"thigh", &BodyMeasures::thigh},
+    std::pair{"knee", &BodyMeasures::knee}, std::pair{"ankle", &BodyMeasures::ankle}};
 
 /// Depth over width of a thigh: a constant from which its width follows.
 inline constexpr double thigh_aspect = 1.1;

@@ -15,6 +15,8 @@ namespace mssim {
 /// A range of heights, m.
 struct HeightRange {
   double low = 0, high = 0;
+
+  bool contains(double y) const { return y >= low && y <= high; }
 };
 
 /// The triangles of a surface, sorted into horizontal slices of equal height.

@@ -11,7 +11,6 @@
 #include <set>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 #include "garment/layers/cloth_contacts.h"
 #include "laws/host_laws.h"
@@ -29,23 +28,19 @@ bool rests(const State& before, const State& after, const SettlingRule& rule) {
 }
 
 /// Delivers the frames of a dressing in their order.
-class FrameDelivery {
- public:
-  explicit FrameDelivery(const DressingFrames& frames) : frames_(frames) {}
+struct FrameDelivery {
+  const DressingFrames& frames;
+  std::int64_t next = 0;
 
   /// Steps after which the next frame is due; none without a receiver.
   std::optional<std::int64_t> due() const {
-    return frames_.on_frame ? std::optional(frames_.grid.step_of(next_)) : std::nullopt;
+    return frames.on_frame ? std::optional(frames.grid.step_of(next)) : std::nullopt;
   }
   void deliver(const State& state, std::int64_t iterations) {
-    if (!frames_.on_frame) return;
-    frames_.on_frame(state, iterations);
-    ++next_;
+    if (!frames.on_frame) return;
+    frames.on_frame(state, iterations);
+    ++next;
   }
-
- private:
-  const DressingFrames& frames_;
-  std::int64_t next_ = 0;
 };
 
 /// Steps from `done` to `end`, and delivers the frames due before `end`.
@@ -90,10 +85,9 @@ void measure_side_distance(const CloseCloth& close, const std::vector<Vec3d>& po
 /// springs, two cells long, may change length by bending.
 bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
   const GarmentPanel& panel = garment.panel_of(spring.first);
-  const std::uint32_t first = spring.first - panel.first_node, second = spring.second - panel.first_node;
   const auto apart = [](std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; };
-  return apart(first / panel.columns, second / panel.columns) <= 1 &&
-         apart(first % panel.columns, second % panel.columns) <= 1;
+  return apart(panel.row_of(spring.first), panel.row_of(spring.second)) <= 1 &&
+         apart(panel.column_of(spring.first), panel.column_of(spring.second)) <= 1;
 }
 
 std::vector<double> elongations(const System& system, const Garment& garment,
@@ -137,41 +131,35 @@ std::vector<std::vector<std::uint32_t>> closed_rows(const Garment& garment) {
     sewn_to.emplace(joint.node, other);
     sewn_to.emplace(other, joint.node);
   }
-  struct Link {
-    std::uint32_t left;  // end of a row
-    std::size_t before;  // link whose right end is sewn to it
-  };
-  std::set<std::uint32_t> in_a_loop;  // rows, by their left ends
-  // The shortest loop from a row to its panel.
-  const auto loop_from = [&](std::uint32_t start) {
-    std::vector<std::uint32_t> loop;
-    std::vector<Link> chain{{start, 0}};
+  // The shortest way from a row to its panel, as left ends of rows; empty if there is none.
+  const auto way_around = [&](std::uint32_t start) -> std::vector<std::uint32_t> {
+    std::vector<std::vector<std::uint32_t>> ways{{start}};
     std::set<const GarmentPanel*> reached;
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-      const std::uint32_t right = chain[i].left + garment.panel_of(chain[i].left).columns - 1;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const std::uint32_t left = ways[i].back(), right = left + garment.panel_of(left).columns - 1;
       for (auto [to, end] = sewn_to.equal_range(right); to != end; ++to) {
         const GarmentPanel& next = garment.panel_of(to->second);
-        if ((to->second - next.first_node) % next.columns != 0) continue;  // no left end
-        if (&next != &garment.panel_of(start)) {
-          if (reached.insert(&next).second) chain.push_back({to->second, i});
-          continue;
-        }
-        for (std::size_t link = i;; link = chain[link].before) {
-          const std::uint32_t left = chain[link].left;
-          in_a_loop.insert(left);
-          for (std::uint32_t column = garment.panel_of(left).columns; column-- > 0;)
-            loop.push_back(left + column);
-          if (link == 0) return loop;
-        }
+        if (next.column_of(to->second) != 0) continue;  // no left end
+        if (&next == &garment.panel_of(start)) return ways[i];
+        if (!reached.insert(&next).second) continue;
+        ways.push_back(ways[i]);
+        ways.back().push_back(to->second);
       }
     }
-    return loop;
+    return {};
   };
+  std::set<std::uint32_t> in_a_loop;  // rows, by their left ends
   std::vector<std::vector<std::uint32_t>> loops;
   for (const GarmentPanel& panel : garment.panels)
     for (std::uint32_t row = 0; row < panel.rows; ++row) {
       if (in_a_loop.contains(panel.node(row, 0))) continue;
-      if (auto loop = loop_from(panel.node(row, 0)); !loop.empty()) loops.push_back(std::move(loop));
+      const std::vector<std::uint32_t> rows = way_around(panel.node(row, 0));
+      if (rows.empty()) continue;
+      in_a_loop.insert(rows.begin(), rows.end());
+      std::vector<std::uint32_t>& loop = loops.emplace_back();
+      for (auto left = rows.rbegin(); left != rows.rend(); ++left)
+        for (std::uint32_t column = garment.panel_of(*left).columns; column-- > 0;)
+          loop.push_back(*left + column);
     }
   return loops;
 }
@@ -205,12 +193,16 @@ struct Unit {
 };
 constexpr Unit plain{1, "", 1}, millimetres{1e3, " mm", 1e3}, per_cent{1, " %", 100};
 
+/// None if the garment has no such number.
+template <auto member>
+std::optional<double> of_fit(const Fit& fit) {
+  return std::optional<double>(fit.*member);
+}
+
 /// A row of the TABLE of a fit's numbers.
 struct FitNumber {
   std::string_view name;
-  std::variant<double Fit::*, std::size_t Fit::*, std::optional<double> Fit::*,
-               std::optional<std::size_t> Fit::*>
-      value;
+  std::optional<double> (*value)(const Fit& fit);
   Unit unit = plain;
   double FitBounds::*bound = nullptr;  ///< on the magnitude; null: none
   std::string_view what{};             ///< in a sentence
@@ -220,24 +212,24 @@ struct FitNumber {
 
 constexpr auto numbers = std::to_array<FitNumber>({
     {"largest_gap_mm",
-     &Fit::largest_gap,
+     of_fit<&Fit::largest_gap>,
      millimetres,
      &FitBounds::largest_gap,
      "the largest gap of a seam",
      {"a seam gapes", "a larger closing_share, or a wider garment (of jeans: hip_ease_m, waist_ease_m)"}},
-    {"nodes_inside", &Fit::nodes_inside},
-    {"deepest_node_mm", &Fit::deepest_node, millimetres, &FitBounds::deepest,
+    {"nodes_inside", of_fit<&Fit::nodes_inside>},
+    {"deepest_node_mm", of_fit<&Fit::deepest_node>, millimetres, &FitBounds::deepest,
      "the deepest node inside the body", pierced},
-    {"deepest_face_mm", &Fit::deepest_face_sample, millimetres, &FitBounds::deepest,
+    {"deepest_face_mm", of_fit<&Fit::deepest_face_sample>, millimetres, &FitBounds::deepest,
      "the deepest point of a face inside the body", pierced},
-    {"elongation_50", &Fit::elongation_50},
-    {"elongation_99", &Fit::elongation_99, per_cent, &FitBounds::elongation_99,
+    {"elongation_50", of_fit<&Fit::elongation_50>},
+    {"elongation_99", of_fit<&Fit::elongation_99>, per_cent, &FitBounds::elongation_99,
      "the 99th percentile of elongations", stretched},
-    {"elongation_999", &Fit::elongation_999, per_cent, &FitBounds::elongation_999,
+    {"elongation_999", of_fit<&Fit::elongation_999>, per_cent, &FitBounds::elongation_999,
      "the 99.9th percentile of elongations", stretched},
-    {"elongation_max", &Fit::elongation_max},
+    {"elongation_max", of_fit<&Fit::elongation_max>},
     {"upper_edge_rise_mm",
-     &Fit::upper_edge_rise,
+     of_fit<&Fit::upper_edge_rise>,
      millimetres,
      &FitBounds::upper_edge_shift,
      "the distance of the upper edge from its place in the pattern",
@@ -247,40 +239,35 @@ constexpr auto numbers = std::to_array<FitNumber>({
       "a lower waist or less ease there (of jeans: waist_height_m, waist_ease_m), more friction, or a longer "
       "step"}},
     {"crotch_rise_mm",
-     &Fit::crotch_rise,
+     of_fit<&Fit::crotch_rise>,
      millimetres,
      &FitBounds::crotch_shift,
      "the distance of the crotch from its place in the pattern",
      {"the crotch was drawn up", "more crotch_ease_m"},
      {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"}},
-    {"rows", &Fit::rows},
+    {"rows", of_fit<&Fit::rows>},
     {"rows_astray",
-     &Fit::rows_astray,
+     of_fit<&Fit::rows_astray>,
      plain,
      &FitBounds::rows_astray,
      "the number of rows that do not go once around their limb",
      {"the garment does not go around the body", "more nodes, or a body whose legs are further apart"}},
     {"crossings",
-     &Fit::crossings,
+     of_fit<&Fit::crossings>,
      plain,
      &FitBounds::crossings,
      "the number of places where layers of the cloth cross",
      {"layers passed through each other",
       "layers that touch (\"layers\"), a larger thickness_m or more nodes"}},
     {"side_distance_mm",
-     &Fit::side_distance,
+     of_fit<&Fit::side_distance>,
      millimetres,
      &FitBounds::side_distance,
      "the largest distance between body and side seams from hip to thigh",
      {"the garment stands off at the sides",
       "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"}},
-    {"side_distance_height_m", &Fit::side_distance_height},
+    {"side_distance_height_m", of_fit<&Fit::side_distance_height>},
 });
-
-/// None if the garment has no such number.
-std::optional<double> value_of(const FitNumber& number, const Fit& fit) {
-  return std::visit([&](auto member) { return std::optional<double>(fit.*member); }, number.value);
-}
 
 /// NaN is within no bound.
 bool is_within(const FitNumber& number, double value, const FitBounds& bounds) {
@@ -303,7 +290,7 @@ DressingResult dress(DressingBackend& backend, const System& system, double dt_s
   backend.set_state(system.start);
   DressingResult result;
   result.state = system.start;
-  FrameDelivery delivery(frames);
+  FrameDelivery delivery{frames};
   delivery.deliver(result.state, 0);
   bool goes_on = longest > 0;
   while (goes_on) {
@@ -378,15 +365,14 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
   std::vector<FitCheck> checks;
   for (const FitNumber& number : numbers) {
-    const std::optional<double> value = value_of(number, fit);
+    const std::optional<double> value = number.value(fit);
     if (!value) continue;
     const double per_unit = number.unit.per_unit;
     FitCheck& check = checks.emplace_back();
     check.name = number.name;
     check.value = per_unit * *value;
     if (number.bound == nullptr) continue;
-    check.bound = per_unit * bounds.*number.bound;
-    check.shown_bound = shown_bound(number, bounds, per_unit);
+    check.bound = shown_bound(number, bounds, per_unit);
     check.within = is_within(number, *value, bounds);
   }
   return checks;
@@ -404,7 +390,7 @@ std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, c
                     "more viscous_damping_per_s or more nodes",
                     result.simulated_s));
   for (const FitNumber& number : numbers) {
-    const std::optional<double> value = value_of(number, fit);
+    const std::optional<double> value = number.value(fit);
     if (number.bound == nullptr || !value || is_within(number, *value, bounds)) continue;
     const auto& [happened, remedy] = has_sign(number) && *value < 0 ? number.too_small : number.too_large;
     const Unit& unit = number.unit;

@@ -110,9 +110,8 @@ struct FitBounds {
 struct FitCheck {
   std::string name;  ///< with its unit at the end
   double value = 0;
-  std::optional<double> bound;  ///< on its magnitude
-  std::string shown_bound;      ///< "1", or "±20" if the number may have either sign; empty without bound
-  std::optional<bool> within;   ///< whether the number is within its bound
+  std::optional<std::string> bound;  ///< on its magnitude: "1", or "±20" if it may have either sign
+  std::optional<bool> within;        ///< whether the number is within its bound
 };
 
 /// All numbers of the fit, in a fixed order.

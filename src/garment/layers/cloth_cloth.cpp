@@ -25,16 +25,6 @@ void validate(const ClothClothSettings& settings) {
   require(settings.sweeps >= 1, "the number of sweeps", settings.sweeps, "at least 1");
 }
 
-/// The node's value less that of the triangle's nearest point.
-Vec3<float> difference(const ClothContact& contact, const std::array<std::span<float>, 3>& of) {
-  const auto at = [&](std::uint32_t node) { return Vec3<float>{of[0][node], of[1][node], of[2][node]}; };
-  const Vec3<float> own = at(contact.node);
-  Vec3<float> sum;
-  // Differences first, because the rounding errors of small numbers are small.
-  for (std::size_t i = 0; i < 3; ++i) sum += contact.weight[i] * (own - at(contact.triangle[i]));
-  return sum;
-}
-
 }  // namespace
 
 ClothClothCollision::ClothClothCollision(const Garment& garment, std::span<const float> node_mass,
@@ -55,18 +45,12 @@ ClothClothCollision::ClothClothCollision(const Garment& garment, std::span<const
   }
 }
 
-void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
-  for (const auto& arrays : {nodes.position, nodes.velocity})
-    for (const std::span<float> array : arrays)
-      if (array.size() != inverse_mass_.size())
-        throw std::invalid_argument(
-            fmt::format("cloth-cloth collision: an array has {} numbers for {} nodes, give one per node",
-                        array.size(), inverse_mass_.size()));
-  contacts_ = search_.find({nodes.position[0], nodes.position[1], nodes.position[2]});
+void ClothClothCollision::respond(double dt) {
+  contacts_ = search_.find({position_[0], position_[1], position_[2]});
   for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep)
-    for (const ClothContact& contact : contacts_) stop_approach(contact, nodes);
+    for (const ClothContact& contact : contacts_) stop_approach(contact);
   const auto farthest = static_cast<float>(settings_.push_speed * dt);
-  for (const ClothContact& contact : contacts_) push_apart(contact, nodes, farthest);
+  for (const ClothContact& contact : contacts_) push_apart(contact, farthest);
 }
 
 void ClothClothCollision::put(std::size_t node, const NodeState& state) {
@@ -80,28 +64,37 @@ NodeState ClothClothCollision::at(std::size_t node) const {
           {velocity_[0][node], velocity_[1][node], velocity_[2][node]}};
 }
 
-void ClothClothCollision::stop_approach(const ClothContact& contact, const NodeArrays& nodes) const {
+/// The node's value less that of the triangle's nearest point.
+Vec3<float> ClothClothCollision::difference(const ClothContact& contact, const Arrays& of) {
+  const auto at = [&](std::uint32_t node) { return Vec3<float>{of[0][node], of[1][node], of[2][node]}; };
+  const Vec3<float> own = at(contact.node);
+  Vec3<float> sum;
+  // Differences first, because the rounding errors of small numbers are small.
+  for (std::size_t i = 0; i < 3; ++i) sum += contact.weight[i] * (own - at(contact.triangle[i]));
+  return sum;
+}
+
+void ClothClothCollision::stop_approach(const ClothContact& contact) {
   const float inverse_mass = inverse_mass_of(contact);
   if (inverse_mass == 0) return;
-  const Vec3<float> relative = difference(contact, nodes.velocity);
+  const Vec3<float> relative = difference(contact, velocity_);
   const float along = dot(relative, contact.normal);
   if (along >= 0) return;
   const Vec3<float> across = relative - along * contact.normal;
   const float sliding = std::sqrt(dot(across, across));
   const float slowed = -static_cast<float>(settings_.friction) * along;  // m/s
   const float kept = sliding > slowed ? slowed / sliding : 1;            // fraction of `across` that is lost
-  move(contact, nodes.velocity, (-1 / inverse_mass) * (along * contact.normal + kept * across));
+  move(contact, velocity_, (-1 / inverse_mass) * (along * contact.normal + kept * across));
 }
 
-void ClothClothCollision::push_apart(const ClothContact& contact, const NodeArrays& nodes,
-                                     float farthest) const {
+void ClothClothCollision::push_apart(const ClothContact& contact, float farthest) {
   const float inverse_mass = inverse_mass_of(contact);
   if (inverse_mass == 0) return;
   // The current gap: other contacts may have moved the same nodes.
-  const float gap = dot(difference(contact, nodes.position), contact.normal);
+  const float gap = dot(difference(contact, position_), contact.normal);
   const float wanted = std::min(static_cast<float>(settings_.thickness), contact.gap + farthest);
   if (gap >= wanted) return;
-  move(contact, nodes.position, ((wanted - gap) / inverse_mass) * contact.normal);
+  move(contact, position_, ((wanted - gap) / inverse_mass) * contact.normal);
 }
 
 float ClothClothCollision::inverse_mass_of(const ClothContact& contact) const {
@@ -111,8 +104,7 @@ float ClothClothCollision::inverse_mass_of(const ClothContact& contact) const {
   return sum;
 }
 
-void ClothClothCollision::move(const ClothContact& contact, const std::array<std::span<float>, 3>& of,
-                               const Vec3<float>& impulse) const {
+void ClothClothCollision::move(const ClothContact& contact, Arrays& of, const Vec3<float>& impulse) const {
   const auto add = [&](std::uint32_t node, float weight) {
     const Vec3<float> change = weight * inverse_mass_[node] * impulse;
     of[0][node] += change.x;

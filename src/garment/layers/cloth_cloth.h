@@ -11,12 +11,6 @@
 
 namespace mssim {
 
-/// The state that a collision changes, as a structure of arrays: x, y, z, each [nodes].
-struct NodeArrays {
-  std::array<std::span<float>, 3> position;  ///< m
-  std::array<std::span<float>, 3> velocity;  ///< m/s
-};
-
 /// A node within a step.
 struct NodeState {
   Vec3<float> position;  ///< m
@@ -55,35 +49,34 @@ class ClothClothCollision {
 #pragma omp parallel for schedule(static) num_threads(threads_)
     for (std::int64_t i = 0; i < nodes; ++i)
       put(static_cast<std::size_t>(i), read(static_cast<std::size_t>(i)));
-    collide({{position_[0], position_[1], position_[2]}, {velocity_[0], velocity_[1], velocity_[2]}}, dt);
+    respond(dt);
     for (const ClothContact& contact : contacts_) {
       write(contact.node, at(contact.node));
       for (const std::uint32_t node : contact.triangle) write(node, at(node));
     }
   }
 
-  /// Finds the contacts and responds, for a step of dt (s). Throws std::invalid_argument if the size of an
-  /// array is not that of node_mass.
-  void collide(const NodeArrays& nodes, double dt);
-
   /// The contacts of the last collide(), before the response.
   std::span<const ClothContact> contacts() const { return contacts_; }
 
  private:
+  using Arrays = std::array<std::vector<float>, 3>;  // x, y, z, each [nodes]
+
   void put(std::size_t node, const NodeState& state);
   NodeState at(std::size_t node) const;
-  void stop_approach(const ClothContact& contact, const NodeArrays& nodes) const;
-  void push_apart(const ClothContact& contact, const NodeArrays& nodes, float farthest) const;
+  void respond(double dt);
+  void stop_approach(const ClothContact& contact);
+  void push_apart(const ClothContact& contact, float farthest);
+  static Vec3<float> difference(const ClothContact& contact, const Arrays& of);
   float inverse_mass_of(const ClothContact& contact) const;
-  void move(const ClothContact& contact, const std::array<std::span<float>, 3>& of,
-            const Vec3<float>& impulse) const;
+  void move(const ClothContact& contact, Arrays& of, const Vec3<float>& impulse) const;
 
   const ClothClothSettings settings_;
   int threads_;
   std::vector<float> inverse_mass_;  // [nodes] 1/kg
   ClothContactSearch search_;
   std::span<const ClothContact> contacts_;
-  std::array<std::vector<float>, 3> position_, velocity_;  // [nodes] copies
+  Arrays position_, velocity_;  // copies, m and m/s
 };
 
 }  // namespace mssim

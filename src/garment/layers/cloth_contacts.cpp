@@ -30,8 +30,7 @@ NearestPoint nearest_on(const std::array<std::uint32_t, 3>& triangle, const Vec3
 
 /// The panel's normal at a node; its length is proportional to the area of the cells around it.
 Vec3<float> normal_at(const GarmentPanel& panel, std::uint32_t node, const Coordinates& position) {
-  const std::uint32_t row = (node - panel.first_node) / panel.columns;
-  const std::uint32_t column = (node - panel.first_node) % panel.columns;
+  const std::uint32_t row = panel.row_of(node), column = panel.column_of(node);
   const auto at = [&](std::uint32_t r, std::uint32_t c) { return point_of(position, panel.node(r, c)); };
   const Vec3<float> along_row =
       at(row, std::min(column + 1, panel.columns - 1)) - at(row, column > 0 ? column - 1 : 0);
@@ -46,8 +45,7 @@ bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& tr
   bool lowest = true, highest = true, leftmost = true, rightmost = true;
   for (std::size_t i = 0; i < 3; ++i) {
     if (weight[i] <= 0) continue;
-    const std::uint32_t row = (triangle[i] - panel.first_node) / panel.columns;
-    const std::uint32_t column = (triangle[i] - panel.first_node) % panel.columns;
+    const std::uint32_t row = panel.row_of(triangle[i]), column = panel.column_of(triangle[i]);
     lowest = lowest && row == 0;
     highest = highest && row == panel.rows - 1;
     leftmost = leftmost && column == 0;

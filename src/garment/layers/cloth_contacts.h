@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <set>
@@ -129,10 +130,7 @@ class ClothContactSearch {
     float distance_squared;
     std::uint32_t triangle;  // 2 * cell + half
 
-    bool operator<(const Nearest& other) const {
-      return distance_squared < other.distance_squared ||
-             (distance_squared == other.distance_squared && triangle < other.triangle);
-    }
+    auto operator<=>(const Nearest&) const = default;
   };
   struct Candidate {
     std::uint32_t slot;

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <set>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "garment/stepping/published_dressing.h"
 #include "text/text.h"
@@ -184,72 +181,48 @@ Table data_of(const Layout& layout) {
   return table;
 }
 
-/// A column of garment.csv that every row has: a value of the row, a value computed from it, or a value of
-/// its dressing, which only this file has and which is empty without a dressing.
+template <auto member>
+Cell of_row(const ResultRow& row) {
+  return row.*member;
+}
+
+/// Nothing without a dressing.
+template <auto member>
+Cell of_dressing(const ResultRow& row) {
+  return row.dressing ? Cell(*row.dressing.*member) : Cell();
+}
+
+/// A column of garment.csv that every row has.
 struct GarmentColumn {
   std::string_view name;
-  std::variant<std::string ResultRow::*, std::uint64_t ResultRow::*, int ResultRow::*, double ResultRow::*,
-               std::optional<double> ResultRow::*, bool ResultRow::*, Cell (*)(const ResultRow& row),
-               std::uint64_t DressingRecord::*, std::optional<std::uint64_t> DressingRecord::*,
-               bool DressingRecord::*, double DressingRecord::*>
-      value;
+  Cell (*cell)(const ResultRow& row);
 };
 
 /// The TABLE of columns, in order; the numbers of the fit follow.
-constexpr std::size_t iterations_column = 12;
 constexpr auto columns = std::to_array<GarmentColumn>({
-    {"scene", &ResultRow::scene},
-    {"nodes", &ResultRow::nodes},
-    {"backend", &ResultRow::backend},
-    {"device", &ResultRow::device},
-    {"threads", &ResultRow::threads},
-    {"integrator", &ResultRow::integrator},
-    {"dt_s", &ResultRow::dt_s},
-    {"ms_per_iteration", &ResultRow::ms_per_step},
-    {"ms_per_iteration_low", &ResultRow::ms_per_step_low},
-    {"ms_per_iteration_high", &ResultRow::ms_per_step_high},
+    {"scene", of_row<&ResultRow::scene>},
+    {"nodes", of_row<&ResultRow::nodes>},
+    {"backend", of_row<&ResultRow::backend>},
+    {"device", of_row<&ResultRow::device>},
+    {"threads", of_row<&ResultRow::threads>},
+    {"integrator", of_row<&ResultRow::integrator>},
+    {"dt_s", of_row<&ResultRow::dt_s>},
+    {"ms_per_iteration", of_row<&ResultRow::ms_per_step>},
+    {"ms_per_iteration_low", of_row<&ResultRow::ms_per_step_low>},
+    {"ms_per_iteration_high", of_row<&ResultRow::ms_per_step_high>},
     {"ns_per_iteration_and_vertex",
      [](const ResultRow& row) { return Cell(ns_per_node(row, row.ms_per_step)); }},
-    {"speedup_vs_serial", &ResultRow::speedup_vs_serial},
-    {"dressing_iterations", &DressingRecord::iterations},
-    {"seamed_at", &DressingRecord::seamed_at},
-    {"settled", &DressingRecord::settled},
-    {"simulated_s", &DressingRecord::simulated_s},
-    {"dressing_s", &DressingRecord::wall_s},
+    {"speedup_vs_serial", of_row<&ResultRow::speedup_vs_serial>},
+    {"dressing_iterations", of_dressing<&DressingRecord::iterations>},
+    {"seamed_at", of_dressing<&DressingRecord::seamed_at>},
+    {"settled", of_dressing<&DressingRecord::settled>},
+    {"simulated_s", of_dressing<&DressingRecord::simulated_s>},
+    {"dressing_s", of_dressing<&DressingRecord::wall_s>},
     {"dressing_ms_per_iteration",
      [](const ResultRow& row) { return row.dressing ? Cell(ms_per_iteration(*row.dressing)) : Cell(); }},
-    {"verified", &ResultRow::verified},
-    {"status", &ResultRow::status},
+    {"verified", of_row<&ResultRow::verified>},
+    {"status", of_row<&ResultRow::status>},
 });
-static_assert(columns[iterations_column].name == "dressing_iterations");
-
-Cell cell_of(const ResultRow& row, const GarmentColumn& column) {
-  return std::visit(
-      [&](auto value) -> Cell {
-        if constexpr (std::is_invocable_v<decltype(value), const ResultRow&>)
-          return std::invoke(value, row);
-        else
-          return row.dressing ? Cell((*row.dressing).*value) : Cell();
-      },
-      column.value);
-}
-
-void read_field(const CsvTable& table, std::size_t line, std::size_t column, DressingRecord& record) {
-  const auto read = [&](auto& value) {
-    using Value = std::remove_reference_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, bool>)
-      value = table.truth(line, column);
-    else if constexpr (std::is_same_v<Value, double>)
-      value = table.number(line, column);
-    else if (std::is_same_v<Value, std::uint64_t> || !table.text(line, column).empty())
-      value = table.count(line, column);
-  };
-  std::visit(
-      [&](auto value) {
-        if constexpr (std::is_invocable_v<decltype(value), DressingRecord&>) read(record.*value);
-      },
-      columns.at(column).value);
-}
 
 constexpr std::string_view within_suffix = "_within";
 
@@ -263,10 +236,8 @@ std::vector<FitNumberRecord> most_of_a_fit(std::span<const ResultRow* const> row
 
 void add_fit(const std::vector<FitNumberRecord>& known, const ResultRow& row, std::vector<Cell>& cells) {
   for (const FitNumberRecord& number : known) {
-    const FitNumberRecord* found = nullptr;
-    if (row.dressing)
-      for (const FitNumberRecord& candidate : row.dressing->fit)
-        if (candidate.name == number.name) found = &candidate;
+    const FitNumberRecord* const found =
+        row.dressing ? found_in(row.dressing->fit, number.name, &FitNumberRecord::name) : nullptr;
     cells.push_back(found ? Cell(found->value) : Cell());
     if (number.within) cells.push_back(found ? Cell(found->within) : Cell());
   }
@@ -316,7 +287,7 @@ std::string garment_csv(std::span<const ResultRow> rows) {
   }
   for (const ResultRow* row : dressed) {
     std::vector<Cell>& cells = table.rows.emplace_back();
-    for (const GarmentColumn& column : columns) cells.push_back(cell_of(*row, column));
+    for (const GarmentColumn& column : columns) cells.push_back(column.cell(*row));
     add_fit(fit, *row, cells);
   }
   return table_csv(table);
@@ -324,14 +295,19 @@ std::string garment_csv(std::span<const ResultRow> rows) {
 
 void read_dressings(const CsvTable& table, std::span<ResultRow> rows) {
   table.require_columns(mapped<std::string_view>(columns, &GarmentColumn::name));
+  const std::size_t iterations = table.column("dressing_iterations"), seamed_at = table.column("seamed_at");
   for (std::size_t line = 0; line < table.size(); ++line) {
-    if (table.text(line, iterations_column).empty()) continue;
+    if (table.text(line, iterations).empty()) continue;
     for (ResultRow& row : rows) {
       if (row.scene != table.text(line, 0) || row.backend != table.text(line, 2) ||
           row.integrator != table.text(line, 5))
         continue;
       DressingRecord& record = row.dressing.emplace();
-      for (std::size_t column = 0; column < columns.size(); ++column) read_field(table, line, column, record);
+      record.iterations = table.count(line, iterations);
+      if (!table.text(line, seamed_at).empty()) record.seamed_at = table.count(line, seamed_at);
+      record.settled = table.truth(line, table.column("settled"));
+      record.simulated_s = table.number(line, table.column("simulated_s"));
+      record.wall_s = table.number(line, table.column("dressing_s"));
       record.fit = read_fit(table, line);
     }
   }

@@ -19,9 +19,7 @@ namespace {
 template <class Item, class Number>
 void write_numbers(hid_t file, const std::string& path, const std::vector<Item>& items, Number Item::*member,
                    hid_t file_type, hid_t memory_type) {
-  std::vector<Number> numbers;
-  numbers.reserve(items.size());
-  for (const Item& item : items) numbers.push_back(item.*member);
+  const auto numbers = mapped<Number>(items, member);
   write_array(file, path, file_type, memory_type, std::array<hsize_t, 1>{numbers.size()}, numbers.data());
 }
 
@@ -47,8 +45,9 @@ void write_garment(hid_t file, const Garment& garment) {
   write_texts(file, panels + "/name", mapped<std::string_view>(garment.panels, &GarmentPanel::name));
   for (const auto& [name, member] : panel_numbers)
     write_numbers(file, panels + name, garment.panels, member, H5T_STD_U32LE, H5T_NATIVE_UINT32);
-  std::vector<std::array<double, 2>> flat;
-  for (const Vec3d& node : garment.flat) flat.push_back({node.x, node.y});
+  const auto flat = mapped<std::array<double, 2>>(garment.flat, [](const Vec3d& node) {
+    return std::array{node.x, node.y};
+  });
   write_array(file, panels + "/flat", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
               std::array<hsize_t, 2>{flat.size(), 2}, flat.data());
   if (garment.joints.empty()) return;
@@ -61,10 +60,9 @@ void write_garment(hid_t file, const Garment& garment) {
 }
 
 void write_joints(hid_t file, const std::string& particles, const Garment& garment) {
-  std::vector<std::array<std::uint32_t, 3>> tuples;
-  tuples.reserve(garment.joints.size());
-  for (const Joint& joint : garment.joints)
-    tuples.push_back({joint.node, joint.edge_first, joint.edge_second});
+  const auto tuples = mapped<std::array<std::uint32_t, 3>>(garment.joints, [](const Joint& joint) {
+    return std::array{joint.node, joint.edge_first, joint.edge_second};
+  });
   write_tuples<3>(file, "/connectivity/joints", particles, tuples);
 }
 

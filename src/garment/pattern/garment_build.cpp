@@ -103,19 +103,16 @@ std::string text_of(const SeamStretch& stretch) {
 
 std::size_t panel_named(const std::string& where, const std::string& name,
                         std::span<const GarmentPanel> panels) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    if (panels[i].name == name) return i;
-    names.push_back(panels[i].name);
-  }
-  throw InputError("{}there is no panel {}; use one of {}", where, name, join(names, ", "));
+  const auto found = std::ranges::find(panels, name, &GarmentPanel::name);
+  if (found == panels.end())
+    throw InputError("{}there is no panel {}; use one of {}", where, name,
+                     join(mapped<std::string>(panels, &GarmentPanel::name), ", "));
+  return static_cast<std::size_t>(found - panels.begin());
 }
 
 std::size_t nearest(const std::vector<double>& arcs, double arc) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < arcs.size(); ++i)
-    if (std::abs(arcs[i] - arc) < std::abs(arcs[best] - arc)) best = i;
-  return best;
+  const auto found = std::ranges::min_element(arcs, {}, [&](double at) { return std::abs(at - arc); });
+  return static_cast<std::size_t>(found - arcs.begin());
 }
 
 StretchNodes nodes_of(const std::string& where, const SeamStretch& stretch,
@@ -155,48 +152,14 @@ Joint place_at(const StretchNodes& coarser, double fraction) {
   return joint;
 }
 
+/// The first node of the waistband; the number of nodes without one.
+std::size_t first_of_band(const PanelMesh& mesh, const PanelMaterial& cloth) {
+  return mesh.node(mesh.rows - waistband_rows(mesh, cloth.waistband), 0);
+}
+
 template <class T>
 void append(std::vector<T>& all, const std::vector<T>& more) {
   all.insert(all.end(), more.begin(), more.end());
-}
-
-/// The factor of the seams' force on each node.
-std::vector<double> seam_factors(const PanelMesh& mesh, const Waistband& waistband) {
-  std::vector<double> factors(mesh.nodes.size(), 1);
-  for (std::size_t node = mesh.node(mesh.rows - waistband_rows(mesh, waistband), 0); node < factors.size();
-       ++node)
-    factors[node] = waistband.seam_factor;
-  return factors;
-}
-
-/// Intermediate data of building a garment.
-struct Workshop {
-  std::vector<PanelMesh> meshes;  ///< [panels]
-  std::vector<double> strengths;  ///< [nodes] factors of the seams' force
-};
-
-void add_panel(const PatternPanel& panel, const BodyDepth& body, Workshop& workshop, GarmentBuild& build) {
-  Garment& garment = build.garment;
-  const std::string& name = panel.piece.name;
-  for (const GarmentPanel& other : garment.panels)
-    if (other.name == name) throw InputError(name + ": two panels have this name; rename one of them");
-  require_cloth(name, panel.cloth);
-  const PanelMesh& mesh = workshop.meshes.emplace_back(mesh_panel(panel.piece, panel.grid));
-  garment.panels.push_back(
-      {name, mesh.rows, mesh.columns, static_cast<std::uint32_t>(garment.flat.size()), panel.layer});
-  append(garment.flat, mesh.nodes);
-  append(build.placed, place_panel(name, mesh, panel.placement, body));
-  append(build.node_mass, node_masses(mesh, panel.cloth));
-  append(workshop.strengths, seam_factors(mesh, panel.cloth.waistband));
-  append_springs(garment.panels.back(), mesh, panel.cloth, build.springs, build.materials);
-}
-
-void add_seam(const Seam& seam, const Workshop& workshop, Garment& garment) {
-  std::vector<Joint> joints =
-      join_seam(seam, garment.panels, workshop.meshes, static_cast<std::uint32_t>(garment.seams.size()));
-  for (Joint& joint : joints) joint.strength = workshop.strengths[joint.node];
-  garment.seams.push_back(seam.name);
-  append(garment.joints, joints);
 }
 
 /// Calls `add` with each part. Throws PatternError with the index of a part that `add` refuses.
@@ -216,9 +179,8 @@ CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
   std::set<std::uint32_t> nodes;
   const auto add_beside = [&](std::uint32_t sewn) {
     const GarmentPanel& panel = garment.panel_of(sewn);
-    const std::uint32_t row = (sewn - panel.first_node) / panel.columns;
     for (std::uint32_t column = 0; column < panel.columns; ++column) {
-      const std::uint32_t node = panel.node(row, column);
+      const std::uint32_t node = panel.node(panel.row_of(sewn), column);
       if (length(garment.flat[node] - garment.flat[sewn]) <= close.reach) nodes.insert(node);
     }
   };
@@ -287,12 +249,11 @@ void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const Pane
   const auto first_material = static_cast<std::uint32_t>(materials.size());
   materials.insert(materials.end(), {cloth.structural, cloth.shear, cloth.bending});
   const std::uint32_t hoop = first_material + 3;
-  const std::uint32_t rows_of_band = waistband_rows(mesh, cloth.waistband);
-  if (rows_of_band > 0) {
+  const std::size_t band_begin = first_of_band(mesh, cloth);
+  if (band_begin < mesh.nodes.size()) {
     materials.push_back(cloth.structural);
     materials.back().stiffness *= cloth.waistband.stiffness_factor;
   }
-  const std::size_t band_begin = mesh.node(mesh.rows - rows_of_band, 0);
   for (Spring spring : springs_of(GridPatch{mesh.rows, mesh.columns, 1})) {
     const bool along_a_row = spring.kind == structural && spring.second == spring.first + 1;
     spring.kind = along_a_row && spring.first >= band_begin ? hoop : first_material + spring.kind;
@@ -311,7 +272,7 @@ std::vector<double> node_masses(const PanelMesh& mesh, const PanelMaterial& clot
       masses[corner] += fraction;
   });
   const double mean = area_of(mesh) * cloth.area_density / static_cast<double>(masses.size());
-  const std::size_t band_begin = mesh.node(mesh.rows - waistband_rows(mesh, cloth.waistband), 0);
+  const std::size_t band_begin = first_of_band(mesh, cloth);
   for (std::size_t node = 0; node < masses.size(); ++node) {
     masses[node] = std::max(masses[node], cloth.least_mass_share * mean);
     if (node >= band_begin) masses[node] *= cloth.waistband.mass_factor;
@@ -381,13 +342,33 @@ std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> pan
 
 GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body) {
   GarmentBuild build;
-  Workshop workshop;
-  add_each(pattern.panels, PatternError::Part::panel,
-           [&](const PatternPanel& panel) { add_panel(panel, body, workshop, build); });
-  add_each(pattern.seams, PatternError::Part::seam,
-           [&](const Seam& seam) { add_seam(seam, workshop, build.garment); });
-  build.garment.close = close_cloth(pattern.close, build.garment);
-  build.garment.crotch = where_seams_meet(pattern.crotch, build.garment);
+  Garment& garment = build.garment;
+  std::vector<PanelMesh> meshes;  // [panels]
+  std::vector<double> strengths;  // [nodes] factors of the seams' force
+  add_each(pattern.panels, PatternError::Part::panel, [&](const PatternPanel& panel) {
+    const std::string& name = panel.piece.name;
+    if (found_in(garment.panels, name, &GarmentPanel::name))
+      throw InputError(name + ": two panels have this name; rename one of them");
+    require_cloth(name, panel.cloth);
+    const PanelMesh& mesh = meshes.emplace_back(mesh_panel(panel.piece, panel.grid));
+    garment.panels.push_back(
+        {name, mesh.rows, mesh.columns, static_cast<std::uint32_t>(garment.flat.size()), panel.layer});
+    strengths.resize(garment.flat.size() + first_of_band(mesh, panel.cloth), 1);
+    append(garment.flat, mesh.nodes);
+    strengths.resize(garment.flat.size(), panel.cloth.waistband.seam_factor);
+    append(build.placed, place_panel(name, mesh, panel.placement, body));
+    append(build.node_mass, node_masses(mesh, panel.cloth));
+    append_springs(garment.panels.back(), mesh, panel.cloth, build.springs, build.materials);
+  });
+  add_each(pattern.seams, PatternError::Part::seam, [&](const Seam& seam) {
+    std::vector<Joint> joints =
+        join_seam(seam, garment.panels, meshes, static_cast<std::uint32_t>(garment.seams.size()));
+    for (Joint& joint : joints) joint.strength = strengths[joint.node];
+    garment.seams.push_back(seam.name);
+    append(garment.joints, joints);
+  });
+  garment.close = close_cloth(pattern.close, garment);
+  garment.crotch = where_seams_meet(pattern.crotch, garment);
   return build;
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "geometry/geometry.h"
-#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -202,9 +202,9 @@ class Drafting {
   static Vec3d along(const Vec3d& from, const Vec3d& to) { return 1 / (to.y - from.y) * (to - from); }
 
   Curve from_crease(const Curve& curve) const {
-    std::vector<Vec3d> points = curve.points();
-    for (Vec3d& point : points) point.x -= crease_;
-    return Curve(std::move(points));
+    return Curve(mapped<Vec3d>(curve.points(), [this](const Vec3d& point) {
+      return point - Vec3d{crease_, 0, 0};
+    }));
   }
 
   /// The centre seam's lean at the waist over its mean.

@@ -30,13 +30,9 @@ void require_corner(const PatternPiece& piece, std::string_view corner, const Ve
 /// The outline, counter-clockwise. At corners, where curves meet only approximately, it uses one curve's
 /// point; otherwise the gap would look like a crossing.
 std::vector<Segment> outline_of(const PatternPiece& piece) {
-  std::vector<Vec3d> points;
-  std::vector<PanelEdge> edges;
+  std::vector<Segment> outline;
   const auto add = [&](PanelEdge edge, auto begin, auto end) {
-    for (auto point = begin; point + 1 != end; ++point) {
-      points.push_back(*point);
-      edges.push_back(edge);
-    }
+    for (auto point = begin; point + 1 != end; ++point) outline.push_back({*point, {}, edge, outline.size()});
   };
   const auto &lower = piece.bottom.points(), &upper = piece.top.points();
   const auto &to_left = piece.left.points(), &to_right = piece.right.points();
@@ -44,10 +40,7 @@ std::vector<Segment> outline_of(const PatternPiece& piece) {
   add(PanelEdge::right, to_right.begin(), to_right.end());
   add(PanelEdge::top, upper.rbegin(), upper.rend());
   add(PanelEdge::left, to_left.rbegin(), to_left.rend());
-  std::vector<Segment> outline;
-  outline.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    outline.push_back({points[i], points[(i + 1) % points.size()], edges[i], i});
+  for (Segment& segment : outline) segment.to = outline[(segment.number + 1) % outline.size()].from;
   return outline;
 }
 
@@ -84,9 +77,7 @@ void require_simple_boundary(const PatternPiece& piece) {
   std::vector<Segment> outline = outline_of(piece);
   const std::size_t count = outline.size();
   // By height, so that each is compared only with those at the same height.
-  std::sort(outline.begin(), outline.end(), [](const Segment& a, const Segment& b) {
-    return a.lowest() != b.lowest() ? a.lowest() < b.lowest() : a.number < b.number;
-  });
+  std::ranges::sort(outline, {}, [](const Segment& s) { return std::pair(s.lowest(), s.number); });
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = i + 1; j < count && outline[j].lowest() <= outline[i].highest(); ++j) {
       const Segment &a = outline[i], &b = outline[j];
@@ -153,17 +144,11 @@ void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
 
 /// m, of the line ends on a boundary
 std::vector<double> arcs_of(const Curve& boundary, const std::vector<double>& fractions) {
-  std::vector<double> arcs;
-  arcs.reserve(fractions.size());
-  for (const double fraction : fractions) arcs.push_back(fraction * boundary.length());
-  return arcs;
+  return mapped<double>(fractions, [&](double fraction) { return fraction * boundary.length(); });
 }
 
 std::vector<Vec3d> points_at(const Curve& boundary, const std::vector<double>& fractions) {
-  std::vector<Vec3d> points;
-  points.reserve(fractions.size());
-  for (const double fraction : fractions) points.push_back(boundary.at(fraction));
-  return points;
+  return mapped<Vec3d>(fractions, [&](double fraction) { return boundary.at(fraction); });
 }
 
 }  // namespace
@@ -217,9 +202,7 @@ Curve Curve::followed_by(const Curve& next) const {
 }
 
 Curve Curve::mirrored() const {
-  std::vector<Vec3d> points = points_;
-  for (Vec3d& point : points) point.x = -point.x;
-  return Curve(std::move(points));
+  return Curve(mapped<Vec3d>(points_, [](const Vec3d& p) { return Vec3d{-p.x, p.y, p.z}; }));
 }
 
 std::vector<std::size_t> PanelMesh::edge_nodes(PanelEdge edge) const {

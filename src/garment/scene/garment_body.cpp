@@ -13,9 +13,8 @@
 namespace mssim {
 namespace {
 
-void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
-  const std::string part(key);
-  fields.object({key, fmt::format("Girth of the {}.", part)}, Presence::required, [&](FieldVisitor& at) {
+void visit_girth(FieldVisitor& fields, std::string_view part, GirthAt& girth) {
+  fields.object({part, fmt::format("Girth of the {}.", part)}, Presence::required, [&](FieldVisitor& at) {
     visit_length(at, {"girth_m", fmt::format("Girth of the {} as a tape measures it, m.", part)},
                  girth.girth);
     visit_length(at, {"height_m", "Height above the floor at which the girth is measured, m."}, girth.height);
@@ -24,12 +23,7 @@ void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
 
 void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
   auto& [measures, cells_around] = garment.body.emplace<MannequinBody>();
-  visit_girth(fields, "bust", measures.bust);
-  visit_girth(fields, "waist", measures.waist);
-  visit_girth(fields, "hip", measures.hip);
-  visit_girth(fields, "thigh", measures.thigh);
-  visit_girth(fields, "knee", measures.knee);
-  visit_girth(fields, "ankle", measures.ankle);
+  for (const auto& [name, girth] : body_girths) visit_girth(fields, name, measures.*girth);
   visit_length(fields, {"crotch_height_m", "Height of the crotch above the floor, m."},
                measures.crotch_height);
   fields.number({"hip_depth_over_width", "Depth of the hip over its width, without unit."},

@@ -26,10 +26,10 @@ void visit_boundary(FieldVisitor& fields, const Field& field, BoundarySpec& boun
 
 void visit_piece(FieldVisitor& fields, PieceSpec& piece) {
   fields.text({"name", "Unique name of the panel, to which seams refer."}, Presence::required, piece.name);
-  fields.integer({"rows", "Rows of nodes, from the bottom boundary to the top one."}, piece.rows, 2,
+  fields.integer({"rows", "Rows of nodes, from the bottom boundary to the top one."}, piece.grid.rows, 2,
                  most_panel_lines);
-  fields.integer({"columns", "Columns of nodes, from the left boundary to the right one."}, piece.columns, 2,
-                 most_panel_lines);
+  fields.integer({"columns", "Columns of nodes, from the left boundary to the right one."},
+                 piece.grid.columns, 2, most_panel_lines);
   fields.integer({"layer", "Layer of cloth; 0 lies on the body, as jeans do."}, piece.layer, 0,
                  most_layers - 1);
   constexpr std::array<std::string_view, panel_edge_names.size()> descriptions{
@@ -41,15 +41,17 @@ void visit_piece(FieldVisitor& fields, PieceSpec& piece) {
                 Presence::required, [&](FieldVisitor& placement) {
                   constexpr std::array<std::string_view, 2> sides{"front", "back"};
                   visit_choice(placement, {"side", "In front of the body or behind it."}, Presence::required,
-                               sides, piece.behind);
-                  placement.number({"axis_m", "x of the drawing's x = 0, m."}, piece.axis_m,
+                               sides, piece.placement.behind);
+                  double axis = 0;
+                  placement.number({"axis_m", "x of the drawing's x = 0, m."}, axis,
                                    from(-largest_length_m, largest_length_m));
+                  piece.placement.axis = [axis](double) { return axis; };
                   placement.number(
                       {"distance_m", "Distance from the body's foremost (hindmost) point at each height, m."},
-                      piece.distance_m, above(0, largest_length_m));
+                      piece.placement.distance, above(0, largest_length_m));
                   placement.number(
                       {"bend_radius_m", "Radius of the vertical cylinder around which the panel is bent, m."},
-                      piece.bend_radius_m, above(0, largest_length_m));
+                      piece.placement.radius, above(0, largest_length_m));
                 });
   fields.object({"cloth", "Cloth of this panel, instead of the garment's."}, Presence::optional,
                 [&](FieldVisitor& cloth) { visit_cloth(cloth, piece.cloth.emplace()); });
@@ -74,19 +76,11 @@ Curve curve_of(const BoundarySpec& boundary) {
 }
 
 PatternPanel panel_of(const PieceSpec& piece, const PanelMaterial& cloth) {
-  const auto boundary = [&](PanelEdge edge) {
-    return curve_of(piece.boundaries.at(static_cast<std::size_t>(edge)));
-  };
-  PanelPlacement placement;
-  placement.behind = piece.behind;
-  placement.axis = [axis = piece.axis_m](double) { return axis; };
-  placement.distance = piece.distance_m;
-  placement.radius = piece.bend_radius_m;
-  return {{piece.name, boundary(PanelEdge::bottom), boundary(PanelEdge::top), boundary(PanelEdge::left),
-           boundary(PanelEdge::right)},
-          {piece.rows, piece.columns},
+  const auto& [bottom, top, left, right] = piece.boundaries;  // by PanelEdge
+  return {{piece.name, curve_of(bottom), curve_of(top), curve_of(left), curve_of(right)},
+          piece.grid,
           piece.cloth.value_or(cloth),
-          placement,
+          piece.placement,
           piece.layer};
 }
 
@@ -152,7 +146,7 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
                "is not a valid boundary: " + printable(error.what(), 1500));
       }
     }
-    nodes += std::uint64_t{piece.rows} * piece.columns;
+    nodes += std::uint64_t{piece.grid.rows} * piece.grid.columns;
   }
   if (nodes > most_nodes)
     refuse(file, pointer + "/panels",

@@ -28,14 +28,11 @@ struct BoundarySpec {
 /// A panel as a scene file describes it.
 struct PieceSpec {
   std::string name;
-  std::uint32_t rows = 0, columns = 0;  ///< of nodes
+  PanelGrid grid;
   std::uint32_t layer = 0;
   std::array<BoundarySpec, panel_edge_names.size()> boundaries;  ///< by PanelEdge
-  bool behind = false;                                           ///< behind the body, or else in front of it
-  double axis_m = 0;                                             ///< x of the piece's x = 0
-  double distance_m = 0;                                         ///< PanelPlacement::distance
-  double bend_radius_m = 0;                                      ///< PanelPlacement::radius
-  std::optional<PanelMaterial> cloth;                            ///< none: the garment's
+  PanelPlacement placement;
+  std::optional<PanelMaterial> cloth;  ///< none: the garment's
 };
 
 /// Panels and seams of the user's own pattern.

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string_view>
 
 #include "backends/interface/backend.h"
 
@@ -32,19 +31,18 @@ bool dresses(const Integrator& integrator);
 /// springs, six loops. `system.topology` is a Garment. Throws Unsupported for an integrator other than
 /// semi-euler.
 std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
-                                                      double dt_s);
+                                                      double dt_s, const ExecutionOptions& options = {});
 
 /// The serial dressing in double precision.
 std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, const Integrator& integrator,
                                                          double dt_s);
 
-/// Algorithm 1 in vectors along the rows of the panels, on `threads` threads; bitwise identical for every
-/// number of threads. `instruction_set` is one of openmp_instruction_sets(); empty: the best. Throws
-/// Unsupported for an integrator other than semi-euler and for springs of one row and direction that differ
-/// in stiffness, and std::invalid_argument for another instruction set.
+/// Algorithm 1 in vectors along the rows of the panels, with `threads` and `instruction_set` of the options;
+/// bitwise identical for every number of threads. The instruction set is one of openmp_instruction_sets();
+/// empty: the best. Throws Unsupported for an integrator other than semi-euler and for springs of one row and
+/// direction that differ in stiffness, and std::invalid_argument for another instruction set.
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
-                                                      double dt_s, int threads,
-                                                      std::string_view instruction_set = "");
+                                                      double dt_s, const ExecutionOptions& options);
 
 /// The distribution of a garment over a device's work-items.
 struct DressingShape {

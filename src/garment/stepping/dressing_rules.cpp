@@ -1,5 +1,6 @@
 #include "garment/stepping/dressing_rules.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace mssim {
@@ -8,6 +9,21 @@ bool dresses(const Integrator& integrator) { return integrator.name == "semi-eul
 
 void require_semi_euler(const Integrator& integrator) {
   if (!dresses(integrator)) throw Unsupported("only semi-euler dresses garments, as published");
+}
+
+void Seaming::start(const Garment& garment, const State& start) {
+  sewn.assign(garment.joints.size(), start.draped ? 1 : 0);
+  progress = first_progress(garment, start);
+  steps = 0;
+}
+
+void Seaming::end_step(const DressingSettings& rules, double dt_s) {
+  ++steps;
+  if (progress.draping) return;
+  progress.open_joints = static_cast<std::size_t>(std::ranges::count(sewn, 0));
+  if (!ends_seaming(rules, progress, steps, dt_s)) return;
+  std::ranges::fill(sewn, std::uint8_t{1});
+  progress = {0, true, steps};
 }
 
 std::optional<ClothClothCollision> layer_collision(const System& system, const Garment& garment,

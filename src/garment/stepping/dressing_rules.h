@@ -82,6 +82,18 @@ inline bool ends_seaming(const DressingSettings& rules, const DressingProgress& 
          (progress.open_joints == 0 || static_cast<double>(steps) * dt_s >= rules.longest_seaming_s);
 }
 
+/// The joints that are sewn, and the progress of the dressing.
+struct Seaming {
+  std::vector<std::uint8_t> sewn;  ///< [joints]
+  DressingProgress progress;
+  std::int64_t steps = 0;
+
+  /// Before the first step from this state.
+  void start(const Garment& garment, const State& start);
+  /// Counts a step and the joints that are still open. Sews those at the end of seaming.
+  void end_step(const DressingSettings& rules, double dt_s);
+};
+
 // The laws of kernels/garment_laws.h for one joint.
 
 /// A number or vector T for each of the three nodes of a joint.

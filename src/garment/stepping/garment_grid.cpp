@@ -39,15 +39,11 @@ constexpr std::size_t widest_vector = 16, empty_rows = 2;
 /// has none.
 std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::uint32_t& other) {
   if (other < owner) std::swap(owner, other);
-  const auto row = [&](std::uint32_t node) {
-    return std::ptrdiff_t{(node - panel.first_node) / panel.columns};
-  };
-  const auto column = [&](std::uint32_t node) {
-    return std::ptrdiff_t{(node - panel.first_node) % panel.columns};
-  };
+  const auto rows = std::int64_t{panel.row_of(other)} - panel.row_of(owner);
+  const auto columns = std::int64_t{panel.column_of(other)} - panel.column_of(owner);
   for (std::size_t d = 0; d < panel_stencil.size(); ++d)
-    if (other < panel.first_node + panel.nodes() && row(other) - row(owner) == panel_stencil[d].rows &&
-        column(other) - column(owner) == panel_stencil[d].columns)
+    if (other < panel.first_node + panel.nodes() && rows == panel_stencil[d].rows &&
+        columns == panel_stencil[d].columns)
       return d;
   throw std::invalid_argument(fmt::format("panel {} has a spring that is not in its stencil", panel.name));
 }
@@ -104,10 +100,7 @@ GarmentGrid::GarmentGrid(const System& system) : offset(system.nodes()) {
     for (const GarmentPanel& panel : garment.panels)
       for (std::uint32_t column = 0; column < panel.columns; ++column)
         held.push_back(offset[panel.node(panel.rows - 1, column)]);
-  position = Float3Arrays(floats);
-  moved = Float3Arrays(floats);
-  velocity = Float3Arrays(floats);
-  pull = Float3Arrays(floats);
+  for (Float3Arrays* arrays : {&position, &moved, &velocity, &pull}) *arrays = Float3Arrays(floats);
   inverse_mass = AlignedArray(floats);
   free = AlignedArray(floats);
   for (AlignedArray& lengths : rest) lengths = AlignedArray(floats);
@@ -120,9 +113,8 @@ GarmentGrid::GarmentGrid(const System& system) : offset(system.nodes()) {
     const GarmentPanel& panel = garment.panel_of(std::min(owner, other));
     const std::size_t direction = direction_of(panel, owner, other);
     rest[direction].data()[offset[owner]] = spring.rest_length;
-    const std::size_t row = (owner - panel.first_node) / panel.columns;
     const auto number = static_cast<std::size_t>(&panel - garment.panels.data());
-    float& stiffness = panels[number].stiffness[direction][row];
+    float& stiffness = panels[number].stiffness[direction][panel.row_of(owner)];
     const auto own = static_cast<float>(system.materials[spring.kind].stiffness);
     if (stiffness != 0 && stiffness != own)
       throw Unsupported(
@@ -140,7 +132,6 @@ void GarmentGrid::set_state(const State& state) {
     position.put(offset[i], vec3_cast<float>(state.position[i]));
     velocity.put(offset[i], vec3_cast<float>(state.velocity[i]));
   }
-  sewn.assign(joints.size(), state.draped ? 1 : 0);
 }
 
 State GarmentGrid::state() const {

@@ -95,8 +95,7 @@ struct GarmentGrid {
   AlignedArray free;                                    ///< inverse_mass, but 0 for nodes that friction holds
   std::array<AlignedArray, panel_stencil.size()> rest;  ///< m
   std::vector<Joint> joints;
-  std::vector<std::uint8_t> sewn;  ///< [joints]
-  std::vector<std::size_t> held;   ///< nodes that keep their height while the seams close, by float
+  std::vector<std::size_t> held;  ///< nodes that keep their height while the seams close, by float
 };
 
 }  // namespace mssim

@@ -39,18 +39,16 @@ class OpenMpDressing final : public DressingBackend {
 
   void set_state(const State& state) override {
     dressing_.grid.set_state(state);
-    dressing_.steps = 0;
-    dressing_.progress = first_progress(dressing_.garment, state);
+    dressing_.seaming.start(dressing_.garment, state);
   }
   void step(int count) override { kernel_.step(dressing_, count); }
   State state() const override {
     State state = dressing_.grid.state();
-    state.draped = dressing_.progress.draping;
+    state.draped = dressing_.seaming.progress.draping;
     return state;
   }
-  std::string device() const override { return "cpu"; }
   int threads() const override { return static_cast<int>(dressing_.threads); }
-  DressingProgress progress() const override { return dressing_.progress; }
+  DressingProgress progress() const override { return dressing_.seaming.progress; }
 
  private:
   const StepKernel<PanelDressing> kernel_;
@@ -64,15 +62,14 @@ void pull_joints(PanelDressing& dressing) {
   const DressingSettings& rules = dressing.garment.dressing;
   for (const GarmentGrid::Joint& joint : grid.joints)
     for (const std::size_t node : {joint.node, joint.first, joint.second}) grid.pull.put(node, {});
-  const double time_s = static_cast<double>(dressing.steps) * dressing.dt_s;
+  const double time_s = static_cast<double>(dressing.seaming.steps) * dressing.dt_s;
   for (std::size_t j = 0; j < grid.joints.size(); ++j) {
-    if (grid.sewn[j] != 0) continue;
+    if (dressing.seaming.sewn[j] != 0) continue;
     const GarmentGrid::Joint& joint = grid.joints[j];
     const auto pull = pull_of_joint(rules, dressing.garment.joints[j], time_s, at(grid.position, joint),
                                     inverse_masses(grid, joint));
     if (!pull) {
-      grid.sewn[j] = 1;
-      --dressing.progress.open_joints;
+      dressing.seaming.sewn[j] = 1;
       continue;
     }
     add(grid.pull, joint, *pull);
@@ -83,24 +80,23 @@ void close_sewn_joints(PanelDressing& dressing) {
   GarmentGrid& grid = dressing.grid;
   const auto rule = closing_rule<float>(dressing.garment.dressing, dressing.dt_s);
   for (std::size_t j = 0; j < grid.joints.size(); ++j) {
-    if (grid.sewn[j] == 0) continue;
+    if (dressing.seaming.sewn[j] == 0) continue;
     const GarmentGrid::Joint& joint = grid.joints[j];
     add(grid.velocity, joint,
         closing_of_joint(rule, joint.fraction, at(grid.moved, joint), at(grid.velocity, joint),
                          inverse_masses(grid, joint)));
   }
-  if (!dressing.progress.draping)
+  if (!dressing.seaming.progress.draping)
     for (const std::size_t at : grid.held) grid.velocity.y.data()[at] = 0;
 }
 
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
-                                                      double dt_s, int threads,
-                                                      std::string_view instruction_set) {
+                                                      double dt_s, const ExecutionOptions& options) {
   require_semi_euler(integrator);
   const std::vector<StepKernel<PanelDressing>> kernels = compiled_kernels<PanelDressing>();
   return std::make_unique<OpenMpDressing>(
-      system, dt_s, static_cast<std::size_t>(std::max(1, threads)),
-      instruction_set.empty() ? kernels.front() : kernel_named(kernels, instruction_set));
+      system, dt_s, static_cast<std::size_t>(std::max(1, options.threads)),
+      options.instruction_set.empty() ? kernels.front() : kernel_named(kernels, options.instruction_set));
 }
 
 }  // namespace mssim

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "garment/stepping/dressing_rules.h"
+#include "garment/stepping/list_dressing.h"
 #include "laws/host_laws.h"
 
 namespace mssim {
@@ -16,16 +16,21 @@ namespace {
 /// A point or vector in one register of four floats, the last of which is 0. NEON and every x86-64 have such
 /// registers. The compiler generates the instructions, as it does for intrinsic functions.
 class Vec3InRegister {
+  using Lanes [[gnu::vector_size(16)]] = float;
+
  public:
   Vec3InRegister() = default;
   Vec3InRegister(float x, float y, float z) : lanes_{x, y, z, 0} {}
-  float x() const { return lanes_[0]; }
-  float y() const { return lanes_[1]; }
-  float z() const { return lanes_[2]; }
+  Vec3InRegister(const Vec3<float>& a) : Vec3InRegister(a.x, a.y, a.z) {}
+  operator Vec3<float>() const { return {lanes_[0], lanes_[1], lanes_[2]}; }
 
-  friend Vec3InRegister operator+(Vec3InRegister a, Vec3InRegister b) { return of(a.lanes_ + b.lanes_); }
-  friend Vec3InRegister operator-(Vec3InRegister a, Vec3InRegister b) { return of(a.lanes_ - b.lanes_); }
-  friend Vec3InRegister operator*(float s, Vec3InRegister a) { return of(s * a.lanes_); }
+  friend Vec3InRegister operator+(Vec3InRegister a, Vec3InRegister b) {
+    return Vec3InRegister(a.lanes_ + b.lanes_);
+  }
+  friend Vec3InRegister operator-(Vec3InRegister a, Vec3InRegister b) {
+    return Vec3InRegister(a.lanes_ - b.lanes_);
+  }
+  friend Vec3InRegister operator*(float s, Vec3InRegister a) { return Vec3InRegister(s * a.lanes_); }
   Vec3InRegister& operator+=(Vec3InRegister a) { return *this = *this + a; }
   Vec3InRegister& operator-=(Vec3InRegister a) { return *this = *this - a; }
   /// Adds in the order of dot() of Vec3, so that both are bitwise identical.
@@ -35,24 +40,8 @@ class Vec3InRegister {
   }
 
  private:
-  using Lanes [[gnu::vector_size(16)]] = float;
-  static Vec3InRegister of(Lanes lanes) {
-    Vec3InRegister result;
-    result.lanes_ = lanes;
-    return result;
-  }
+  explicit Vec3InRegister(Lanes lanes) : lanes_(lanes) {}
   Lanes lanes_{};
-};
-
-template <class Vector>
-struct Components {
-  using Real = float;
-  static Vec3<Real> of(Vector a) { return {a.x(), a.y(), a.z()}; }
-};
-template <class Number>
-struct Components<Vec3<Number>> {
-  using Real = Number;
-  static const Vec3<Real>& of(const Vec3<Number>& a) { return a; }
 };
 
 /// Order in which threads process things that write to nodes: rounds of batches without a common node.
@@ -101,17 +90,11 @@ ThreadSafeOrder thread_safe_order(std::size_t nodes, std::size_t count, std::siz
 constexpr std::size_t springs_of_a_batch = 128, joints_of_a_batch = 16;
 
 template <class Vector, bool parallel>
-class PublishedLoops final : public DressingBackend {
+class PublishedLoops final : public ListDressing<Vector> {
  public:
   PublishedLoops(const System& system, double dt_s, int threads)
-      : system_(system),
-        garment_(std::get<Garment>(system.topology)),
-        rules_(garment_.dressing),
-        dt_(static_cast<Real>(dt_s)),
-        dt_s_(dt_s),
+      : ListDressing<Vector>(system, dt_s),
         threads_(parallel ? std::max(1, threads) : 1),
-        nodes_(system.nodes()),
-        force_(system.nodes()),
         spring_order_(thread_safe_order(system.nodes(), system.springs.size(), springs_of_a_batch,
                                         [&](std::size_t i) {
                                           const Spring& spring = system.springs[i];
@@ -123,11 +106,7 @@ class PublishedLoops final : public DressingBackend {
                                          return std::array{joint.node, joint.edge_first, joint.edge_second};
                                        })),
         sewn_stiffness_(garment_.joints.size()) {
-    for (const double mass : system.node_mass) {
-      mass_.push_back(static_cast<Real>(mass));
-      inverse_mass_.push_back(static_cast<Real>(1 / mass));
-    }
-    for (const std::uint32_t pin : system.pins) inverse_mass_[pin] = 0;
+    for (const double mass : system.node_mass) mass_.push_back(static_cast<Real>(mass));
     const Real limit = 1 + static_cast<Real>(rules_.correction_threshold);
     for (const std::uint32_t i : spring_order_.things) {
       const Spring& spring = system.springs[i];
@@ -147,36 +126,15 @@ class PublishedLoops final : public DressingBackend {
     }
     for (const GarmentPanel& panel : garment_.panels)
       bodies_.insert(bodies_.end(), panel.nodes(), garment_.body_met_by(panel));
-    PublishedLoops::set_state(system.start);
-  }
-
-  void set_state(const State& state) override {
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const auto x = vec3_cast<Real>(state.position[i]), v = vec3_cast<Real>(state.velocity[i]);
-      nodes_[i] = {{x.x, x.y, x.z}, {v.x, v.y, v.z}};
-    }
-    sewn_.assign(garment_.joints.size(), state.draped ? 1 : 0);
-    progress_ = first_progress(garment_, state);
-    steps_ = 0;
-  }
-
-  State state() const override {
-    State state;
-    for (const Node& node : nodes_)
-      state.add(vec3_cast<double>(Components<Vector>::of(node.x)),
-                vec3_cast<double>(Components<Vector>::of(node.v)));
-    state.draped = progress_.draping;
-    return state;
   }
 
   int threads() const override { return threads_; }
-  DressingProgress progress() const override { return progress_; }
 
   void step(int count) override {
     for (int step = 0; step < count; ++step) {
-      const auto phase = phase_rule<Real>(system_, rules_, progress_.draping);
+      const auto phase = phase_rule<Real>(system_, rules_, seaming_.progress.draping);
       const Vector gravity{0, -phase.gravity, 0};
-      const double time_s = static_cast<double>(steps_) * dt_s_;
+      const double time_s = static_cast<double>(seaming_.steps) * dt_s_;
       for_each_of(spring_order_, [&](std::size_t i) { add_spring_force(springs_[i]); });
       for_each(nodes_.size(), [&](std::size_t i) { add_external_forces(i, phase.damping, gravity); });
       for_each_of(joint_order_, [&](std::size_t i) { add_joint_force(joint_order_.things[i], time_s); });
@@ -184,16 +142,15 @@ class PublishedLoops final : public DressingBackend {
       if (rules_.correction != VelocityCorrection::none)
         for_each_of(spring_order_, [&](std::size_t i) { correct(springs_[i]); });
       for_each(nodes_.size(), [&](std::size_t i) { move(i); });
-      end_step();
+      seaming_.end_step(rules_, dt_s_);
     }
   }
 
  private:
-  using Real = typename Components<Vector>::Real;
-  struct Node {
-    Vector x;  ///< m
-    Vector v;  ///< m/s
-  };
+  using Base = ListDressing<Vector>;
+  using Base::system_, Base::garment_, Base::rules_, Base::dt_, Base::dt_s_, Base::nodes_, Base::force_,
+      Base::inverse_mass_, Base::seaming_;
+  using typename Base::Node, typename Base::Real;
   struct ListedSpring {
     std::uint32_t first, second;
     LinearSpring<Real> law;
@@ -237,12 +194,13 @@ class PublishedLoops final : public DressingBackend {
     const Vector& first = nodes_[joint.edge_first].x;
     const Vector gap = first + share * (nodes_[joint.edge_second].x - first) - nodes_[joint.node].x;
     const Real distance = square_root(dot(gap, gap));
-    if (distance < static_cast<Real>(rules_.sewn_gap)) sewn_[j] = 1;
+    if (distance < static_cast<Real>(rules_.sewn_gap)) seaming_.sewn[j] = 1;
     const Real per_gap =
-        sewn_[j] != 0 ? sewn_stiffness_[j]
-                      : static_cast<Real>(seam_force(rules_.seam_force, time_s / rules_.seam_force_doubling_s,
-                                                     joint.length, joint.strength)) /
-                            distance;
+        seaming_.sewn[j] != 0
+            ? sewn_stiffness_[j]
+            : static_cast<Real>(seam_force(rules_.seam_force, time_s / rules_.seam_force_doubling_s,
+                                           joint.length, joint.strength)) /
+                  distance;
     const Vector force = per_gap * gap;
     force_[joint.node] += force;
     force_[joint.edge_first] -= (1 - share) * force;
@@ -261,7 +219,7 @@ class PublishedLoops final : public DressingBackend {
   /// The contact of kernels/body_contact.h without its push, in vector operations.
   void meet(const BodyMaps& body, Node& node, Real friction) const {
     const Vector at = node.x + dt_ * node.v;
-    const Vec3<Real> point = Components<Vector>::of(at);
+    const Vec3<Real> point = at;
     const BodyPixel& pixel = body.pixel_at(point.x, point.y);
     const Vector front{pixel.front_x, pixel.front_y, pixel.front_z};
     const Vector back{pixel.back_x, pixel.back_y, pixel.back_z};
@@ -289,32 +247,12 @@ class PublishedLoops final : public DressingBackend {
     if (inverse_mass_[i] != 0) nodes_[i].x += dt_ * nodes_[i].v;
   }
 
-  void end_step() {
-    ++steps_;
-    if (progress_.draping) return;
-    progress_.open_joints = static_cast<std::size_t>(std::ranges::count(sewn_, 0));
-    if (!ends_seaming(rules_, progress_, steps_, dt_s_)) return;
-    std::ranges::fill(sewn_, std::uint8_t{1});
-    progress_ = {0, true, steps_};
-  }
-
-  const System& system_;
-  const Garment& garment_;
-  const DressingSettings& rules_;
-  Real dt_;
-  double dt_s_;
   int threads_;
-  std::vector<Node> nodes_;
-  std::vector<Vector> force_;  ///< [nodes] N
   ThreadSafeOrder spring_order_, joint_order_;
   std::vector<ListedSpring> springs_;    ///< in spring_order_
   std::vector<Real> mass_;               ///< [nodes] kg
-  std::vector<Real> inverse_mass_;       ///< [nodes] 1/kg, 0 for a pin
   std::vector<const BodyMaps*> bodies_;  ///< [nodes] maps of the body for each
   std::vector<Real> sewn_stiffness_;     ///< [joints] N/m
-  std::vector<std::uint8_t> sewn_;       ///< [joints]
-  DressingProgress progress_;
-  std::int64_t steps_ = 0;
 };
 
 template <class Vector, bool parallel>

@@ -1,61 +1,33 @@
 #include <algorithm>
 #include <optional>
-#include <string>
-#include <type_traits>
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/garment_grid.h"
+#include "garment/stepping/list_dressing.h"
 #include "laws/host_laws.h"
 
 namespace mssim {
 namespace {
 
 template <class Real>
-class SerialDressing final : public DressingBackend {
+class SerialDressing final : public ListDressing<Vec3<Real>> {
  public:
   SerialDressing(const System& system, double dt_s)
-      : system_(system),
-        garment_(std::get<Garment>(system.topology)),
-        rules_(garment_.dressing),
-        dt_(static_cast<Real>(dt_s)),
-        dt_s_(dt_s),
-        nodes_(system.nodes()),
-        force_(system.nodes()),
+      : ListDressing<Vec3<Real>>(system, dt_s),
         correction_rule_(correction_rule<Real>(rules_, dt_s)),
         closing_rule_(closing_rule<Real>(rules_, dt_s)),
         correction_order_(correction_order(garment_, system.springs)),
         layers_(layer_collision(system, garment_, 1)) {
     for (const SpringMaterial& material : system.materials)
       undamped_.push_back({.stiffness = static_cast<Real>(material.stiffness)});
-    for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
-    for (const std::uint32_t pin : system.pins) inverse_mass_[pin] = 0;
-    SerialDressing::set_state(system.start);
   }
 
-  void set_state(const State& state) override {
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      nodes_[i] = {vec3_cast<Real>(state.position[i]), vec3_cast<Real>(state.velocity[i])};
-    sewn_.assign(garment_.joints.size(), state.draped ? 1 : 0);
-    progress_ = first_progress(garment_, state);
-    steps_ = 0;
-  }
-
-  State state() const override {
-    State state;
-    for (const Node& node : nodes_) state.add(vec3_cast<double>(node.x), vec3_cast<double>(node.v));
-    state.draped = progress_.draping;
-    return state;
-  }
-
-  std::string device() const override { return "cpu"; }
   int threads() const override { return 1; }
-  DressingProgress progress() const override { return progress_; }
 
   void step(int count) override {
     for (int step = 0; step < count; ++step) {
-      phase_ = phase_rule<Real>(system_, rules_, progress_.draping);
+      phase_ = phase_rule<Real>(system_, rules_, seaming_.progress.draping);
       add_spring_forces();
       add_external_forces();
       add_joint_forces();
@@ -66,16 +38,16 @@ class SerialDressing final : public DressingBackend {
       close_sewn_joints();
       hold_edges();
       move();
-      end_step();
+      seaming_.end_step(rules_, dt_s_);
     }
   }
 
  private:
   using Vector = Vec3<Real>;
-  struct Node {
-    Vector x;  ///< m
-    Vector v;  ///< m/s
-  };
+  using Base = ListDressing<Vector>;
+  using Base::system_, Base::garment_, Base::rules_, Base::dt_, Base::dt_s_, Base::nodes_, Base::force_,
+      Base::inverse_mass_, Base::seaming_;
+  using typename Base::Node;
 
   void add_spring_forces() {  // loop 1
     std::fill(force_.begin(), force_.end(), Vector{});
@@ -96,28 +68,21 @@ class SerialDressing final : public DressingBackend {
     }
   }
 
-  /// The values of `of` for the three nodes of a joint.
-  template <class Of>
-  static auto at_joint(const Joint& joint, const Of& of) {
-    return AtJoint<std::decay_t<decltype(of(0))>>{of(joint.node), of(joint.edge_first),
-                                                  of(joint.edge_second)};
-  }
-  AtJoint<Vector> positions_at(const Joint& joint) const {
-    return at_joint(joint, [&](std::uint32_t i) { return nodes_[i].x; });
+  AtJoint<Vector> at(const Joint& joint, Vector Node::*of) const {
+    return {nodes_[joint.node].*of, nodes_[joint.edge_first].*of, nodes_[joint.edge_second].*of};
   }
   AtJoint<Real> inverse_masses_at(const Joint& joint) const {
-    return at_joint(joint, [&](std::uint32_t i) { return inverse_mass_[i]; });
+    return {inverse_mass_[joint.node], inverse_mass_[joint.edge_first], inverse_mass_[joint.edge_second]};
   }
 
   void add_joint_forces() {  // loop 3
-    const double time_s = static_cast<double>(steps_) * dt_s_;
+    const double time_s = static_cast<double>(seaming_.steps) * dt_s_;
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
-      if (sewn_[j] != 0) continue;
+      if (seaming_.sewn[j] != 0) continue;
       const Joint& joint = garment_.joints[j];
-      const auto pull = pull_of_joint(rules_, joint, time_s, positions_at(joint), inverse_masses_at(joint));
+      const auto pull = pull_of_joint(rules_, joint, time_s, at(joint, &Node::x), inverse_masses_at(joint));
       if (!pull) {
-        sewn_[j] = 1;
-        --progress_.open_joints;
+        seaming_.sewn[j] = 1;
         continue;
       }
       force_[joint.node] += pull->node;
@@ -185,11 +150,11 @@ class SerialDressing final : public DressingBackend {
   /// gap.
   void close_sewn_joints() {
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
-      if (sewn_[j] == 0) continue;
+      if (seaming_.sewn[j] == 0) continue;
       const Joint& joint = garment_.joints[j];
-      const AtJoint<Vector> v = at_joint(joint, [&](std::uint32_t i) { return nodes_[i].v; });
-      const AtJoint<Vector> change = closing_of_joint(closing_rule_, static_cast<Real>(joint.edge_share),
-                                                      positions_at(joint), v, inverse_masses_at(joint));
+      const AtJoint<Vector> change =
+          closing_of_joint(closing_rule_, static_cast<Real>(joint.edge_share), at(joint, &Node::x),
+                           at(joint, &Node::v), inverse_masses_at(joint));
       nodes_[joint.node].v += change.node;
       nodes_[joint.edge_first].v += change.first;
       nodes_[joint.edge_second].v += change.second;
@@ -197,7 +162,7 @@ class SerialDressing final : public DressingBackend {
   }
 
   void hold_edges() {
-    if (!rules_.edge_held || progress_.draping) return;
+    if (!rules_.edge_held || seaming_.progress.draping) return;
     for (const GarmentPanel& panel : garment_.panels)
       for (std::uint32_t column = 0; column < panel.columns; ++column)
         nodes_[panel.node(panel.rows - 1, column)].v.y = 0;
@@ -213,37 +178,19 @@ class SerialDressing final : public DressingBackend {
     }
   }
 
-  void end_step() {
-    ++steps_;
-    if (!ends_seaming(rules_, progress_, steps_, dt_s_)) return;
-    std::fill(sewn_.begin(), sewn_.end(), std::uint8_t{1});
-    progress_ = {0, true, steps_};
-  }
-
-  const System& system_;
-  const Garment& garment_;
-  const DressingSettings& rules_;
-  Real dt_;
-  double dt_s_;
-  std::vector<Node> nodes_;
-  std::vector<Vector> force_;                    ///< [nodes] N; m/s^2 from loop 2 on
   std::vector<SpringConstants<Real>> undamped_;  ///< [kinds]
-  std::vector<Real> inverse_mass_;               ///< [nodes] 1/kg, 0 for a pin
   std::vector<Real> free_;  ///< [nodes] inverse_mass_, but 0 for nodes that friction holds
   PhaseRule<Real> phase_{};
   CorrectionRule<Real> correction_rule_;
   ClosingRule<Real> closing_rule_;
   std::vector<std::uint32_t> correction_order_;
   std::optional<ClothClothCollision> layers_;
-  std::vector<std::uint8_t> sewn_;  ///< [joints]
-  DressingProgress progress_;
-  std::int64_t steps_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
-                                                      double dt_s) {
+                                                      double dt_s, const ExecutionOptions& /*options*/) {
   require_semi_euler(integrator);
   return std::make_unique<SerialDressing<float>>(system, dt_s);
 }

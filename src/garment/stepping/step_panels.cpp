@@ -315,16 +315,6 @@ HWY_INLINE void correct(GarmentGrid& grid, const CorrectionRule<float>& rule, st
   }
 }
 
-/// Ends a step; called by the first thread.
-void end_step(PanelDressing& dressing) {
-  GarmentGrid& grid = dressing.grid;
-  const DressingSettings& rules = dressing.garment.dressing;
-  ++dressing.steps;
-  if (!ends_seaming(rules, dressing.progress, dressing.steps, dressing.dt_s)) return;
-  std::fill(grid.sewn.begin(), grid.sewn.end(), std::uint8_t{1});
-  dressing.progress = {0, true, dressing.steps};
-}
-
 /// A thread of a team, its blocks and its scratch memory.
 struct Worker : Team {
   Worker(const Team& team, const PanelDressing& dressing, ForceScratch& its)
@@ -338,7 +328,7 @@ struct Worker : Team {
 
 StepRule step_rule(const PanelDressing& dressing) {
   const DressingSettings& rules = dressing.garment.dressing;
-  const bool draping = dressing.progress.draping;
+  const bool draping = dressing.seaming.progress.draping;
   return {static_cast<float>(dressing.dt_s), static_cast<float>(rules.push_speed),
           phase_rule<float>(dressing.system, rules, draping), !draping, dressing.layers.has_value()};
 }
@@ -370,7 +360,7 @@ void move(PanelDressing& dressing, const Worker& worker) {
   worker.meet();
   if (worker.thread == 0) {
     close_sewn_joints(dressing);
-    end_step(dressing);
+    dressing.seaming.end_step(rules, dressing.dt_s);
   }
   worker.meet();
   for (std::size_t b = range.begin; b < range.end; ++b)

@@ -18,8 +18,7 @@ struct PanelDressing {
   std::size_t threads;
   double dt_s;
   std::optional<ClothClothCollision> layers;  ///< none: layers do not touch
-  std::int64_t steps = 0;
-  DressingProgress progress = {};
+  Seaming seaming = {};
   TeamGain team_gain = {};
 };
 

@@ -175,7 +175,7 @@ struct Jeans {
   GarmentReference reference;
 
   Jeans() {
-    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, 2);
+    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, {.threads = 2});
     const DressingResult result = dress(*backend, system, dt_s, {}, always);
     EXPECT_TRUE(result.settled);
     draped = result.state;
@@ -218,9 +218,8 @@ TEST(GarmentVerification, PassesTheBackendsThatDress) {
   ASSERT_FALSE(scene.reference.failure);
   ASSERT_EQ(scene.reference.seaming.size(), 20U);
   ASSERT_EQ(scene.reference.draped.size(), 20U);
-  const auto single = make_serial_dressing(scene.system, semi_euler, scene.dt_s);
-  const auto vectors = make_openmp_dressing(scene.system, semi_euler, scene.dt_s, 2);
-  for (Backend* backend : std::initializer_list<Backend*>{single.get(), vectors.get()}) {
+  for (const auto& backend : {make_serial_dressing(scene.system, semi_euler, scene.dt_s),
+                              make_openmp_dressing(scene.system, semi_euler, scene.dt_s, {.threads = 2})}) {
     const Verification found = verify_garment(*backend, scene.system, scene.reference, scene.dt_s);
     EXPECT_FALSE(found.failure) << *found.failure;
     EXPECT_GT(found.position_error, 0) << "single precision cannot be exact";
@@ -239,29 +238,34 @@ TEST(GarmentVerification, AllowsWhatFiveStepsRoundAndOneNodeWhatContactMoves) {
   EXPECT_NEAR(scene.reference.farthest * unit, 2.6e-3, 1e-9);
 }
 
-/// Displaces two thirds of the nodes of a draped garment, m along x.
-class DisplacesMost final : public PassesOn {
+/// Dresses the jeans, but gives states that differ once they are draped.
+class GivesOtherStates final : public PassesOn {
  public:
-  DisplacesMost(std::unique_ptr<DressingBackend> inner, double by) : PassesOn(std::move(inner)), by_(by) {}
+  explicit GivesOtherStates(std::function<void(std::vector<Vec3d>&)> move)
+      : PassesOn(make_serial_dressing(jeans().system, semi_euler, jeans().dt_s)), move_(std::move(move)) {}
   State state() const override {
     State state = PassesOn::state();
-    if (state.draped)
-      for (std::size_t i = 0; i < state.position.size(); ++i)
-        if (i % 3 != 0) state.position[i].x += by_;
+    if (state.draped) move_(state.position);
     return state;
   }
 
  private:
-  double by_;
+  std::function<void(std::vector<Vec3d>&)> move_;
 };
 
+Verification verify_moved(std::function<void(std::vector<Vec3d>&)> move) {
+  GivesOtherStates backend(std::move(move));
+  return verify_garment(backend, jeans().system, jeans().reference, jeans().dt_s);
+}
+
 TEST(GarmentVerification, AllowsHalfOfTheNodesAQuarterOfTheTolerance) {
-  const Jeans& scene = jeans();
-  const double unit = mean_rest_length(scene.system);
+  const double tolerance = jeans().reference.tolerance * mean_rest_length(jeans().system);
   const auto failure_if_displaced = [&](double share_of_tolerance) {
-    DisplacesMost backend(make_serial_dressing(scene.system, semi_euler, scene.dt_s),
-                          share_of_tolerance * scene.reference.tolerance * unit);
-    return verify_garment(backend, scene.system, scene.reference, scene.dt_s).failure.value_or("");
+    const auto move_most = [&](std::vector<Vec3d>& position) {
+      for (std::size_t i = 0; i < position.size(); ++i)
+        if (i % 3 != 0) position[i].x += share_of_tolerance * tolerance;
+    };
+    return verify_moved(move_most).failure.value_or("");
   };
   EXPECT_THAT(failure_if_displaced(0.5), HasSubstr("of half of the nodes"));
   EXPECT_THAT(failure_if_displaced(0.15), Not(HasSubstr("position error")));
@@ -323,25 +327,9 @@ TEST(GarmentVerification, FindsEveryMistake) {
   }
 }
 
-/// One node is pushed away in every state that it gives.
-class PushesOneNodeAway final : public PassesOn {
- public:
-  PushesOneNodeAway(const Jeans& scene, double metres)
-      : PassesOn(make_serial_dressing(scene.system, semi_euler, scene.dt_s)), metres_(metres) {}
-  State state() const override {
-    State state = PassesOn::state();
-    if (progress().draping) state.position[17].z += metres_;
-    return state;
-  }
-
- private:
-  double metres_;
-};
-
 TEST(GarmentVerification, FindsOneNodeThatIsFartherOffThanContactMovesIt) {
   const auto verified = [](double metres) {
-    PushesOneNodeAway backend(jeans(), metres);
-    return verify_garment(backend, jeans().system, jeans().reference, jeans().dt_s);
+    return verify_moved([metres](std::vector<Vec3d>& position) { position[17].z += metres; });
   };
   EXPECT_FALSE(verified(0.0002).failure) << "what contact may do";
   const Verification found = verified(0.006);

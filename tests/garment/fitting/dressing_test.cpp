@@ -128,7 +128,7 @@ std::vector<std::unique_ptr<DressingBackend>> backends(const System& system, int
   std::vector<std::unique_ptr<DressingBackend>> made;
   made.push_back(make_serial_dressing(system, semi_euler, dressing_dt_s));
   made.push_back(make_reference_dressing(system, semi_euler, dressing_dt_s));
-  made.push_back(make_openmp_dressing(system, semi_euler, dressing_dt_s, threads));
+  made.push_back(make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = threads}));
   return made;
 }
 

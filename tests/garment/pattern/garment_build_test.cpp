@@ -55,8 +55,7 @@ TEST(PanelSprings, BendingSpringsAreAsLongAsTheStraightDistance) {
 
 TEST(PanelSprings, AWaistbandIsStifferAlongItsRows) {
   const PanelMesh mesh = mesh_panel(rectangle_piece("p", 0.5, 0.7), {8, 6});
-  PanelMaterial cloth;
-  cloth.waistband.height = 0.25;
+  const PanelMaterial cloth{.waistband = {.height = 0.25}};
   EXPECT_EQ(waistband_rows(mesh, cloth.waistband), 3U);
   Springs panel = springs_of_panel(mesh, cloth);
   ASSERT_EQ(panel.materials.size(), 4U);
@@ -97,14 +96,10 @@ TEST(PanelSprings, ANodeWeighsAQuarterOfItsCells) {
 TEST(PanelSprings, AWaistbandIsHeavierAndNodesMayHaveALeastMass) {
   const PanelMesh mesh = mesh_panel(rectangle_piece("p", 0.2, 0.2), {3, 3});
   const std::vector<double> plain = node_masses(mesh, {});
-  PanelMaterial cloth;
-  cloth.waistband.height = 0.02;
-  const std::vector<double> banded = node_masses(mesh, cloth);
+  const std::vector<double> banded = node_masses(mesh, {.waistband = {.height = 0.02}});
   for (std::size_t i = 0; i < 9; ++i) EXPECT_DOUBLE_EQ(banded[i], plain[i] * (i < 6 ? 1 : 4));
-  PanelMaterial even;
-  even.least_mass_share = 1;
   const double mean = 0.4 * 0.04 / 9;
-  const std::vector<double> evened = node_masses(mesh, even);
+  const std::vector<double> evened = node_masses(mesh, {.least_mass_share = 1});
   for (std::size_t i = 0; i < 9; ++i) EXPECT_DOUBLE_EQ(evened[i], std::max(mean, plain[i]));
 }
 

@@ -51,6 +51,9 @@ struct JeansBody {
   std::function<double(double)> leg_axis() const {
     return [body = *this](double y) { return body.leg_x(y) + 0.01; };
   }
+  GarmentPattern pattern(std::uint32_t nodes, const PanelMaterial& cloth = {}) const {
+    return jeans_pattern(measures(), nodes, cloth, leg_axis());
+  }
 };
 
 constexpr std::array hips{0.88, 0.98, 1.15};
@@ -67,6 +70,14 @@ double x_at(const Curve& curve, double y) {
   return points.back().x;
 }
 
+/// Around both legs at a height above the thighs, m.
+double width_at(const JeansDraft& draft, double y) {
+  double width = 0;
+  for (const JeansOutline* half : {&draft.front, &draft.back})
+    width += x_at(half->centre, y) - x_at(half->outer, y);
+  return 2 * width;
+}
+
 /// The largest angle between two successive chords, rad.
 double sharpest_turn(const Curve& curve) {
   double sharpest = 0;
@@ -79,7 +90,7 @@ double sharpest_turn(const Curve& curve) {
 }
 
 GarmentBuild build_for(const JeansBody& body, std::uint32_t nodes, const PanelMaterial& cloth = {}) {
-  return build_garment(jeans_pattern(body.measures(), nodes, cloth, body.leg_axis()), body.depths());
+  return build_garment(body.pattern(nodes, cloth), body.depths());
 }
 
 TEST(JeansDraft, SeamsFitTogether) {
@@ -102,13 +113,11 @@ TEST(JeansDraft, WaistAndHipAreTheBodysWithOffsetAndEase) {
                 0.994 * body.girth(measures.waist_height) + offset + measures.waist_ease, 1e-4);
     // Between waist and hip the side is the smooth curve that comes nearest.
     for (double y = 0.861; y < 0.99; y += 0.01) {
-      double width = 0;
-      for (const JeansOutline* half : {&draft.front, &draft.back})
-        width += x_at(half->centre, y) - x_at(half->outer, y);
       const double fraction = (y - measures.hip_height) / (measures.waist_height - measures.hip_height);
       // The cloth is stretched by 3.1 % around the hip and by 0.6 % around the waist.
       const double wanted = body.girth(y) * (0.969 + 0.025 * fraction);
-      EXPECT_NEAR(2 * width, wanted + offset + fraction * measures.waist_ease, 0.015) << hip << " at " << y;
+      EXPECT_NEAR(width_at(draft, y), wanted + offset + fraction * measures.waist_ease, 0.015)
+          << hip << " at " << y;
     }
   }
 }
@@ -144,14 +153,8 @@ TEST(JeansDraft, EaseMakesTheJeansWiderByItsAmount) {
   const JeansBody body;
   JeansMeasures wide = body.measures();
   wide.hip_ease += 0.06;
-  const auto hip_of = [](const JeansDraft& draft) {
-    double width = 0;
-    for (const JeansOutline* half : {&draft.front, &draft.back})
-      width += x_at(half->centre, 0.86) - x_at(half->outer, 0.86);
-    return 2 * width;
-  };
   // The centre seam's slant is the waist's, and takes its part of it.
-  EXPECT_NEAR(hip_of(draft_jeans(wide)) - hip_of(draft_jeans(body.measures())), 0.06, 0.001);
+  EXPECT_NEAR(width_at(draft_jeans(wide), 0.86) - width_at(draft_jeans(body.measures()), 0.86), 0.06, 0.001);
 }
 
 TEST(JeansDraft, BadMeasuresAreRefused) {
@@ -224,9 +227,7 @@ TEST(Jeans, PanelsAndSeamsAreNamedByTheWearersSides) {
 }
 
 TEST(Jeans, EverythingBelongsToTheSameNodes) {
-  PanelMaterial cloth;
-  cloth.waistband.height = 0.035;
-  const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
+  const GarmentBuild build = build_for(JeansBody{}, 4'000, {.waistband = {.height = 0.035}});
   std::size_t nodes = 0, springs = 0;
   for (const GarmentPanel& panel : build.garment.panels) {
     EXPECT_EQ(panel.first_node, nodes);
@@ -319,7 +320,7 @@ TEST(Jeans, LieCloseAsFarUpAsTheBodyIsWidestWhateverTheirOwnHip) {
 
 TEST(Jeans, HaveACrotchOfFourNodesWhateverElseIsSewn) {
   const JeansBody body;
-  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  GarmentPattern pattern = body.pattern(1'000);
   const Garment alone = build_garment(pattern, body.depths()).garment;
   ASSERT_EQ(alone.crotch.size(), 4U);
   for (const std::uint32_t node : alone.crotch)
@@ -335,9 +336,7 @@ TEST(Jeans, HaveACrotchOfFourNodesWhateverElseIsSewn) {
 }
 
 TEST(Jeans, TheWaistbandsJointsPullHarder) {
-  PanelMaterial cloth;
-  cloth.waistband.height = 0.035;
-  const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
+  const GarmentBuild build = build_for(JeansBody{}, 4'000, {.waistband = {.height = 0.035}});
   const GarmentPanel& panel = build.garment.panels[0];
   std::size_t strong = 0;
   for (const Joint& joint : build.garment.joints) {
@@ -360,7 +359,7 @@ TEST(Jeans, AllNodesStartOutsideTheBody) {
 
 TEST(GarmentBuild, TwoPanelsOfOneNameAreRefused) {
   const JeansBody body;
-  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  GarmentPattern pattern = body.pattern(1'000);
   pattern.panels[2].piece.name = "front left";
   EXPECT_EQ(input_error_of([&] { build_garment(pattern, body.depths()); }),
             "front left: two panels have this name; rename one of them");
@@ -368,7 +367,7 @@ TEST(GarmentBuild, TwoPanelsOfOneNameAreRefused) {
 
 TEST(GarmentBuild, BadClothIsNamedByItsPanel) {
   const JeansBody body;
-  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  GarmentPattern pattern = body.pattern(1'000);
   pattern.panels[1].cloth.area_density = -1;
   EXPECT_THAT(input_error_of([&] { build_garment(pattern, body.depths()); }),
               StartsWith("back left: the cloth's area"));

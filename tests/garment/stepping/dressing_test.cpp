@@ -72,6 +72,11 @@ TEST(Dressing, PullsAJointWithItsShareOfTheSeamsForceAndNotWithGravity) {
   EXPECT_LT(length(state.velocity[garment.panels[0].node(3, 3)]), 1e-4);
 }
 
+std::array<std::unique_ptr<DressingBackend>, 2> serial_and_openmp(const System& system) {
+  return {make_serial_dressing(system, semi_euler, dressing_dt_s),
+          make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2})};
+}
+
 TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
   System system = two_squares();
   system.gravity = 9.81;
@@ -80,9 +85,7 @@ TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
   garment_in(system).dressing.seaming_damping = 0;
   for (const double fraction : {0.0, 0.5}) {
     garment_in(system).dressing.seaming_gravity = fraction;
-    const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
-    const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2);
-    for (Backend* backend : std::initializer_list<Backend*>{single.get(), vectors.get()}) {
+    for (const auto& backend : serial_and_openmp(system)) {
       backend->step(100);
       // Semi-implicit Euler falls dt^2 g n (n + 1) / 2.
       EXPECT_NEAR(backend->state().position[0].y,
@@ -105,9 +108,7 @@ TEST(Dressing, HoldsTheUpperEdgesAtTheirHeightUntilTheSeamsAreClosed) {
   rules.edge_held = true;
   rules.longest_seaming_s = 200.5 * dressing_dt_s;
   rules.seam_force = 0.1;
-  const auto serial = make_serial_dressing(system, semi_euler, dressing_dt_s);
-  const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2);
-  for (DressingBackend* backend : std::initializer_list<DressingBackend*>{serial.get(), vectors.get()}) {
+  for (const auto& backend : serial_and_openmp(system)) {
     backend->step(200);
     ASSERT_FALSE(backend->progress().draping);
     const std::vector<Vec3d> seaming = backend->state().position;
@@ -204,13 +205,15 @@ TEST(Dressing, IsTheReferenceButForRounding) {
   };
   expect_near(make_serial_dressing(system, semi_euler, dressing_dt_s), "serial");
   for (const std::string_view instruction_set : openmp_instruction_sets())
-    expect_near(make_openmp_dressing(system, semi_euler, dressing_dt_s, 1, instruction_set), instruction_set);
+    expect_near(make_openmp_dressing(system, semi_euler, dressing_dt_s,
+                                     {.threads = 1, .instruction_set = std::string(instruction_set)}),
+                instruction_set);
 }
 
 /// Steps a garment into its draping by one thread and by several, and returns where one thread has got.
 State state_of_any_number_of_threads(const System& system, double dt_s, int steps) {
   const auto run = [&](int threads) {
-    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, threads);
+    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, {.threads = threads});
     backend->step(steps);
     EXPECT_TRUE(backend->progress().draping);
     return backend->state();
@@ -228,8 +231,8 @@ TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
 
 TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
   const System system = stretched_sheets();
-  const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1);
-  const auto limited = make_openmp_dressing(system, semi_euler, dressing_dt_s, 3);
+  const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 1});
+  const auto limited = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 3});
   one->step(500);
   limited->step(250);
   const int levels = omp_get_max_active_levels();
@@ -263,7 +266,8 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
     // A spring that rounding puts on the other side of the threshold is corrected a step earlier or later.
     EXPECT_LT(largest_distance(expected, exact), 2e-5) << static_cast<int>(correction);
     for (const std::string_view instruction_set : openmp_instruction_sets()) {
-      const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2, instruction_set);
+      const auto vectors = make_openmp_dressing(
+          system, semi_euler, dressing_dt_s, {.threads = 2, .instruction_set = std::string(instruction_set)});
       EXPECT_LT(largest_distance(soon_after(*vectors), expected), 3e-7)
           << instruction_set << " " << static_cast<int>(correction);
     }
@@ -272,8 +276,7 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
 
 TEST(Dressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
   const System system = stretched_sheets();
-  expect_goes_on_when_draped(*make_serial_dressing(system, semi_euler, dressing_dt_s), system);
-  expect_goes_on_when_draped(*make_openmp_dressing(system, semi_euler, dressing_dt_s, 2), system);
+  for (const auto& backend : serial_and_openmp(system)) expect_goes_on_when_draped(*backend, system);
 }
 
 // Cloth that comes to rest on a body.

@@ -31,7 +31,7 @@ TEST(LayeredDressing, PanelsMeetTheBodyAsTheirLayerDoes) {
 
   const std::vector<double> wanted{0.002, 0.005, 0.005};  // the third layer has no maps of its own
   for (const auto& backend : {make_serial_dressing(system, semi_euler, dressing_dt_s),
-                              make_openmp_dressing(system, semi_euler, dressing_dt_s, 2)}) {
+                              make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2})}) {
     backend->step(100);  // at 1 m/s far enough for 15 mm
     const std::vector<Vec3d> position = backend->state().position;
     for (const GarmentPanel& panel : garment.panels)
@@ -61,7 +61,7 @@ TEST(LayeredDressing, LeavesTheLastWordToTheBody) {
   garment.body_maps = {std::make_shared<BodyMaps>(surface_of(SphereShape{radius, 48}),
                                                   BodyMapSettings{.pixel = 0.001, .offset = 0.002})};
   for (const auto& backend : {make_serial_dressing(system, semi_euler, dressing_dt_s),
-                              make_openmp_dressing(system, semi_euler, dressing_dt_s, 2)}) {
+                              make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2})}) {
     double deepest = HUGE_VAL, nearest = HUGE_VAL;
     for (int step = 0; step < 60; ++step) {
       backend->step(1);
@@ -102,7 +102,7 @@ std::size_t crossings_after(const System& system, DressingBackend& backend, int 
 TEST(LayeredDressing, KeepsLayersApartThatWouldCross) {
   System system = flying_sheet(12);
   for (const auto& backend : {make_serial_dressing(system, semi_euler, dressing_dt_s),
-                              make_openmp_dressing(system, semi_euler, dressing_dt_s, 2),
+                              make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2}),
                               make_reference_dressing(system, semi_euler, dressing_dt_s)}) {
     EXPECT_EQ(crossings_after(system, *backend, 14), 0U);
     EXPECT_EQ(crossings_after(system, *backend, 386), 0U);  // 60 ms in all; they meet after 1 ms
@@ -116,13 +116,15 @@ TEST(LayeredDressing, KeepsLayersApartThatWouldCross) {
   garment_in(system).touching.reset();
   // 2.1 ms, when the fast part is through and the slow one is not
   EXPECT_GT(crossings_after(system, *make_serial_dressing(system, semi_euler, dressing_dt_s), 14), 0U);
-  EXPECT_GT(crossings_after(system, *make_openmp_dressing(system, semi_euler, dressing_dt_s, 2), 14), 0U);
+  EXPECT_GT(
+      crossings_after(system, *make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2}), 14),
+      0U);
 }
 
 TEST(LayeredDressing, AgreesAmongBackendsWhileLayersTouch) {
   const System system = flying_sheet(12);
   const auto serial = make_serial_dressing(system, semi_euler, dressing_dt_s);
-  const auto openmp = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2);
+  const auto openmp = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2});
   const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
   for (DressingBackend* backend : {serial.get(), openmp.get(), reference.get()}) backend->step(40);
   const std::vector<Vec3d> wanted = reference->state().position;
@@ -136,11 +138,11 @@ TEST(LayeredDressing, IsTheSameToTheLastBitForAnyNumberOfThreads) {
   for (const std::uint32_t side : {20U, 91U}) {
     const System system = flying_sheet(side);
     ASSERT_EQ(system.nodes() < least_shared_nodes, side == 20);
-    const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1);
+    const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 1});
     one->step(30);
     const State wanted = one->state();
     for (const int threads : {2, 3}) {
-      const auto many = make_openmp_dressing(system, semi_euler, dressing_dt_s, threads);
+      const auto many = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = threads});
       many->step(12);  // no matter how steps are cut
       many->step(18);
       EXPECT_TRUE(same_state(many->state(), wanted)) << side << ", " << threads;

@@ -1,7 +1,5 @@
 // Algorithm 1 on an OpenCL device: the reference but for rounding, whatever shares the work.
 
-#include <initializer_list>
-
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
@@ -36,6 +34,13 @@ class OpenclDressingOf : public testing::TestWithParam<DressingShape> {};
 
 INSTANTIATE_TEST_SUITE_P(OfEachShape, OpenclDressingOf, testing::ValuesIn(shapes()),
                          [](const auto& test) { return name_of(test.param); });
+
+/// The state after these calls of step().
+State after(Backend& backend, const State& start, const std::vector<int>& calls) {
+  backend.set_state(start);
+  for (const int steps : calls) backend.step(steps);
+  return backend.state();
+}
 
 void expect_same_progress(const DressingBackend& a, const DressingBackend& b) {
   EXPECT_EQ(a.progress().open_joints, b.progress().open_joints);
@@ -83,23 +88,16 @@ TEST_P(OpenclDressingOf, SeamsAndDrapesAroundABallLikeTheReference) {
 
 TEST(OpenclDressing, GivesTheSameBitsWhateverSharesTheWorkAndHoweverStepsAreCutIntoCalls) {
   const System system = soon_closed_sack();
-  const auto after = [&](Backend& backend, std::initializer_list<int> calls) {
-    backend.set_state(system.start);
-    for (const int steps : calls) backend.step(steps);
-    return backend.state();
-  };
-  const auto wide = make(system, shapes().back());
-  const State expected = after(*wide, {150});
+  const State expected = after(*make(system, shapes().back()), system.start, {150});
   for (const DressingShape& shape : shapes()) {
     const auto backend = make(system, shape);
-    for (const State& state : {after(*backend, {150}), after(*backend, {1, 99, 1, 49})}) {
-      EXPECT_TRUE(same_state(state, expected)) << name_of(shape);
-    }
+    for (const auto& calls : {std::vector{150}, {1, 99, 1, 49}})
+      EXPECT_TRUE(same_state(after(*backend, system.start, calls), expected)) << name_of(shape);
   }
   for (const DeviceInMemory& memory : ways_to_memory()) {
     const auto backend = make_opencl_dressing(system, semi_euler, dressing_dt_s, memory.device, memory.memory,
                                               shapes().back());
-    EXPECT_EQ(after(*backend, {150}).position, expected.position) << memory.name;
+    EXPECT_EQ(after(*backend, system.start, {150}).position, expected.position) << memory.name;
   }
 }
 
@@ -107,17 +105,14 @@ TEST(OpenclDressing, GivesTheSameBitsWhateverSharesTheWorkAndHoweverStepsAreCutI
 TEST(OpenclDressing, GivesZerosTheSameSignWhateverSharesTheWork) {
   System system = soon_closed_sack();
   garment_in(system).dressing.friction = 100;
-  const auto after = [&](const DressingShape& shape) {
-    const auto backend = make(system, shape);
-    backend->set_state(system.start);
-    backend->step(150);
-    return backend->state();
+  const auto after_150 = [&](const DressingShape& shape) {
+    return after(*make(system, shape), system.start, {150});
   };
-  const State expected = after(shapes().back());
+  const State expected = after_150(shapes().back());
   EXPECT_TRUE(std::ranges::any_of(expected.velocity, [](const Vec3d& v) { return v == Vec3d{}; }))
       << "friction holds nothing";
   for (const DressingShape& shape : shapes())
-    EXPECT_EQ(state_hash(after(shape)), state_hash(expected)) << name_of(shape);
+    EXPECT_EQ(state_hash(after_150(shape)), state_hash(expected)) << name_of(shape);
 }
 
 TEST(OpenclDressing, CorrectsInEverySweepAsSerialDoes) {
@@ -129,9 +124,7 @@ TEST(OpenclDressing, CorrectsInEverySweepAsSerialDoes) {
     for (Vec3d& x : stretched.position) x = 1.1 * x;
     round_to_single(stretched);
     const auto soon_after = [&](Backend& backend) {
-      backend.set_state(stretched);
-      backend.step(1);  // one, in which both judge the same lengths by the limit
-      return backend.state().velocity;
+      return after(backend, stretched, {1}).velocity;  // in one step both judge the same lengths by the limit
     };
     const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
     const std::vector<Vec3d> expected = soon_after(*single);
