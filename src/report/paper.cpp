@@ -45,9 +45,9 @@ std::string rounds_in(const ReportFolder& folder) {
 
 std::vector<Chart> charts_of(const ReportFolder& folder, const ReportInput& input) {
   const std::string id = "chart";
-  std::vector<Chart> charts = all_speedup_charts(folder, input, id);
-  std::ranges::move(all_scaling_charts(folder, input, id), std::back_inserter(charts));
-  if (auto chart = roofline_chart(folder.rows, folder.where_from(), id)) charts.push_back(std::move(*chart));
+  std::vector<Chart> charts = speedup_charts(folder, input, id);
+  std::ranges::move(scaling_charts(folder, input, id), std::back_inserter(charts));
+  if (auto chart = roofline_chart(folder, id)) charts.push_back(std::move(*chart));
   for (const FoundCurve& curve : folder.curves)
     charts.push_back(energy_chart(curve, input.references, fmt::format("{}-energy-{}", id, charts.size())));
   if (folder.guide)
