@@ -80,7 +80,7 @@ bool has_threads(const PaperLegend& legend, std::string_view backend) {
 bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& legend,
                 const Provenance& provenance) {
   return row && (row->threads > 1 || !has_threads(legend, row->backend)) &&
-         (!test.on_gpu || opencl_device(*row).empty() || !is_this_processor(*row, provenance));
+         (!test.on_gpu || !is_this_processor(opencl_device(*row), provenance));
 }
 
 std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,

@@ -292,7 +292,7 @@ std::string headline_section(const ReportInput& input) {
     const std::vector<const ResultRow*> rows = pointers_to(folder.rows);
     const Table all = times_of(rows, folder);
     Document below;
-    add_sentence(below, legend_of_ratios(all));
+    add_sentence(below, legend_of_ratios({all}));
     add_rows_without_a_time(below, rows);
     return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n{}", noise_note(folder),
                        html_of(times_of(headline_rows(rows), folder)), pluralize(rows.size(), "row"),

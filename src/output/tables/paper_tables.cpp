@@ -285,12 +285,9 @@ struct Match {
 };
 
 std::vector<Match> paired(std::span<const StructureRow> rows, const std::vector<PublishedBody>& bodies) {
-  std::vector<Match> matches;
-  for (const StructureRow& row : rows) {
-    const auto body = std::ranges::find(bodies, row.scene, &PublishedBody::scene);
-    matches.push_back({&row, body == bodies.end() ? nullptr : &*body});
-  }
-  return matches;
+  return mapped<Match>(rows, [&](const StructureRow& row) {
+    return Match{&row, found_in(bodies, row.scene, &PublishedBody::scene)};
+  });
 }
 
 Table data_of(std::span<const StructureRow> rows, const std::vector<Match>& matches) {

@@ -70,22 +70,16 @@ std::string terminal_cell(const Cell& cell, const Column& column) {
 
 std::string csv_of(const Table& table, std::string (*real)(double)) {
   if (table.columns.empty()) return {};
-  std::vector<std::string> fields;
-  for (const Column& column : table.columns) fields.push_back(column.name);
-  std::string text = csv_line(fields);
-  for (const std::vector<Cell>& row : table.rows) {
-    fields.clear();
-    for (const Cell& cell : row) fields.push_back(std::visit(CsvSpelling{{}, real}, cell.value));
-    text += csv_line(fields);
-  }
+  const auto field_of = [real](const Cell& cell) { return std::visit(CsvSpelling{{}, real}, cell.value); };
+  std::string text = csv_line(mapped<std::string>(table.columns, &Column::name));
+  for (const std::vector<Cell>& row : table.rows) text += csv_line(mapped<std::string>(row, field_of));
   return text;
 }
 
 /// Columns next to each other.
 std::string terminal_text(const Table& table) {
   if (table.columns.empty()) return {};
-  std::vector<std::vector<std::string>> lines{{}};
-  for (const Column& column : table.columns) lines.front().push_back(column.name);
+  std::vector<std::vector<std::string>> lines{mapped<std::string>(table.columns, &Column::name)};
   for (const std::vector<Cell>& row : table.rows) {
     std::vector<std::string>& line = lines.emplace_back();
     for (std::size_t i = 0; i < row.size(); ++i) line.push_back(terminal_cell(row[i], table.columns[i]));
