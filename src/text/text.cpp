@@ -244,6 +244,15 @@ std::string shell_word(const std::string& text) {
   return word;
 }
 
+Character first_character(std::string_view text) {
+  const std::size_t bytes = character_length(text);
+  if (bytes == 0) return {U'\uFFFD', 1};
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  char32_t code = bytes == 1 ? byte(0) : byte(0) & (0xFFU >> (bytes + 1));
+  for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (byte(i) & 0x3FU);
+  return {code, bytes};
+}
+
 std::size_t width_of(std::string_view text) {
   std::size_t width = 0;
   for (const char byte : text) width += width_of_character(byte);

@@ -165,6 +165,15 @@ bool has_words(std::string_view line);
 /// The text as one word of a shell command: in single quotes unless all its characters are plain.
 std::string shell_word(const std::string& text);
 
+/// A character of UTF-8 (RFC 3629).
+struct Character {
+  char32_t code;
+  std::size_t bytes;
+};
+
+/// The first character of a text, which is not empty. A byte that begins none counts as U+FFFD.
+Character first_character(std::string_view text);
+
 /// Columns of UTF-8 text in a terminal or chart: one per character, two for wide ones.
 std::size_t width_of(std::string_view text);
 
