@@ -26,7 +26,7 @@ void write_tuples(hid_t file, const std::string& path, const std::string& partic
   // Readers of H5MD skip tuples with the fill value. HDF5's default is 0, a real node.
   constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
   checked(H5Pset_fill_value(properties.get(), H5T_NATIVE_UINT32, &no_node), "setting a fill value");
-  Hdf5Dataset dataset = create_dataset(file, path, H5T_STD_U32LE, shape, false, properties);
+  Hdf5Dataset dataset = create_dataset(file, path, H5T_STD_U32LE, shape, properties);
   checked(H5Dwrite(dataset.get(), H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, tuples.data()), action);
   write_reference(dataset.get(), "particles_group", file, particles);
   dataset.close(action);
