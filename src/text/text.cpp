@@ -119,6 +119,12 @@ std::optional<std::uint64_t> from_hex(std::string_view text) {
   return value;
 }
 
+std::string_view take_to(std::string_view& text, std::string_view end) {
+  const std::string_view part = text.substr(0, text.find(end));
+  text.remove_prefix(std::min(part.size() + end.size(), text.size()));
+  return part;
+}
+
 std::string join(std::span<const std::string> texts, std::string_view separator) {
   return fmt::format("{}", fmt::join(texts, separator));
 }
@@ -269,8 +275,7 @@ std::string_view clipped(std::string_view text, std::size_t width) {
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent) {
   std::string lines, line;
   while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    const std::string_view word = take_to(text, " ");
     if (!line.empty() && width_of(line) + 1 + width_of(word) > width) {
       lines += line + '\n';
       line = indent;

@@ -115,6 +115,9 @@ std::string pluralize(std::integral auto number, std::string_view noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
+/// Removes the text up to `end`, and `end` itself, from its front and returns it; all of it without `end`.
+std::string_view take_to(std::string_view& text, std::string_view end);
+
 /// The concatenated texts, with `separator` between them.
 std::string join(std::span<const std::string> texts, std::string_view separator);
 

@@ -108,9 +108,7 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
   std::vector<HistoryEntry> history;
   text = without_byte_order_mark(text);
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    std::string_view line = take_to(text, "\n");
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty()) continue;
     const std::string where = fmt::format("{}, line {}", file.string(), number);
