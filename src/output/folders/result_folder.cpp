@@ -171,10 +171,6 @@ void ResultFolder::write(std::span<const ResultTable> tables) {
   write_files(std::move(files));
 }
 
-void ResultFolder::write(std::span<const StructureRow> rows) {
-  write_files(files_of(structure_table(rows, provenance_)));
-}
-
 void ResultFolder::write_files(std::vector<FolderFile> files, const std::vector<FolderFile>& programs) {
   if (std::exchange(goes_on_, false) || replaces_)
     files.insert(files.begin(), {provenance_name, provenance_text(provenance_) + '\n'});
