@@ -73,6 +73,14 @@ void require_rows_once(const HistoryEntry& entry, const std::string& where) {
                        &row - entry.rows.data(), combination_name(row), printable(row.device));
 }
 
+std::vector<HistoryEntry> entries_in(const std::filesystem::path& file) {
+  try {
+    return parse_history(file, read_file(file, largest_history_bytes));
+  } catch (const ReadError& error) {
+    throw UsageError(error.sentence(file, "give a file that mssim history add wrote"));
+  }
+}
+
 }  // namespace
 
 std::string history_line(const HistoryEntry& entry) {
@@ -125,18 +133,6 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
   }
   return history;
 }
-
-namespace {
-
-std::vector<HistoryEntry> entries_in(const std::filesystem::path& file) {
-  try {
-    return parse_history(file, read_file(file, largest_history_bytes));
-  } catch (const ReadError& error) {
-    throw UsageError(error.sentence(file, "give a file that mssim history add wrote"));
-  }
-}
-
-}  // namespace
 
 std::vector<HistoryEntry> read_history(const std::filesystem::path& file) {
   std::vector<HistoryEntry> history = entries_in(file);
