@@ -136,23 +136,18 @@ class PaperTable {
     for (const auto& integrator : legend_.integrators)
       for (const auto& backend : legend_.backends) {
         if (!has(integrator.name, backend.name)) continue;
-        const auto line = [&](std::string_view quantity, auto cell) {
-          std::vector<Cell>& cells = table.rows.emplace_back();
-          cells = {integrator.name, backend.configuration, backend.name, quantity};
-          for (const PaperScene& scene : scenes_)
-            cells.push_back(cell(scene, find_row(rows_, scene.name, backend.name, integrator.name)));
-        };
-        const auto from_paper = [&](const PaperScene& scene) {
-          return published_timing(published_, integrator, backend.configuration, scene);
-        };
-        line("published_ms", [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).ms; });
-        line("measured_ms", [](const PaperScene&, const ResultRow* row) { return measured_timing(row).ms; });
-        line("published_speedup",
-             [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).speedup; });
-        line("measured_speedup",
-             [](const PaperScene&, const ResultRow* row) { return measured_timing(row).speedup; });
-        line("status",
-             [](const PaperScene&, const ResultRow* row) { return row ? Cell(status_of(*row)) : Cell(); });
+        const std::size_t first = table.rows.size();
+        for (const char* quantity :
+             {"published_ms", "measured_ms", "published_speedup", "measured_speedup", "status"})
+          table.rows.push_back({integrator.name, backend.configuration, backend.name, quantity});
+        for (const PaperScene& scene : scenes_) {
+          const ResultRow* row = find_row(rows_, scene.name, backend.name, integrator.name);
+          const Timing paper = published_timing(published_, integrator, backend.configuration, scene),
+                       ours = measured_timing(row);
+          const std::array<Cell, 5> cells{paper.ms, ours.ms, paper.speedup, ours.speedup,
+                                          row ? Cell(status_of(*row)) : Cell()};
+          for (std::size_t i = 0; i < cells.size(); ++i) table.rows[first + i].push_back(cells[i]);
+        }
       }
     return table;
   }
