@@ -192,14 +192,15 @@ std::string unknown_name(std::string_view what, std::string_view name,
                      did_you_mean(name, known, others), listed(known));
 }
 
+std::string_view beginning_of(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && width_of_character(text[bytes]) == 0) --bytes;  // not within a character
+  return text.substr(0, bytes);
+}
+
 std::string printable(std::string_view text, std::size_t length) {
   const bool is_cut = text.size() > length;
-  if (is_cut) {
-    std::size_t end = length;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
-      --end;  // not within a character
-    text = text.substr(0, end);
-  }
+  text = beginning_of(text, length);
   std::string result;
   while (!text.empty()) {
     const std::size_t taken = character_length(text);

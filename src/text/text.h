@@ -180,6 +180,9 @@ Character first_character(std::string_view text);
 /// Columns of UTF-8 text in a terminal or chart: one per character, two for wide ones.
 std::size_t width_of(std::string_view text);
 
+/// At most the first `bytes` bytes of UTF-8 text, without a partial character.
+std::string_view beginning_of(std::string_view text, std::size_t bytes);
+
 /// The longest prefix of UTF-8 text that fits into `width` columns.
 std::string_view clipped(std::string_view text, std::size_t width);
 

@@ -267,15 +267,12 @@ std::string latex_text(std::string_view any_text) {
     if (found != replacements.end()) {
       result += found->latex;
       length = found->text.size();
-    } else if (static_cast<unsigned char>(text.front()) < 0x80) {
-      result += text.front();
     } else {
       const auto [code, bytes] = first_character(text);
       length = bytes;
-      if (code >= 0xC0 && code <= 0xFF)
-        result += text.substr(0, length);
-      else
-        result += fmt::format("{{[}}U+{:04X}]", std::uint32_t{code});
+      const bool is_latin = code < 0x80 || (code >= 0xC0 && code <= 0xFF);
+      result +=
+          is_latin ? std::string(text.substr(0, length)) : fmt::format("{{[}}U+{:04X}]", std::uint32_t{code});
     }
     text.remove_prefix(length);
   }
