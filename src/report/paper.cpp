@@ -24,9 +24,7 @@ Document times_page(const ReportFolder& folder) {
   const std::vector<const ResultRow*> rows = pointers_to(folder.rows);
   Document page{Heading{1, "Times per step"}, measured_on(rows, folder.where_from()),
                 Paragraph{std::string(how_to_read_times)}};
-  std::vector<std::string> scenes;
-  for (const ResultRow* row : rows) add_once(scenes, row->scene);
-  for (const std::string& scene : scenes) {
+  for (const std::string& scene : distinct<std::string>(rows, &ResultRow::scene)) {
     std::vector<const ResultRow*> its;
     std::ranges::copy_if(rows, std::back_inserter(its),
                          [&](const ResultRow* row) { return row->scene == scene; });

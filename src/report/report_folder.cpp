@@ -203,9 +203,7 @@ std::optional<FoundGuide> read_guide(const fs::path& folder, std::vector<std::st
 }  // namespace
 
 std::vector<std::string> FoundGuide::scenes() const {
-  std::vector<std::string> names;
-  for (const GuidePoint& point : points) add_once(names, point.scene);
-  return names;
+  return distinct<std::string>(points, &GuidePoint::scene);
 }
 
 std::vector<fs::path> result_folders(const fs::path& folder) {

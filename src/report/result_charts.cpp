@@ -104,13 +104,6 @@ Series with_slope(Series series, std::optional<double> slope) {
   return series;
 }
 
-/// The different values of a member, in order of appearance.
-std::vector<std::string> distinct(std::span<const ResultRow> rows, std::string ResultRow::*value) {
-  std::vector<std::string> values;
-  for (const ResultRow& row : rows) add_once(values, row.*value);
-  return values;
-}
-
 /// A row in a roofline: operations per byte, and 1e9 operations per second.
 struct RoofDot {
   double intensity = 0, gigaflops = 0;
@@ -325,7 +318,7 @@ std::vector<Chart> scaling_charts(const ReportFolder& folder, const ReportInput&
                            fmt::format("{}: time per step of {}", integrator, kind_names[kind]),
                            where_measured(folder.where_from()), nodes_axis(), {"time per step (ms)", true});
     std::vector<std::string> shown;
-    for (const std::string& backend : distinct(folder.rows, &ResultRow::backend)) {
+    for (const std::string& backend : distinct<std::string>(folder.rows, &ResultRow::backend)) {
       SizeLines lines = size_lines(folder, input, static_cast<ContentKind>(kind), backend, integrator);
       if (!lines.measured_slope) continue;
       chart.series.push_back(with_slope(std::move(lines.measured), lines.measured_slope));
@@ -342,8 +335,8 @@ std::vector<Chart> scaling_charts(const ReportFolder& folder, const ReportInput&
 Table slope_table(const ReportFolder& folder, const ReportInput& input) {
   Table table;
   for (std::size_t kind = 0; kind < kind_names.size(); ++kind)
-    for (const std::string& integrator : distinct(folder.rows, &ResultRow::integrator))
-      for (const std::string& backend : distinct(folder.rows, &ResultRow::backend)) {
+    for (const std::string& integrator : distinct<std::string>(folder.rows, &ResultRow::integrator))
+      for (const std::string& backend : distinct<std::string>(folder.rows, &ResultRow::backend)) {
         const SizeLines lines =
             size_lines(folder, input, static_cast<ContentKind>(kind), backend, integrator);
         if (lines.measured_slope)

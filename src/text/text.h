@@ -83,6 +83,14 @@ void add_once(std::vector<Value>& values, const std::type_identity_t<Value>& val
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
 }
 
+/// Values of `of`, a member or a function, for each element: each value once, in the order of the first.
+template <class Value, class Range, class Of>
+std::vector<Value> distinct(Range&& range, Of of) {
+  std::vector<Value> values;
+  for (auto&& element : range) add_once(values, std::invoke(of, element));
+  return values;
+}
+
 /// The bytes of a value without pointers, or of a vector of such values, for hashes and files.
 template <class Value>
 requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const Value& value) {

@@ -189,9 +189,7 @@ std::string reason_without_speedups(std::span<const std::string_view> backends) 
 }
 
 std::string reason_without_speedups(RowPointers rows) {
-  std::vector<std::string_view> backends;
-  for (const ResultRow* row : rows) backends.emplace_back(row->backend);
-  return reason_without_speedups(backends);
+  return reason_without_speedups(mapped<std::string_view>(rows, &ResultRow::backend));
 }
 
 void add_rows_without_a_time(Document& page, RowPointers rows) {

@@ -106,13 +106,6 @@ Table data_of(RowPointers rows, const std::string& base) {
                    {{"status"}, status_of}});
 }
 
-/// Values of a member, each once, in the order of the rows.
-std::vector<std::string> each_of(RowPointers rows, std::string ResultRow::*member) {
-  std::vector<std::string> values;
-  for (const ResultRow* row : rows) add_once(values, row->*member);
-  return values;
-}
-
 /// The ratio is that of the two times shown, so that they always agree.
 Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base,
                const Provenance& provenance) {
@@ -129,13 +122,13 @@ Document page_of(RowPointers rows, const std::string& base, const Provenance& pr
       Heading{1, "Scaling: cost per node of increasingly large cloths"}, measured_on(rows, provenance),
       Paragraph{"Nanoseconds per node and step, medians; in brackets relative to the same backend on `" +
                 base + "`. If a line stays at 1, the cost is proportional to the number of nodes."}};
-  const std::vector<std::string> scenes = each_of(rows, &ResultRow::scene);
+  const auto scenes = distinct<std::string>(rows, &ResultRow::scene);
   std::vector<Column> columns{{"backend"}};
   for (const std::string& scene : scenes)
     columns.push_back(scene_column(**std::ranges::find(rows, scene, &ResultRow::scene)));
-  for (const std::string& integrator : each_of(rows, &ResultRow::integrator)) {
+  for (const std::string& integrator : distinct<std::string>(rows, &ResultRow::integrator)) {
     Table table{columns, {}};
-    for (const std::string& backend : each_of(rows, &ResultRow::backend)) {
+    for (const std::string& backend : distinct<std::string>(rows, &ResultRow::backend)) {
       std::vector<Cell>& cells = table.rows.emplace_back();
       cells.emplace_back(backend_label(rows, backend, provenance));
       for (const std::string& scene : scenes)
