@@ -48,13 +48,11 @@ class Hdf5Table {
   /// Throws unless these rows are in the file.
   void require_stored(hsize_t first_row, hsize_t rows) const;
 
-  /// The numbers of some rows, row by row; `doubles` for floating-point numbers, `integers` for integers.
-  std::vector<double> doubles(hsize_t first_row, hsize_t rows) const;
-  std::vector<std::int64_t> integers(hsize_t first_row, hsize_t rows) const;
+  /// The numbers of some rows, row by row: double for floating-point numbers, std::int64_t for integers.
+  template <class Number>
+  std::vector<Number> read(hsize_t first_row, hsize_t rows) const;
 
  private:
-  template <class Number>
-  std::vector<Number> read(hsize_t first_row, hsize_t rows, hid_t memory_type) const;
   bool is_deflated() const;
   /// Calls `visit` with the first corner of each chunk of these rows.
   void each_chunk(hsize_t first_row, hsize_t rows,
