@@ -94,6 +94,14 @@ void write_string_dataset(hid_t parent, const std::string& name, std::span<const
   dataset.close(action);
 }
 
+Hdf5Dataset dataset_in(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> shape,
+                       std::span<const hsize_t> limit, const Hdf5Properties& properties) {
+  const Hdf5Space space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), limit.data()),
+                        "making the space of " + path);
+  return {H5Dcreate2(parent, path.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+          "creating " + path};
+}
+
 /// Throws unless a dataset's bytes are in its own file, stored in a way that mssim writes. A virtual or
 /// external dataset would read other files, and a third-party filter would run its code.
 void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) {
@@ -190,8 +198,7 @@ void write_texts(hid_t parent, const std::string& name, std::span<const std::str
 void write_array(hid_t parent, const std::string& path, hid_t file_type, hid_t memory_type,
                  std::span<const hsize_t> shape, const void* data) {
   const std::string action = "writing " + path;
-  Hdf5Dataset dataset =
-      create_dataset(parent, path, file_type, shape, false, chunked(shape, Packing::deflated));
+  Hdf5Dataset dataset = create_dataset(parent, path, file_type, shape, chunked(shape, Packing::deflated));
   checked(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), action);
   dataset.close(action);
 }
@@ -216,13 +223,16 @@ Hdf5Properties chunked(std::span<const hsize_t> chunk, Packing packing) {
 }
 
 Hdf5Dataset create_dataset(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> shape,
-                           bool grows, const Hdf5Properties& properties) {
-  std::vector<hsize_t> limit(shape.begin(), shape.end());
-  if (grows) limit.front() = H5S_UNLIMITED;
-  const Hdf5Space space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), limit.data()),
-                        "making the space of " + path);
-  return {H5Dcreate2(parent, path.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
-          "creating " + path};
+                           const Hdf5Properties& properties) {
+  return dataset_in(parent, path, type, shape, shape, properties);
+}
+
+Hdf5Dataset create_series(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> chunk,
+                          Packing packing) {
+  std::vector<hsize_t> empty(chunk.begin(), chunk.end()), limit = empty;
+  empty.front() = 0;
+  limit.front() = H5S_UNLIMITED;
+  return dataset_in(parent, path, type, empty, limit, chunked(chunk, packing));
 }
 
 void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t first, hsize_t count,

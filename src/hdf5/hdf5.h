@@ -114,9 +114,13 @@ enum class Packing { plain, deflated };
 /// Properties of a new dataset with these chunks.
 Hdf5Properties chunked(std::span<const hsize_t> chunk, Packing packing);
 
-/// A dataset of the given shape; the first dimension may grow if `grows`.
+/// A dataset of the given shape.
 Hdf5Dataset create_dataset(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> shape,
-                           bool grows, const Hdf5Properties& properties);
+                           const Hdf5Properties& properties);
+
+/// A dataset without rows, to which write_rows() adds them. `chunk`: extents of its chunks.
+Hdf5Dataset create_series(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> chunk,
+                          Packing packing);
 
 /// Grows the dataset's first dimension to first + count and writes the rows from `first` on; `data` holds
 /// them in `memory_type`.

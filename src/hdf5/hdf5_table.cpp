@@ -76,19 +76,12 @@ bool Hdf5Table::is_deflated() const {
   return std::ranges::find(filters_, H5Z_FILTER_DEFLATE, &Hdf5Filter::number) != filters_.end();
 }
 
-std::vector<double> Hdf5Table::doubles(hsize_t first_row, hsize_t rows) const {
-  return read<double>(first_row, rows, H5T_NATIVE_DOUBLE);
-}
-
-std::vector<std::int64_t> Hdf5Table::integers(hsize_t first_row, hsize_t rows) const {
-  return read<std::int64_t>(first_row, rows, H5T_NATIVE_INT64);
-}
-
 template <class Number>
-std::vector<Number> Hdf5Table::read(hsize_t first_row, hsize_t rows, hid_t memory_type) const {
+std::vector<Number> Hdf5Table::read(hsize_t first_row, hsize_t rows) const {
   const std::string action = "reading " + path_;
   const Hdf5Type type(H5Dget_type(dataset_.get()), action);
-  if (!(std::is_same_v<Number, double> ? is_real(type) : is_integer(type)))
+  constexpr bool wants_reals = std::is_same_v<Number, double>;
+  if (!(wants_reals ? is_real(type) : is_integer(type)))
     throw Hdf5ContentError(path_ + " has numbers of a type that mssim does not read");
   if (rows > extents_.front() || first_row > extents_.front() - rows)
     throw Hdf5ContentError(path_ + " has too few rows");
@@ -105,10 +98,13 @@ std::vector<Number> Hdf5Table::read(hsize_t first_row, hsize_t rows, hid_t memor
   checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr),
           action);
   const Hdf5Space memory(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), action);
-  checked(H5Dread(dataset_.get(), memory_type, memory.get(), space.get(), H5P_DEFAULT, numbers.data()),
+  checked(H5Dread(dataset_.get(), wants_reals ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, memory.get(),
+                  space.get(), H5P_DEFAULT, numbers.data()),
           action);
   return numbers;
 }
+template std::vector<double> Hdf5Table::read(hsize_t first_row, hsize_t rows) const;
+template std::vector<std::int64_t> Hdf5Table::read(hsize_t first_row, hsize_t rows) const;
 
 void Hdf5Table::require_stored(hsize_t first_row, hsize_t rows) const {
   if (chunk_.empty()) {
@@ -170,14 +166,14 @@ void Hdf5Table::require_whole_chunk(const std::vector<hsize_t>& start) const {
 
 std::vector<double> read_doubles(hid_t file, const std::string& path, const std::vector<hsize_t>& extents) {
   const Hdf5Table table(file, path, extents);
-  return table.doubles(0, table.rows());
+  return table.read<double>(0, table.rows());
 }
 
 std::vector<std::uint32_t> read_numbers(hid_t file, const std::string& path,
                                         const std::vector<hsize_t>& extents) {
   const Hdf5Table table(file, path, extents);
   std::vector<std::uint32_t> numbers;
-  for (const std::int64_t number : table.integers(0, table.rows())) {
+  for (const std::int64_t number : table.read<std::int64_t>(0, table.rows())) {
     if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
       throw Hdf5ContentError(fmt::format("{} has the number {}, which is out of range", path, number));
     numbers.push_back(static_cast<std::uint32_t>(number));

@@ -26,7 +26,7 @@ void write_tuples(hid_t file, const std::string& path, const std::string& partic
   // Readers of H5MD skip tuples with the fill value. HDF5's default is 0, a real node.
   constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
   checked(H5Pset_fill_value(properties.get(), H5T_NATIVE_UINT32, &no_node), "setting a fill value");
-  Hdf5Dataset dataset = create_dataset(file, path, H5T_STD_U32LE, shape, false, properties);
+  Hdf5Dataset dataset = create_dataset(file, path, H5T_STD_U32LE, shape, properties);
   checked(H5Dwrite(dataset.get(), H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, tuples.data()), action);
   write_reference(dataset.get(), "particles_group", file, particles);
   dataset.close(action);
@@ -48,13 +48,11 @@ class Hdf5Table {
   /// Throws unless these rows are in the file.
   void require_stored(hsize_t first_row, hsize_t rows) const;
 
-  /// The numbers of some rows, row by row; `doubles` for floating-point numbers, `integers` for integers.
-  std::vector<double> doubles(hsize_t first_row, hsize_t rows) const;
-  std::vector<std::int64_t> integers(hsize_t first_row, hsize_t rows) const;
+  /// The numbers of some rows, row by row: double for floating-point numbers, std::int64_t for integers.
+  template <class Number>
+  std::vector<Number> read(hsize_t first_row, hsize_t rows) const;
 
  private:
-  template <class Number>
-  std::vector<Number> read(hsize_t first_row, hsize_t rows, hid_t memory_type) const;
   bool is_deflated() const;
   /// Calls `visit` with the first corner of each chunk of these rows.
   void each_chunk(hsize_t first_row, hsize_t rows,

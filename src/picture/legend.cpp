@@ -28,9 +28,9 @@ double decimal_product(double mantissa, int exponent) {
   return exponent < 0 ? mantissa / std::pow(10.0, -exponent) : mantissa * std::pow(10.0, exponent);
 }
 
-/// Lightness L* of CIE 1976, from 0 (black) to 100 (white), which is what remains in black and white. Chroma
-/// (0 is grey) and hue of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020), which
-/// look the same at every lightness.
+/// Lightness L* of CIE 1976, from 8 (almost black) to 100 (white), which is what remains in black and white.
+/// Chroma (0 is grey) and hue of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020),
+/// which look the same at every lightness.
 struct Lch {
   double lightness, chroma, hue_degrees;
 };
@@ -50,40 +50,20 @@ LinearRgb linear_rgb(double oklab_lightness, double chroma, double hue_degrees) 
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-/// The luminance of `colour` relative to white, from L* by the standard's two formulas.
-double luminance_of(const Lch& colour) {
-  const double root = (colour.lightness + 16) / 116;
-  return colour.lightness > 8 ? root * root * root : colour.lightness * 27 / 24389;
-}
-
-/// The number between `low` and `high` at which `above` becomes true.
-template <class Above>
-double bisected(double low, double high, const Above& above) {
+/// The colour, which must be in sRGB: with the lightness in Oklab that has the luminance of its L*, by the
+/// formula for L* above 8.
+Rgb srgb(const Lch& colour) {
+  const double root = (colour.lightness + 16) / 116, luminance = root * root * root;
+  const auto with_lightness = [&](double oklab_lightness) {
+    return linear_rgb(oklab_lightness, colour.chroma, colour.hue_degrees);
+  };
+  double low = 0, high = 1;
   for (int halvings = 0; halvings < 20; ++halvings) {
     const double middle = (low + high) / 2;
-    (above(middle) ? high : low) = middle;
+    const LinearRgb rgb = with_lightness(middle);
+    (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2] > luminance ? high : low) = middle;
   }
-  return low;
-}
-
-/// The colour with this chroma.
-LinearRgb with_chroma(const Lch& colour, double chroma) {
-  const double wanted = luminance_of(colour);
-  const double lightness = bisected(0, 1, [&](double value) {
-    const LinearRgb rgb = linear_rgb(value, chroma, colour.hue_degrees);
-    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2] > wanted;
-  });
-  return linear_rgb(lightness, chroma, colour.hue_degrees);
-}
-
-/// The colour, or the most colourful one of its lightness and hue in sRGB.
-Rgb srgb(const Lch& colour) {
-  const auto is_outside = [&](double chroma) {
-    return std::ranges::any_of(with_chroma(colour, chroma),
-                               [](double value) { return value < -1e-4 || value > 1 + 1e-4; });
-  };
-  const bool fits = !is_outside(colour.chroma);
-  const LinearRgb rgb = with_chroma(colour, fits ? colour.chroma : bisected(0, colour.chroma, is_outside));
+  const LinearRgb rgb = with_lightness(low);
   const auto channel = [](double linear) {
     return static_cast<std::uint8_t>(std::lround(255 * srgb_code(std::clamp(linear, 0.0, 1.0))));
   };
@@ -177,8 +157,8 @@ const ColourMap& diverging_map() {
 
 const std::array<Rgb, 8>& category_colours() {
   static const std::array<Rgb, 8> colours{
-      srgb({32.5, 0.16, 257}),  // blue
-      srgb({75, 0.16, 65}),     // orange
+      srgb({32.5, 0.15, 257}),  // blue
+      srgb({75, 0.155, 65}),    // orange
       srgb({57.5, 0.14, 152}),  // green
       srgb({92, 0.16, 102}),    // yellow
       srgb({19, 0.15, 305}),    // violet

@@ -13,6 +13,7 @@
 #include FT_FREETYPE_H
 
 #include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -93,37 +94,16 @@ Font& font() {
   return loaded;
 }
 
-/// Size in bytes of the UTF-8 character at the start of `text`; one if there is none.
-std::size_t character_size(std::string_view text) {
-  const auto first = static_cast<unsigned char>(text.front());
-  const std::size_t size = first < 0x80   ? 1
-                           : first < 0xc2 ? 0
-                           : first < 0xe0 ? 2
-                           : first < 0xf0 ? 3
-                           : first < 0xf5 ? 4
-                                          : 0;
-  if (size == 0 || size > text.size()) return 1;
-  const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; };
-  return std::ranges::all_of(text.substr(1, size - 1), continues) ? size : 1;
-}
-
-char32_t character_at(std::string_view text, std::size_t size) {
-  const auto byte = [&](std::size_t i) { return static_cast<char32_t>(static_cast<unsigned char>(text[i])); };
-  if (size == 1) return byte(0) < 0x80 ? byte(0) : U'\ufffd';
-  char32_t character = byte(0) & (0xffu >> (size + 1));
-  for (std::size_t i = 1; i < size; ++i) character = character << 6 | (byte(i) & 0x3f);
-  return character;
-}
-
 /// Calls `use` with each character and its start in pixels from the left edge of the text. Returns the right
 /// edge.
 template <class Use>
 int walk_along(std::string_view text, const Letters& letters, const Use& use) {
   int x = 0, right = 0;
   bool is_first = true;
-  for (std::size_t size = 0; !text.empty(); text.remove_prefix(size)) {
-    size = character_size(text);
-    const GlyphMask& mask = font().mask_of(character_at(text, size), letters.size_px);
+  while (!text.empty()) {
+    const auto [code, bytes] = first_character(text);
+    text.remove_prefix(bytes);
+    const GlyphMask& mask = font().mask_of(code, letters.size_px);
     if (std::exchange(is_first, false)) x = -mask.left;
     use(mask, x);
     right = x + (mask.width > 0 ? mask.left + mask.width : mask.advance);
@@ -165,7 +145,7 @@ void draw_text(Picture& picture, std::string_view text, int x, int baseline, con
 std::string shortened(std::string_view text, int width, const Letters& letters) {
   if (text_width(text, letters) <= width) return std::string(text);
   std::string fitting;
-  for (std::size_t end = 0; end < text.size(); end += character_size(text.substr(end))) {
+  for (std::size_t end = 0; end < text.size(); end += first_character(text.substr(end)).bytes) {
     const std::string candidate = std::string(text.substr(0, end)) + "…";
     if (text_width(candidate, letters) > width) break;
     fitting = candidate;

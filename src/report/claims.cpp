@@ -80,29 +80,34 @@ bool has_threads(const PaperLegend& legend, std::string_view backend) {
 bool may_decide(const ResultRow* row, const ClaimTest& test, const PaperLegend& legend,
                 const Provenance& provenance) {
   return row && (row->threads > 1 || !has_threads(legend, row->backend)) &&
-         (!test.on_gpu || opencl_device(*row).empty() || !is_this_processor(*row, provenance));
+         (!test.on_gpu || !is_this_processor(opencl_device(*row), provenance));
 }
 
-std::optional<RatioInterval> quotient(const std::optional<RatioInterval>& a,
-                                      const std::optional<RatioInterval>& b) {
-  if (!a || !b) return std::nullopt;
-  return RatioInterval{a->ratio / b->ratio, a->low / b->high, a->high / b->low, a->covers && b->covers};
+double quotient(double a, double b) { return a / b; }
+RatioInterval quotient(const RatioInterval& a, const RatioInterval& b) {
+  return {a.ratio / b.ratio, a.low / b.high, a.high / b.low, a.covers && b.covers};
 }
 
-/// The ratios of a test, for each scene and integrator with both times. `ratio` takes a scene and the
-/// integrators of `fast` and `slow`.
-template <class Scenes, class Ratio>
-auto ratios_of(const ClaimTest& test, const PaperLegend& legend, const Scenes& scenes, Ratio ratio) {
-  std::vector<typename decltype(ratio(scenes.front(), std::string(), std::string()))::value_type> all;
-  for (const PaperLegend::Integrator& integrator : legend.integrators) {
-    const bool is_asked = test.integrators.empty() ? integrator.name == integrator.paper_name
-                                                   : std::ranges::find(test.integrators, integrator.name) !=
-                                                         test.integrators.end();
+/// The ratios of a test, for each scene and integrator with both times. `speedup` takes a scene and the
+/// integrators of `fast` and `slow`; its Ratio is a number or has an interval.
+template <class Ratio, class Speedup>
+std::vector<Ratio> ratios_of(const ClaimTest& test, const PaperLegend& legend,
+                             const std::vector<PaperScene>& scenes, const Speedup& speedup) {
+  std::vector<Ratio> all;
+  for (const auto& [name, paper_name, evaluations] : legend.integrators) {
+    const bool is_asked = test.integrators.empty()
+                              ? name == paper_name
+                              : std::ranges::find(test.integrators, name) != test.integrators.end();
     if (!is_asked) continue;
-    for (const PaperScene& scene : scenes)
-      if (const auto one = ratio(scene, integrator.name,
-                                 test.slow_integrator.empty() ? integrator.name : test.slow_integrator))
-        all.push_back(*one);
+    for (const PaperScene& scene : scenes) {
+      const std::optional<Ratio> ratio =
+          speedup(scene, name, test.slow_integrator.empty() ? name : test.slow_integrator);
+      if (!ratio) continue;
+      if (test.gains_more_than.empty())
+        all.push_back(*ratio);
+      else if (const std::optional<Ratio> base = speedup(scene, test.gains_more_than, test.gains_more_than))
+        all.push_back(quotient(*ratio, *base));
+    }
   }
   return all;
 }
@@ -123,14 +128,7 @@ std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, c
     const auto slow_ms = table.ms(of_slow, slow, scene.nodes, scene.springs);
     return fast_ms && slow_ms ? std::optional(*slow_ms / *fast_ms) : std::nullopt;
   };
-  const auto all = ratios_of(test, legend, table.scenes(),
-                             [&](const PaperScene& scene, const std::string& of_fast,
-                                 const std::string& of_slow) -> std::optional<double> {
-                               const auto ratio = speedup(scene, of_fast, of_slow);
-                               if (test.gains_more_than.empty() || !ratio) return ratio;
-                               const auto base = speedup(scene, test.gains_more_than, test.gains_more_than);
-                               return base ? std::optional(*ratio / *base) : std::nullopt;
-                             });
+  const auto all = ratios_of<double>(test, legend, table.scenes(), speedup);
   if (all.empty()) return {};
   const auto [least, most] = std::ranges::minmax(all);
   return fmt::format("{} ({}{})", range_of(least, most), pluralize(all.size(), "ratio"),
@@ -155,12 +153,7 @@ std::vector<RatioInterval> measured_ratios(const ClaimTest& test, const Measured
       return std::nullopt;
     return times_as_fast(fast, slow);
   };
-  return ratios_of(test, measured.legend, measured.scenes,
-                   [&](const PaperScene& scene, const std::string& of_fast, const std::string& of_slow) {
-                     const auto ratio = speedup(scene, of_fast, of_slow);
-                     if (test.gains_more_than.empty()) return ratio;
-                     return quotient(ratio, speedup(scene, test.gains_more_than, test.gains_more_than));
-                   });
+  return ratios_of<RatioInterval>(test, measured.legend, measured.scenes, speedup);
 }
 
 RatioInterval geometric_mean_of(const std::vector<RatioInterval>& ratios) {

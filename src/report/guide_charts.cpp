@@ -16,7 +16,7 @@ namespace {
 /// A line of a chart: for each step of an integrator, longest first, the point of one backend.
 struct GuideLine {
   std::string integrator;
-  std::vector<const GuidePoint*> points;
+  std::map<double, const GuidePoint*, std::greater<>> points;  ///< by step
 };
 
 /// Less for a better point: one that did not diverge is better than one that did; otherwise the cheaper one
@@ -27,21 +27,14 @@ std::pair<bool, double> badness_of(const GuidePoint& point) {
 
 std::vector<GuideLine> lines_of(const FoundGuide& guide, const std::string& scene) {
   std::vector<GuideLine> lines;
-  std::vector<std::map<double, const GuidePoint*, std::greater<>>> best;  // [lines] by step
   for (const GuidePoint& point : guide.points) {
     if (point.scene != scene) continue;
-    const auto line = std::ranges::find(lines, point.integrator, &GuideLine::integrator);
-    const auto number = static_cast<std::size_t>(line - lines.begin());
-    if (line == lines.end()) {
-      lines.push_back({point.integrator, {}});
-      best.emplace_back();
-    }
+    auto line = std::ranges::find(lines, point.integrator, &GuideLine::integrator);
+    if (line == lines.end()) line = lines.insert(line, {point.integrator, {}});
     if (!point.dt_s) continue;
-    const GuidePoint*& known = best[number][*point.dt_s];
+    const GuidePoint*& known = line->points[*point.dt_s];
     if (known == nullptr || badness_of(point) < badness_of(*known)) known = &point;
   }
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    for (const auto& [dt_s, point] : best[i]) lines[i].points.push_back(point);
   return lines;
 }
 
@@ -52,7 +45,7 @@ using Along = std::optional<double> GuidePoint::*;
 double edge_of(const std::vector<GuideLine>& lines) {
   double largest = 0;
   for (const GuideLine& line : lines)
-    for (const GuidePoint* point : line.points)
+    for (const auto& [dt_s, point] : line.points)
       if (!point->diverged) largest = std::max(largest, point->position_error.value_or(0));
   return largest > 0 ? std::pow(10, std::floor(std::log10(largest)) + 1) : 1;
 }
@@ -73,7 +66,7 @@ Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::s
       diverged{.name = "diverged", .origin = Origin::reference, .mark = PointMark::cross};
   for (const GuideLine& line : lines) {
     Series series{.name = line.integrator, .family = line.integrator};
-    for (const GuidePoint* point : line.points) {
+    for (const auto& [dt_s, point] : line.points) {
       const auto x = point->*along;
       if (!x) continue;
       const double error = point->position_error.value_or(none);
@@ -98,7 +91,7 @@ Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::s
 void add_front(Chart& work, const std::vector<GuideLine>& lines) {
   Series front{.name = "on the front", .origin = Origin::reference, .mark = PointMark::ring};
   for (const GuideLine& line : lines)
-    for (const GuidePoint* point : line.points)
+    for (const auto& [dt_s, point] : line.points)
       if (point->on_front && point->wall_s_per_s && point->position_error)
         front.add(*point->wall_s_per_s, *point->position_error);
   if (!front.x.empty()) work.series.push_back(std::move(front));
@@ -130,8 +123,8 @@ void add_orders(Chart& steps) {
 std::vector<std::string> without_evaluations(const std::vector<GuideLine>& lines) {
   std::vector<std::string> names;
   for (const GuideLine& line : lines)
-    if (!line.points.empty() && std::ranges::none_of(line.points, [](const GuidePoint* point) {
-          return point->force_evaluations_per_s.has_value();
+    if (!line.points.empty() && std::ranges::none_of(line.points, [](const auto& step) {
+          return step.second->force_evaluations_per_s.has_value();
         }))
       names.push_back(line.integrator);
   return names;
@@ -146,7 +139,7 @@ std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
   std::map<std::string, std::vector<std::string>> integrators;
   for (const GuideLine& line : lines) {
     std::vector<std::string> backends;
-    for (const GuidePoint* point : line.points) add_once(backends, point->backend);
+    for (const auto& [dt_s, point] : line.points) add_once(backends, point->backend);
     std::ranges::sort(backends);
     if (!backends.empty()) integrators[join(backends, " and ")].push_back(line.integrator);
   }
@@ -173,9 +166,9 @@ void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene
     if (point.scene == scene && point.on_front) ++on_front;
   for (const GuideLine& line : lines) {
     if (line.points.empty()) without.push_back(reason_of(guide, scene, line.integrator));
-    for (const GuidePoint* point : line.points) {
+    for (const auto& [dt_s, point] : line.points) {
       if (point->diverged)
-        crosses.push_back(fmt::format("{} with {} ms", line.integrator, three_digits(*point->dt_s * 1000)));
+        crosses.push_back(fmt::format("{} with {} ms", line.integrator, three_digits(dt_s * 1000)));
       if (point->on_front) ++drawn_on_front;
     }
   }

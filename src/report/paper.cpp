@@ -24,9 +24,7 @@ Document times_page(const ReportFolder& folder) {
   const std::vector<const ResultRow*> rows = pointers_to(folder.rows);
   Document page{Heading{1, "Times per step"}, measured_on(rows, folder.where_from()),
                 Paragraph{std::string(how_to_read_times)}};
-  std::vector<std::string> scenes;
-  for (const ResultRow* row : rows) add_once(scenes, row->scene);
-  for (const std::string& scene : scenes) {
+  for (const std::string& scene : distinct<std::string>(rows, &ResultRow::scene)) {
     std::vector<const ResultRow*> its;
     std::ranges::copy_if(rows, std::back_inserter(its),
                          [&](const ResultRow* row) { return row->scene == scene; });
@@ -45,9 +43,9 @@ std::string rounds_in(const ReportFolder& folder) {
 
 std::vector<Chart> charts_of(const ReportFolder& folder, const ReportInput& input) {
   const std::string id = "chart";
-  std::vector<Chart> charts = all_speedup_charts(folder, input, id);
-  std::ranges::move(all_scaling_charts(folder, input, id), std::back_inserter(charts));
-  if (auto chart = roofline_chart(folder.rows, folder.where_from(), id)) charts.push_back(std::move(*chart));
+  std::vector<Chart> charts = speedup_charts(folder, input, id);
+  std::ranges::move(scaling_charts(folder, input, id), std::back_inserter(charts));
+  if (auto chart = roofline_chart(folder, id)) charts.push_back(std::move(*chart));
   for (const FoundCurve& curve : folder.curves)
     charts.push_back(energy_chart(curve, input.references, fmt::format("{}-energy-{}", id, charts.size())));
   if (folder.guide)

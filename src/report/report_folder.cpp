@@ -64,16 +64,13 @@ std::vector<Record> records_of(const fs::path& file, const std::string& without,
   try {
     records = read(CsvTable(file.string(), *text));
   } catch (const CsvError& error) {
-    const std::size_t head = std::min(text->find('\n'), text->size());
-    std::string_view rest = std::string_view(*text).substr(std::min(head + 1, text->size()));
+    std::string_view rest = *text;
+    const std::string_view head = take_to(rest, "\n");
     std::size_t lost = 0;
     while (!rest.empty()) {
-      const std::size_t length = std::min(rest.find('\n'), rest.size());
-      std::string line = text->substr(0, head) + '\n';
-      line.append(rest.substr(0, length)) += '\n';
-      rest.remove_prefix(std::min(length + 1, rest.size()));
+      const std::string alone = fmt::format("{}\n{}\n", head, take_to(rest, "\n"));
       try {
-        for (Record& record : read(CsvTable(file.string(), line))) records.push_back(std::move(record));
+        for (Record& record : read(CsvTable(file.string(), alone))) records.push_back(std::move(record));
       } catch (const CsvError&) {
         ++lost;
       }
@@ -206,9 +203,7 @@ std::optional<FoundGuide> read_guide(const fs::path& folder, std::vector<std::st
 }  // namespace
 
 std::vector<std::string> FoundGuide::scenes() const {
-  std::vector<std::string> names;
-  for (const GuidePoint& point : points) add_once(names, point.scene);
-  return names;
+  return distinct<std::string>(points, &GuidePoint::scene);
 }
 
 std::vector<fs::path> result_folders(const fs::path& folder) {
@@ -253,7 +248,7 @@ ReportFolder read_report_folder(const fs::path& path) {
 
 std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_view text) {
   text = without_byte_order_mark(text);
-  while (text.starts_with('#')) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  while (text.starts_with('#')) take_to(text, "\n");
   if (!text.starts_with("time_s,kinetic_j,")) return std::nullopt;
   FoundCurve curve{name, {}, {}};
   const CsvTable table(name, text);

@@ -59,9 +59,6 @@ struct BackendLook {
 };
 BackendLook look_on(std::string_view device, std::string_view backend, const Provenance& provenance);
 
-/// The look of a backend on the device of its rows.
-BackendLook look_of(std::span<const ResultRow> rows, std::string_view backend, const Provenance& provenance);
-
 /// Whether the backend corresponds to a configuration of the paper with a GPU.
 bool is_for_gpus(std::string_view backend, const PaperLegend& legend);
 
@@ -98,39 +95,23 @@ std::string where_measured(const Provenance& provenance, bool with_threads = tru
 /// Charts. `id` is the prefix of their ids, so that those of several folders differ. Charts without values
 /// are left out. Each names its processor, if known.
 
-/// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
-std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
-                                  const PublishedTable& published, const Provenance& provenance,
+/// For each published table and integrator of the paper: speed-ups over one thread against nodes, published
+/// and measured. Then Figure 6 of Vassilev: milliseconds per iteration against vertices, of garments.
+std::vector<Chart> speedup_charts(const ReportFolder& folder, const ReportInput& input,
                                   const std::string& id);
-
-/// Figure 6 of Vassilev: milliseconds per iteration against vertices, of garments.
-std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
-                                   const std::string& id);
 
 /// Time per step of the first integrator against nodes, for each kind of scene with at least two sizes, with
-/// the slope of every line.
-std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
-                                  std::span<const PublishedTable> published, const Provenance& provenance,
+/// the slope of every line. Then, for each scene, the speed-up of that integrator over the fewest threads,
+/// against threads.
+std::vector<Chart> scaling_charts(const ReportFolder& folder, const ReportInput& input,
                                   const std::string& id);
 
-/// For each scene, the speed-up of the first integrator over the fewest threads, against threads.
-std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenance& provenance,
-                                 const std::string& id);
-
 /// The slopes of all integrators: exponents p of time ~ nodes^p. Empty if nothing has two sizes.
-Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
-                  std::span<const PublishedTable> published);
+Table slope_table(const ReportFolder& folder, const ReportInput& input);
 
 /// One dot per backend on the largest scene with a roofline, with the first integrator, below the roofs that
 /// follow from the timings.
-std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
-                                    const std::string& id);
-
-/// All charts of the folder's speed-ups, with Figure 6, and those over nodes and threads.
-std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportInput& input,
-                                      const std::string& id);
-std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
-                                      const std::string& id);
+std::optional<Chart> roofline_chart(const ReportFolder& folder, const std::string& id);
 
 /// Gives each backend the same look in every chart, whatever the other backends, unless the chart has its own
 /// families.

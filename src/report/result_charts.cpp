@@ -68,23 +68,28 @@ struct SizeLines {
   std::optional<double> measured_slope, published_slope;
 };
 
-SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
-                     std::span<const PublishedTable> published, const Provenance& provenance,
-                     ContentKind kind, const std::string& backend, const std::string& integrator) {
+/// The look of a backend on the device of its rows.
+BackendLook look_of(const ReportFolder& folder, std::string_view backend) {
+  const ResultRow* row = row_with_device(pointers_to(folder.rows), backend);
+  return look_on(row ? opencl_device(*row) : "", backend, folder.where_from());
+}
+
+SizeLines size_lines(const ReportFolder& folder, const ReportInput& input, ContentKind kind,
+                     const std::string& backend, const std::string& integrator) {
   SizeLines lines;
-  for (const ResultRow& row : rows)
+  for (const ResultRow& row : folder.rows)
     if (kind_of(row) == kind && row.backend == backend && row.integrator == integrator && counts(row))
       lines.rows.push_back(&row);
   std::ranges::stable_sort(lines.rows, {}, [](const ResultRow* row) { return row->nodes; });
-  if (const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name))
+  if (const auto* found = found_in(input.legend.backends, backend, &PaperLegend::Backend::name))
     lines.configuration = found->configuration;
-  const auto* method = found_in(legend.integrators, integrator, &PaperLegend::Integrator::name);
-  lines.measured = measured_series(look_of(rows, backend, provenance));
-  lines.published = published_series(lines.configuration, legend);
+  const auto* method = found_in(input.legend.integrators, integrator, &PaperLegend::Integrator::name);
+  lines.measured = measured_series(look_of(folder, backend));
+  lines.published = published_series(lines.configuration, input.legend);
   for (const ResultRow* row : lines.rows) {
     add_time(lines.measured, *row);
     if (!method || !row->scene_as_shipped) continue;
-    for (const PublishedTable& table : published)
+    for (const PublishedTable& table : input.published)
       if (const auto ms =
               table.ms(method->paper_name, lines.configuration, row->nodes, row->springs_published))
         add_point(lines.published, row->nodes, *ms);
@@ -97,13 +102,6 @@ SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
 Series with_slope(Series series, std::optional<double> slope) {
   if (slope) series.name += fmt::format(", slope {:.2f}", *slope);
   return series;
-}
-
-/// The different values of a member, in order of appearance.
-std::vector<std::string> distinct(std::span<const ResultRow> rows, std::string ResultRow::*value) {
-  std::vector<std::string> values;
-  for (const ResultRow& row : rows) add_once(values, row.*value);
-  return values;
 }
 
 /// A row in a roofline: operations per byte, and 1e9 operations per second.
@@ -149,6 +147,88 @@ std::string name_in_chart(const HistorySeries& row, const MachineHistory& machin
          (differs(&HistorySeries::nodes) ? ", " + pluralize(row.nodes, "node") : "");
 }
 
+/// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
+void add_speedup_charts(std::vector<Chart>& charts, const ReportFolder& folder, const PaperLegend& legend,
+                        const PublishedTable& published, const std::string& id) {
+  const std::vector<PaperScene> scenes = published.scenes_of(folder.rows);
+  const std::vector<const ResultRow*> all = pointers_to(folder.rows);
+  for (const PaperLegend::Integrator& integrator : legend.integrators) {
+    if (integrator.name != integrator.paper_name) continue;
+    Chart chart =
+        chart_of(id + "-speed-up-" + integrator.name, integrator.name + ": speed-up over one thread",
+                 where_measured(folder.where_from()), nodes_axis(), {"times as fast as one thread", true});
+    bool is_measured = false;
+    for (const PaperConfiguration& configuration : paper_configurations) {
+      if (configuration.name == one_thread_configuration) continue;
+      Series line = published_series(configuration.name, legend);
+      for (const PaperScene& scene : scenes)
+        if (const auto speedup = published.speedup(integrator.paper_name, configuration.name, scene))
+          add_point(line, scene.nodes, *speedup);
+      if (!line.x.empty()) chart.series.push_back(std::move(line));
+      for (const PaperLegend::Backend& backend : legend.backends) {
+        if (backend.configuration != configuration.name) continue;
+        Series measured = measured_series(look_of(folder, backend.name));
+        for (const PaperScene& scene : scenes) {
+          const ResultRow* row = find_row(all, scene.name, backend.name, integrator.name);
+          const auto speedup = times_as_fast(row, row != nullptr ? baseline_of(all, *row) : nullptr);
+          if (speedup) add_ratio(measured, static_cast<double>(scene.nodes), *speedup);
+        }
+        if (measured.x.empty()) continue;
+        is_measured = true;
+        chart.series.push_back(std::move(measured));
+      }
+    }
+    if (is_measured) charts.push_back(std::move(chart));
+  }
+}
+
+/// Figure 6 of Vassilev: milliseconds per iteration against vertices, of garments.
+std::optional<Chart> figure6_chart(const ReportFolder& folder, const std::string& id) {
+  Chart chart =
+      chart_of(id + "-figure6", "Figure 6: one iteration of garments", where_measured(folder.where_from()),
+               {"vertices", false}, {"time per iteration (ms)", false});
+  for (const ResultRow& row : folder.rows) {
+    if (!row.dressing || !counts(row)) continue;
+    const BackendLook look = look_of(folder, row.backend);
+    const std::string name =
+        look.name + (is_parallel(row.backend) ? ", with parallelisation" : ", without parallelisation");
+    auto series = std::ranges::find(chart.series, name, &Series::name);
+    if (series == chart.series.end())
+      series = chart.series.insert(series, Series{.name = name, .family = look.family});
+    add_time(*series, row);
+  }
+  return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
+}
+
+/// For each scene, the speed-up of the first integrator over the fewest threads, against threads.
+std::vector<Chart> thread_charts(const ReportFolder& folder, const std::string& id) {
+  std::vector<Chart> charts;
+  if (!folder.provenance) return charts;
+  const Provenance& provenance = *folder.provenance;
+  const std::vector<const ResultRow*> pointers = pointers_to(folder.rows);
+  const ResultRow* last = nullptr;
+  for (const ThreadRow& of : thread_rows(pointers, provenance)) {
+    const std::optional<RatioInterval> speedup = of.speedup();
+    if (!speedup || of.row->integrator != folder.rows.front().integrator) continue;
+    if (!last || last->scene != of.row->scene) {
+      charts.push_back(chart_of(
+          fmt::format("{}-threads-{}", id, charts.size()),
+          of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
+          where_measured(provenance, false),
+          {.label = "threads", .logarithmic = true, .ticks_at_values = true}, {"times as fast", true}));
+      charts.back().series.push_back({.name = "linear speed-up", .origin = Origin::reference});
+    }
+    last = of.row;
+    std::vector<Series>& all = charts.back().series;
+    const BackendLook look = look_on(opencl_device(*of.row), of.backend, provenance);
+    auto series = std::ranges::find(all, look.family, &Series::family);
+    if (series == all.end()) series = all.insert(series, {.name = look.name, .family = look.family});
+    if (all.size() == 2) all.front().add(of.threads, static_cast<double>(of.threads) / of.fewest_threads);
+    add_ratio(*series, of.threads, *speedup);
+  }
+  return charts;
+}
+
 }  // namespace
 
 BackendLook look_on(std::string_view device, std::string_view backend, const Provenance& provenance) {
@@ -159,11 +239,6 @@ BackendLook look_on(std::string_view device, std::string_view backend, const Pro
   else if (!device.empty())
     name += ", " + device_name(device);
   return {std::move(name), std::move(family)};
-}
-
-BackendLook look_of(std::span<const ResultRow> rows, std::string_view backend, const Provenance& provenance) {
-  const ResultRow* row = row_with_device(pointers_to(rows), backend);
-  return look_on(row ? opencl_device(*row) : "", backend, provenance);
 }
 
 bool is_for_gpus(std::string_view backend, const PaperLegend& legend) {
@@ -193,43 +268,6 @@ std::string where_measured(const Provenance& provenance, bool with_threads) {
          (with_threads ? ", " + pluralize(provenance.threads, "thread") : "");
 }
 
-std::vector<Chart> speedup_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
-                                  const PublishedTable& published, const Provenance& provenance,
-                                  const std::string& id) {
-  std::vector<Chart> charts;
-  const std::vector<PaperScene> scenes = published.scenes_of(rows);
-  const std::vector<const ResultRow*> all = pointers_to(rows);
-  for (const PaperLegend::Integrator& integrator : legend.integrators) {
-    if (integrator.name != integrator.paper_name) continue;
-    Chart chart =
-        chart_of(id + "-speed-up-" + integrator.name, integrator.name + ": speed-up over one thread",
-                 where_measured(provenance), nodes_axis(), {"times as fast as one thread", true});
-    bool is_measured = false;
-    for (const PaperConfiguration& configuration : paper_configurations) {
-      if (configuration.name == one_thread_configuration) continue;
-      Series line = published_series(configuration.name, legend);
-      for (const PaperScene& scene : scenes)
-        if (const auto speedup = published.speedup(integrator.paper_name, configuration.name, scene))
-          add_point(line, scene.nodes, *speedup);
-      if (!line.x.empty()) chart.series.push_back(std::move(line));
-      for (const PaperLegend::Backend& backend : legend.backends) {
-        if (backend.configuration != configuration.name) continue;
-        Series measured = measured_series(look_of(rows, backend.name, provenance));
-        for (const PaperScene& scene : scenes) {
-          const ResultRow* row = find_row(all, scene.name, backend.name, integrator.name);
-          const auto speedup = times_as_fast(row, row != nullptr ? baseline_of(all, *row) : nullptr);
-          if (speedup) add_ratio(measured, static_cast<double>(scene.nodes), *speedup);
-        }
-        if (measured.x.empty()) continue;
-        is_measured = true;
-        chart.series.push_back(std::move(measured));
-      }
-    }
-    if (is_measured) charts.push_back(std::move(chart));
-  }
-  return charts;
-}
-
 std::vector<Chart> history_charts(const MachineHistory& machine, const std::string& id) {
   std::vector<Chart> charts;
   for (const HistorySeries& row : machine.series) {
@@ -254,43 +292,34 @@ std::vector<Chart> history_charts(const MachineHistory& machine, const std::stri
   return charts;
 }
 
-std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const Provenance& provenance,
-                                   const std::string& id) {
-  Chart chart = chart_of(id + "-figure6", "Figure 6: one iteration of garments", where_measured(provenance),
-                         {"vertices", false}, {"time per iteration (ms)", false});
-  for (const ResultRow& row : rows) {
-    if (!row.dressing || !counts(row)) continue;
-    const BackendLook look = look_of(rows, row.backend, provenance);
-    const std::string name =
-        look.name + (is_parallel(row.backend) ? ", with parallelisation" : ", without parallelisation");
-    auto series = std::ranges::find(chart.series, name, &Series::name);
-    if (series == chart.series.end())
-      series = chart.series.insert(series, Series{.name = name, .family = look.family});
-    add_time(*series, row);
-  }
-  return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
-}
-
 ContentKind kind_of(const ResultRow& row) {
   if (row.springs_published == 2 * row.springs_unique) return ContentKind::cloth;
   if (row.springs_published == 3 * row.springs_unique) return ContentKind::bodies;
   return row.dressing ? ContentKind::garment : ContentKind::other;
 }
 
-std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
-                                  std::span<const PublishedTable> published, const Provenance& provenance,
+std::vector<Chart> speedup_charts(const ReportFolder& folder, const ReportInput& input,
                                   const std::string& id) {
   std::vector<Chart> charts;
-  if (rows.empty()) return charts;
-  const std::string integrator = rows.front().integrator;
+  for (const PublishedTable& published : input.published)
+    add_speedup_charts(charts, folder, input.legend, published,
+                       id + "-" + std::string(published.info().name));
+  if (auto figure6 = figure6_chart(folder, id)) charts.push_back(std::move(*figure6));
+  return charts;
+}
+
+std::vector<Chart> scaling_charts(const ReportFolder& folder, const ReportInput& input,
+                                  const std::string& id) {
+  std::vector<Chart> charts;
+  if (folder.rows.empty()) return charts;
+  const std::string integrator = folder.rows.front().integrator;
   for (std::size_t kind = 0; kind < kind_names.size(); ++kind) {
     Chart chart = chart_of(fmt::format("{}-scaling-{}", id, kind),
                            fmt::format("{}: time per step of {}", integrator, kind_names[kind]),
-                           where_measured(provenance), nodes_axis(), {"time per step (ms)", true});
+                           where_measured(folder.where_from()), nodes_axis(), {"time per step (ms)", true});
     std::vector<std::string> shown;
-    for (const std::string& backend : distinct(rows, &ResultRow::backend)) {
-      SizeLines lines = size_lines(rows, legend, published, provenance, static_cast<ContentKind>(kind),
-                                   backend, integrator);
+    for (const std::string& backend : distinct<std::string>(folder.rows, &ResultRow::backend)) {
+      SizeLines lines = size_lines(folder, input, static_cast<ContentKind>(kind), backend, integrator);
       if (!lines.measured_slope) continue;
       chart.series.push_back(with_slope(std::move(lines.measured), lines.measured_slope));
       if (lines.published.x.empty() || std::ranges::find(shown, lines.configuration) != shown.end()) continue;
@@ -299,44 +328,17 @@ std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLe
     }
     if (!chart.series.empty()) charts.push_back(std::move(chart));
   }
+  std::ranges::move(thread_charts(folder, id), std::back_inserter(charts));
   return charts;
 }
 
-std::vector<Chart> thread_charts(std::span<const ResultRow> rows, const Provenance& provenance,
-                                 const std::string& id) {
-  std::vector<Chart> charts;
-  const std::vector<const ResultRow*> pointers = pointers_to(rows);
-  const ResultRow* last = nullptr;
-  for (const ThreadRow& of : thread_rows(pointers, provenance)) {
-    const std::optional<RatioInterval> speedup = of.speedup();
-    if (!speedup || of.row->integrator != rows.front().integrator) continue;
-    if (!last || last->scene != of.row->scene) {
-      charts.push_back(chart_of(
-          fmt::format("{}-threads-{}", id, charts.size()),
-          of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
-          where_measured(provenance, false),
-          {.label = "threads", .logarithmic = true, .ticks_at_values = true}, {"times as fast", true}));
-      charts.back().series.push_back({.name = "linear speed-up", .origin = Origin::reference});
-    }
-    last = of.row;
-    std::vector<Series>& all = charts.back().series;
-    const BackendLook look = look_on(opencl_device(*of.row), of.backend, provenance);
-    auto series = std::ranges::find(all, look.family, &Series::family);
-    if (series == all.end()) series = all.insert(series, {.name = look.name, .family = look.family});
-    if (all.size() == 2) all.front().add(of.threads, static_cast<double>(of.threads) / of.fewest_threads);
-    add_ratio(*series, of.threads, *speedup);
-  }
-  return charts;
-}
-
-Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
-                  std::span<const PublishedTable> published) {
+Table slope_table(const ReportFolder& folder, const ReportInput& input) {
   Table table;
   for (std::size_t kind = 0; kind < kind_names.size(); ++kind)
-    for (const std::string& integrator : distinct(rows, &ResultRow::integrator))
-      for (const std::string& backend : distinct(rows, &ResultRow::backend)) {
+    for (const std::string& integrator : distinct<std::string>(folder.rows, &ResultRow::integrator))
+      for (const std::string& backend : distinct<std::string>(folder.rows, &ResultRow::backend)) {
         const SizeLines lines =
-            size_lines(rows, legend, published, {}, static_cast<ContentKind>(kind), backend, integrator);
+            size_lines(folder, input, static_cast<ContentKind>(kind), backend, integrator);
         if (lines.measured_slope)
           table.add({{"backend", "`" + backend + "`"},
                      {"integrator", integrator},
@@ -348,21 +350,20 @@ Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
   return table;
 }
 
-std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const Provenance& provenance,
-                                    const std::string& id) {
+std::optional<Chart> roofline_chart(const ReportFolder& folder, const std::string& id) {
   const ResultRow* largest = nullptr;
-  for (const ResultRow& row : rows)
+  for (const ResultRow& row : folder.rows)
     if (row.roofline_fraction && dot_of(row) && (!largest || row.nodes > largest->nodes)) largest = &row;
   if (!largest) return std::nullopt;
   Chart chart = chart_of(id + "-roofline", "Roofline: " + largest->scene + ", " + largest->integrator,
-                         where_measured(provenance), {"operations per byte", true},
+                         where_measured(folder.where_from()), {"operations per byte", true},
                          {"operations per second (10⁹)", true}, ChartForm::points);
   std::map<int, std::vector<RoofDot>> under_roof;  // by threads
-  for (const ResultRow& row : rows) {
+  for (const ResultRow& row : folder.rows) {
     if (row.scene != largest->scene || row.integrator != largest->integrator) continue;
     const auto dot = dot_of(row);
     if (!dot) continue;
-    const BackendLook look = look_of(rows, row.backend, provenance);
+    const BackendLook look = look_of(folder, row.backend);
     chart.series.push_back(
         {.name = look.name, .family = look.family, .x = {dot->intensity}, .y = {dot->gigaflops}});
     if (dot->roof) under_roof[row.threads].push_back(*dot);
@@ -411,27 +412,6 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
                             .x = best->time_s,
                             .y = best->total_j});
   return chart;
-}
-
-std::vector<Chart> all_speedup_charts(const ReportFolder& folder, const ReportInput& input,
-                                      const std::string& id) {
-  std::vector<Chart> charts;
-  for (const PublishedTable& published : input.published)
-    std::ranges::move(speedup_charts(folder.rows, input.legend, published, folder.where_from(),
-                                     id + "-" + std::string(published.info().name)),
-                      std::back_inserter(charts));
-  if (auto figure6 = figure6_chart(folder.rows, folder.where_from(), id))
-    charts.push_back(std::move(*figure6));
-  return charts;
-}
-
-std::vector<Chart> all_scaling_charts(const ReportFolder& folder, const ReportInput& input,
-                                      const std::string& id) {
-  std::vector<Chart> charts =
-      scaling_charts(folder.rows, input.legend, input.published, folder.where_from(), id);
-  if (folder.provenance)
-    std::ranges::move(thread_charts(folder.rows, *folder.provenance, id), std::back_inserter(charts));
-  return charts;
 }
 
 std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {

@@ -292,7 +292,7 @@ std::string headline_section(const ReportInput& input) {
     const std::vector<const ResultRow*> rows = pointers_to(folder.rows);
     const Table all = times_of(rows, folder);
     Document below;
-    add_sentence(below, legend_of_ratios(all));
+    add_sentence(below, legend_of_ratios({all}));
     add_rows_without_a_time(below, rows);
     return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n{}", noise_note(folder),
                        html_of(times_of(headline_rows(rows), folder)), pluralize(rows.size(), "row"),
@@ -355,7 +355,7 @@ std::string pictures_of(const std::vector<FoundPicture>& pictures) {
 
 std::string speedup_section(const ReportInput& input) {
   const auto figures = [&](const ReportFolder& folder, const std::string& id) {
-    return figures_of(with_looks_of_backends(all_speedup_charts(folder, input, id), input.legend));
+    return figures_of(with_looks_of_backends(speedup_charts(folder, input, id), input.legend));
   };
   return paragraph(
              "Published lines are dashed and have open points; measured ones have intervals. Charts of "
@@ -367,8 +367,8 @@ std::string speedup_section(const ReportInput& input) {
 
 std::string scaling_section(const ReportInput& input) {
   const auto figures = [&](const ReportFolder& folder, const std::string& id) {
-    const Table slopes = slope_table(folder.rows, input.legend, input.published);
-    return figures_of(with_looks_of_backends(all_scaling_charts(folder, input, id), input.legend)) +
+    const Table slopes = slope_table(folder, input);
+    return figures_of(with_looks_of_backends(scaling_charts(folder, input, id), input.legend)) +
            (slopes.rows.empty() ? "" : html_of(slopes));
   };
   return paragraph(
@@ -383,7 +383,7 @@ std::string scaling_section(const ReportInput& input) {
 
 std::string roofline_section(const ReportInput& input) {
   const auto figure = [&](const ReportFolder& folder, const std::string& id) {
-    const auto chart = roofline_chart(folder.rows, folder.where_from(), id);
+    const auto chart = roofline_chart(folder, id);
     return chart ? figures_of(with_looks_of_backends({*chart}, input.legend)) : std::string();
   };
   return paragraph(

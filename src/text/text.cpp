@@ -119,6 +119,12 @@ std::optional<std::uint64_t> from_hex(std::string_view text) {
   return value;
 }
 
+std::string_view take_to(std::string_view& text, std::string_view end) {
+  const std::string_view part = text.substr(0, text.find(end));
+  text.remove_prefix(std::min(part.size() + end.size(), text.size()));
+  return part;
+}
+
 std::string join(std::span<const std::string> texts, std::string_view separator) {
   return fmt::format("{}", fmt::join(texts, separator));
 }
@@ -186,14 +192,15 @@ std::string unknown_name(std::string_view what, std::string_view name,
                      did_you_mean(name, known, others), listed(known));
 }
 
+std::string_view beginning_of(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && width_of_character(text[bytes]) == 0) --bytes;  // not within a character
+  return text.substr(0, bytes);
+}
+
 std::string printable(std::string_view text, std::size_t length) {
   const bool is_cut = text.size() > length;
-  if (is_cut) {
-    std::size_t end = length;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
-      --end;  // not within a character
-    text = text.substr(0, end);
-  }
+  text = beginning_of(text, length);
   std::string result;
   while (!text.empty()) {
     const std::size_t taken = character_length(text);
@@ -244,6 +251,15 @@ std::string shell_word(const std::string& text) {
   return word;
 }
 
+Character first_character(std::string_view text) {
+  const std::size_t bytes = character_length(text);
+  if (bytes == 0) return {U'\uFFFD', 1};
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  char32_t code = bytes == 1 ? byte(0) : byte(0) & (0xFFU >> (bytes + 1));
+  for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (byte(i) & 0x3FU);
+  return {code, bytes};
+}
+
 std::size_t width_of(std::string_view text) {
   std::size_t width = 0;
   for (const char byte : text) width += width_of_character(byte);
@@ -260,8 +276,7 @@ std::string_view clipped(std::string_view text, std::size_t width) {
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent) {
   std::string lines, line;
   while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    const std::string_view word = take_to(text, " ");
     if (!line.empty() && width_of(line) + 1 + width_of(word) > width) {
       lines += line + '\n';
       line = indent;

@@ -83,6 +83,14 @@ void add_once(std::vector<Value>& values, const std::type_identity_t<Value>& val
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
 }
 
+/// Values of `of`, a member or a function, for each element: each value once, in the order of the first.
+template <class Value, class Range, class Of>
+std::vector<Value> distinct(Range&& range, Of of) {
+  std::vector<Value> values;
+  for (auto&& element : range) add_once(values, std::invoke(of, element));
+  return values;
+}
+
 /// The bytes of a value without pointers, or of a vector of such values, for hashes and files.
 template <class Value>
 requires std::is_trivially_copyable_v<Value> std::string_view bytes_of(const Value& value) {
@@ -114,6 +122,9 @@ std::optional<std::uint64_t> from_hex(std::string_view text);
 std::string pluralize(std::integral auto number, std::string_view noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
+
+/// Removes the text up to `end`, and `end` itself, from its front and returns it; all of it without `end`.
+std::string_view take_to(std::string_view& text, std::string_view end);
 
 /// The concatenated texts, with `separator` between them.
 std::string join(std::span<const std::string> texts, std::string_view separator);
@@ -165,8 +176,20 @@ bool has_words(std::string_view line);
 /// The text as one word of a shell command: in single quotes unless all its characters are plain.
 std::string shell_word(const std::string& text);
 
+/// A character of UTF-8 (RFC 3629).
+struct Character {
+  char32_t code;
+  std::size_t bytes;
+};
+
+/// The first character of a text, which is not empty. A byte that begins none counts as U+FFFD.
+Character first_character(std::string_view text);
+
 /// Columns of UTF-8 text in a terminal or chart: one per character, two for wide ones.
 std::size_t width_of(std::string_view text);
+
+/// At most the first `bytes` bytes of UTF-8 text, without a partial character.
+std::string_view beginning_of(std::string_view text, std::size_t bytes);
 
 /// The longest prefix of UTF-8 text that fits into `width` columns.
 std::string_view clipped(std::string_view text, std::size_t width);

@@ -188,7 +188,7 @@ void check(hid_t file, const TraceContent& content) {
       require(corner < content.body.points.size(), "triangles have corners");
   const Hdf5Table positions(file, particles_group(content) + "/position/value", {Hdf5Table::any, nodes, 3});
   for (std::size_t frame = 0; frame < content.step.size(); ++frame)
-    require(positions.doubles(frame, 1).size() == 3 * nodes, "a frame has all nodes");
+    require(positions.read<double>(frame, 1).size() == 3 * nodes, "a frame has all nodes");
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 
-#include <span>
-
 #include "application/bench/suites.h"
 #include "charts/layout.h"
 #include "integrators/all_integrators.h"
@@ -26,6 +24,21 @@ std::vector<ResultRow> two_cloths() {
   return rows;
 }
 
+ReportFolder folder_of(std::vector<ResultRow> rows, std::optional<Provenance> provenance = {}) {
+  ReportFolder folder;
+  folder.rows = std::move(rows);
+  folder.provenance = std::move(provenance);
+  return folder;
+}
+
+/// What a report has of the papers' tables.
+ReportInput of_papers() {
+  ReportInput input;
+  input.legend = legend;
+  input.published = published_tables();
+  return input;
+}
+
 const Series& series(const Chart& chart, const std::string& name) {
   for (const Series& each : chart.series)
     if (each.name == name) return each;
@@ -40,9 +53,7 @@ std::vector<std::string> names_in(const Chart& chart) {
 }
 
 TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
-  const std::vector<ResultRow> rows = two_cloths();
-  const PublishedTable table1(published_table_kinds[0]);
-  const auto charts = speedup_charts(rows, legend, table1, made_up_provenance(), "f1-table1");
+  const auto charts = speedup_charts(folder_of(two_cloths(), made_up_provenance()), of_papers(), "f1");
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_EQ(charts[0].id, "f1-table1-speed-up-semi-euler");
   EXPECT_EQ(charts[0].subtitle, "Measured on A Processor, 2 threads");
@@ -57,16 +68,15 @@ TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
   EXPECT_TRUE(published.low.empty());
   EXPECT_EQ(measured.y, (std::vector<double>{5, 5}));
   EXPECT_EQ(measured.low, measured.y);
-  EXPECT_TRUE(speedup_charts({}, legend, table1, {}, "f1").empty());
+  EXPECT_TRUE(speedup_charts(folder_of({}), of_papers(), "f1").empty());
 }
 
 TEST(SpeedupCharts, OpenclOnTheProcessorLooksLikeNoGpu) {
   std::vector<ResultRow> rows = two_cloths();
-  const PublishedTable table1(published_table_kinds[0]);
   const auto chart_on = [&](const std::string& device) {
     for (ResultRow& row : rows)
       if (row.backend == "opencl") row.device = device;
-    return speedup_charts(rows, legend, table1, made_up_provenance(), "f1").at(0);
+    return speedup_charts(folder_of(rows, made_up_provenance()), of_papers(), "f1").at(0);
   };
   const Chart on_cpu = chart_on("pthread-skylake-avx512-A Processor"), on_gpu = chart_on("A GPU");
   EXPECT_NE(series(on_cpu, "opencl on the CPU, measured").family,
@@ -101,9 +111,8 @@ TEST(LookOn, NamesTheDevice) {
 TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
   std::vector<ResultRow> rows = two_cloths();
   rows[2].samples_ms[0] = 0.5;  // of 2 ms of serial
-  const PublishedTable table1(published_table_kinds[0]);
-  const auto chart_of = [&](std::size_t count) {
-    return speedup_charts(std::span(rows).first(count), legend, table1, {}, "f1").at(0);
+  const auto chart_of = [&](std::ptrdiff_t count) {
+    return speedup_charts(folder_of({rows.begin(), rows.begin() + count}), of_papers(), "f1").at(0);
   };
   EXPECT_FALSE(has_one_place(chart_of(6)));
   const Chart chart = chart_of(3);
@@ -125,20 +134,19 @@ TEST(ValuesOf, ShowAChartOfOnePlaceAsATable) {
 
 TEST(ScalingCharts, NameTheSlopes) {
   const std::vector<ResultRow> rows = two_cloths();
-  const std::vector<PublishedTable> published = published_tables();
-  const auto charts = scaling_charts(rows, legend, published, made_up_provenance(), "f1");
+  const auto charts = scaling_charts(folder_of(rows, made_up_provenance()), of_papers(), "f1");
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_TRUE(charts[0].x.logarithmic && charts[0].y.logarithmic);
   EXPECT_EQ(series(charts[0], "serial, measured, slope 1.50").high, (std::vector<double>{2, 16}));
   std::vector<ResultRow> few = rows;
   few[0].rounds = 5;
-  EXPECT_EQ(series(scaling_charts(few, legend, published, {}, "f1")[0], "serial, measured, slope 1.50").high,
+  EXPECT_EQ(series(scaling_charts(folder_of(few), of_papers(), "f1")[0], "serial, measured, slope 1.50").high,
             (std::vector<double>{1, 16}));
   EXPECT_EQ(series(charts[0], "CPU only, Nexus 7, published, slope 1.02").y,
             (std::vector<double>{19.475, 80.48}));
-  const Table slopes = slope_table(rows, legend, published);
+  const Table slopes = slope_table(folder_of(rows), of_papers());
   EXPECT_EQ(slopes.rows.size(), 3U);
-  EXPECT_TRUE(scaling_charts(std::span(rows).first(3), legend, published, {}, "f1").empty());
+  EXPECT_TRUE(scaling_charts(folder_of({rows.begin(), rows.begin() + 3}), of_papers(), "f1").empty());
 }
 
 TEST(ThreadCharts, ShowSpeedUpsOverTheFewestThreadsBesideTheNumberOfThreads) {
@@ -147,7 +155,7 @@ TEST(ThreadCharts, ShowSpeedUpsOverTheFewestThreadsBesideTheNumberOfThreads) {
                               measured_row("hybrid:1", 2, 2.0),     measured_row("hybrid", 1, 4.0)};
   Provenance provenance = made_up_provenance();
   provenance.threads = 4;
-  const auto charts = thread_charts(rows, provenance, "f1");
+  const auto charts = scaling_charts(folder_of(rows, provenance), of_papers(), "f1");
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_EQ(charts[0].series.size(), 3U);
   EXPECT_EQ(series(charts[0], "openmp").x, (std::vector<double>{1, 2, 4}));
@@ -155,7 +163,7 @@ TEST(ThreadCharts, ShowSpeedUpsOverTheFewestThreadsBesideTheNumberOfThreads) {
   EXPECT_EQ(series(charts[0], "hybrid").y, (std::vector<double>{1, 2}));
   EXPECT_EQ(charts[0].series.front().y, (std::vector<double>{1, 2, 4}));
   rows.resize(2);
-  EXPECT_TRUE(thread_charts(rows, provenance, "f1").empty());
+  EXPECT_TRUE(scaling_charts(folder_of(rows, provenance), of_papers(), "f1").empty());
 }
 
 TEST(RooflineChart, PutsDotsBelowTheirRoofs) {
@@ -164,7 +172,7 @@ TEST(RooflineChart, PutsDotsBelowTheirRoofs) {
   for (ResultRow& row : rows) row.gigabytes_per_second = 0.12 / *row.ms_per_step;
   for (ResultRow& row : rows)
     if (row.backend == "opencl") row.roofline_fraction.reset();
-  const auto chart = roofline_chart(rows, {}, "f1");
+  const auto chart = roofline_chart(folder_of(rows), "f1");
   ASSERT_TRUE(chart);
   EXPECT_EQ(chart->title, "Roofline: cloth10000, semi-euler");
   const Series &serial = series(*chart, "serial"), &openmp = series(*chart, "openmp"),
@@ -174,7 +182,7 @@ TEST(RooflineChart, PutsDotsBelowTheirRoofs) {
   EXPECT_NEAR(roof.y[1] + roof.y[2], serial.y[0] / 0.05 + openmp.y[0] / 0.5, 1e-9 * roof.y[1]);
   EXPECT_EQ(chart->series.size(), 4U);
   for (ResultRow& row : rows) row.roofline_fraction.reset();
-  EXPECT_FALSE(roofline_chart(rows, {}, "f1"));
+  EXPECT_FALSE(roofline_chart(folder_of(rows), "f1"));
 }
 
 TEST(RooflineChart, DrawsARoofAtItsDotsOnly) {
@@ -184,7 +192,7 @@ TEST(RooflineChart, DrawsARoofAtItsDotsOnly) {
   rows[0].roofline_fraction = 0.5;
   rows[1].gigabytes_per_second = 0.5;  // ten times the intensity of openmp
   rows[1].roofline_fraction = 0.5;
-  const auto chart = roofline_chart(rows, {}, "f1");
+  const auto chart = roofline_chart(folder_of(rows), "f1");
   const Series &roof = series(*chart, "roof of 2 threads"), &first = chart->series[0],
                &second = chart->series[1];
   ASSERT_EQ(roof.x.size(), 4U);
@@ -195,13 +203,14 @@ TEST(RooflineChart, DrawsARoofAtItsDotsOnly) {
 
 TEST(Figure6Chart, HasALineForEachBackendThatDresses) {
   std::vector<ResultRow> rows = two_cloths();
-  EXPECT_FALSE(figure6_chart(rows, {}, "f1"));
+  const auto last_chart = [&] { return speedup_charts(folder_of(rows), of_papers(), "f1").back(); };
+  EXPECT_NE(last_chart().id, "f1-figure6");
   for (ResultRow& row : rows)
     if (row.backend != "opencl") row.dressing.emplace();
-  const auto chart = figure6_chart(rows, {}, "f1");
-  ASSERT_TRUE(chart);
-  EXPECT_EQ(chart->series.size(), 2U);
-  EXPECT_EQ(series(*chart, "openmp, with parallelisation").y, (std::vector<double>{0.1, 0.8}));
+  const Chart chart = last_chart();
+  EXPECT_EQ(chart.id, "f1-figure6");
+  EXPECT_EQ(chart.series.size(), 2U);
+  EXPECT_EQ(series(chart, "openmp, with parallelisation").y, (std::vector<double>{0.1, 0.8}));
 }
 
 TEST(HistoryCharts, CountCommitsAndNameWhatSeriesDifferIn) {

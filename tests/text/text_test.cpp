@@ -21,6 +21,26 @@ TEST(Columns, ClipBetweenCharacters) {
   EXPECT_EQ(clipped("a×b", 4), "a×b");
 }
 
+TEST(FirstCharacter, IsAWholeOneOrOneByteOfNone) {
+  const auto first = [](std::string_view text) {
+    const auto [code, bytes] = first_character(text);
+    return std::pair<std::uint32_t, std::size_t>(code, bytes);
+  };
+  EXPECT_EQ(first("ab"), std::pair(0x61U, std::size_t{1}));
+  EXPECT_EQ(first("\u00e9b"), std::pair(0xe9U, std::size_t{2}));
+  EXPECT_EQ(first("\u2026"), std::pair(0x2026U, std::size_t{3}));
+  EXPECT_EQ(first("\U0001f600"), std::pair(0x1f600U, std::size_t{4}));
+  for (const char* none : {"\xff", "\x80", "\xe2\x80", "\xed\xa0\x80"})
+    EXPECT_EQ(first(none), std::pair(0xfffdU, std::size_t{1}));
+}
+
+TEST(TakeTo, TakesAllWhereTheEndIsMissing) {
+  std::string_view text = "a\n\nb";
+  EXPECT_EQ(take_to(text, "\n\n"), "a");
+  EXPECT_EQ(take_to(text, "\n\n"), "b");
+  EXPECT_EQ(take_to(text, "\n\n"), "");
+}
+
 TEST(Columns, WrapBetweenWords) {
   EXPECT_EQ(wrapped("one two three four", 9, ""), "one two\nthree\nfour");
   EXPECT_EQ(wrapped("one two three four", 9, "  "), "one two\n  three\n  four");

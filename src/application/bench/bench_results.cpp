@@ -274,7 +274,7 @@ void BenchResults::keep(const std::string& scene, std::vector<ResultRow> rows) {
 }
 
 void BenchResults::keep(const std::vector<StructureRow>& rows) {
-  if (folder_) folder_->write(rows);
+  if (folder_) folder_->write(std::vector{structure_table(rows, plan_.provenance)});
 }
 
 void BenchResults::keep_for_github() const {

@@ -10,6 +10,7 @@
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "output/folders/result_folder.h"
+#include "output/tables/suite_tables.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

@@ -24,13 +24,6 @@ void append_number(std::string& text, double value, bool in_double) {
                                : std::to_chars(begin, end, static_cast<float>(value)).ptr);
 }
 
-template <class Number>
-void append_bytes(std::string& bytes, Number number) {
-  static_assert(std::endian::native == std::endian::little);
-  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
-  bytes.append(raw.data(), raw.size());
-}
-
 std::string header(const ExportMesh& mesh, double time_s) {
   std::string text = fmt::format("ply\nformat binary_little_endian 1.0\ncomment mssim, time {} s, SI units\n",
                                  decimal(time_s));
@@ -141,20 +134,21 @@ std::string obj_of(const ExportMesh& mesh, const ExportFrame& frame) {
 }
 
 std::string ply_of(const ExportMesh& mesh, const ExportFrame& frame) {
+  static_assert(std::endian::native == std::endian::little);
   std::string bytes = header(mesh, frame.time_s);
   for (std::size_t i = 0; i < mesh.node.size(); ++i) {
     const Vec3d &x = frame.position[i], &v = frame.velocity[i];
     for (const double number : {x.x, x.y, x.z, v.x, v.y, v.z, frame.strain[i]})
       if (mesh.in_double)
-        append_bytes(bytes, number);
+        bytes += bytes_of(number);
       else
-        append_bytes(bytes, static_cast<float>(number));
-    append_bytes(bytes, mesh.node[i]);
-    append_bytes(bytes, mesh.part[i]);
+        bytes += bytes_of(static_cast<float>(number));
+    bytes += bytes_of(mesh.node[i]);
+    bytes += bytes_of(mesh.part[i]);
   }
   for (const auto& triangle : mesh.triangles) {
     bytes += static_cast<char>(triangle.size());
-    for (const std::uint32_t point : triangle) append_bytes(bytes, point);
+    bytes += bytes_of(triangle);
   }
   return bytes;
 }
@@ -190,14 +184,10 @@ void VtkhdfExport::create() {
   const std::vector<std::string_view> parts(mesh_.parts.begin(), mesh_.parts.end());
   write_texts(file, "/parts", parts);
   const hid_t type = mesh_.in_double ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
-  const std::array<hsize_t, 2> no_vectors{0, 3}, vectors{points, 3};
-  const std::array<hsize_t, 1> none{0}, numbers{points};
-  points_ =
-      create_dataset(file, "/VTKHDF/Points", type, no_vectors, true, chunked(vectors, Packing::deflated));
-  velocity_ = create_dataset(file, "/VTKHDF/PointData/velocity", type, no_vectors, true,
-                             chunked(vectors, Packing::deflated));
-  strain_ =
-      create_dataset(file, "/VTKHDF/PointData/strain", type, none, true, chunked(numbers, Packing::deflated));
+  const std::array<hsize_t, 2> vectors{points, 3};
+  points_ = create_series(file, "/VTKHDF/Points", type, vectors, Packing::deflated);
+  velocity_ = create_series(file, "/VTKHDF/PointData/velocity", type, vectors, Packing::deflated);
+  strain_ = create_series(file, "/VTKHDF/PointData/strain", type, std::array{points}, Packing::deflated);
 }
 
 void VtkhdfExport::append(const Hdf5Dataset& dataset, const std::string& name, const double* numbers) const {

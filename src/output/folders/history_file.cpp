@@ -73,6 +73,14 @@ void require_rows_once(const HistoryEntry& entry, const std::string& where) {
                        &row - entry.rows.data(), combination_name(row), printable(row.device));
 }
 
+std::vector<HistoryEntry> entries_in(const std::filesystem::path& file) {
+  try {
+    return parse_history(file, read_file(file, largest_history_bytes));
+  } catch (const ReadError& error) {
+    throw UsageError(error.sentence(file, "give a file that mssim history add wrote"));
+  }
+}
+
 }  // namespace
 
 std::string history_line(const HistoryEntry& entry) {
@@ -108,9 +116,7 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
   std::vector<HistoryEntry> history;
   text = without_byte_order_mark(text);
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    std::string_view line = take_to(text, "\n");
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty()) continue;
     const std::string where = fmt::format("{}, line {}", file.string(), number);
@@ -127,18 +133,6 @@ std::vector<HistoryEntry> parse_history(const std::filesystem::path& file, std::
   }
   return history;
 }
-
-namespace {
-
-std::vector<HistoryEntry> entries_in(const std::filesystem::path& file) {
-  try {
-    return parse_history(file, read_file(file, largest_history_bytes));
-  } catch (const ReadError& error) {
-    throw UsageError(error.sentence(file, "give a file that mssim history add wrote"));
-  }
-}
-
-}  // namespace
 
 std::vector<HistoryEntry> read_history(const std::filesystem::path& file) {
   std::vector<HistoryEntry> history = entries_in(file);

@@ -65,15 +65,6 @@ std::vector<std::string> traces_of(const std::string& stem) {
   return names;
 }
 
-/// At most the first `bytes` bytes of a text, without a partial character.
-std::string beginning_of(std::string text, std::size_t bytes) {
-  if (text.size() <= bytes) return text;
-  constexpr unsigned letter_goes_on = 0x80, its_bits = 0xc0;
-  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & its_bits) == letter_goes_on) --bytes;
-  text.resize(bytes);
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string> file_stems(std::span<const ResultRow> rows) {
@@ -87,7 +78,7 @@ std::vector<std::string> file_stems(std::span<const ResultRow> rows) {
     if (stem.size() > longest || stem.find('/') != std::string::npos || taken.contains(stem)) {
       const std::string hash = to_hex(fnv1a_64(row.scene + '/' + row.backend + '/' + row.integrator));
       std::ranges::replace(stem, '/', '_');
-      stem = beginning_of(std::move(stem), longest - 1 - hash.size()) + '-' + hash;
+      stem = fmt::format("{}-{}", beginning_of(stem, longest - 1 - hash.size()), hash);
     }
     taken.insert(stem);
     stems.push_back(std::move(stem));
@@ -169,10 +160,6 @@ void ResultFolder::write(std::span<const ResultTable> tables) {
   std::vector<FolderFile> files;
   for (const ResultTable& table : tables) std::ranges::move(files_of(table), std::back_inserter(files));
   write_files(std::move(files));
-}
-
-void ResultFolder::write(std::span<const StructureRow> rows) {
-  write_files(files_of(structure_table(rows, provenance_)));
 }
 
 void ResultFolder::write_files(std::vector<FolderFile> files, const std::vector<FolderFile>& programs) {

@@ -8,7 +8,6 @@
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "output/tables/results.h"
-#include "output/tables/suite_tables.h"
 #include "platform/files.h"
 
 namespace mssim {
@@ -61,9 +60,6 @@ class ResultFolder {
   /// Writes tables that do not come from rows, as NAME.csv and, if there is a page, NAME.md. Throws
   /// WriteError.
   void write(std::span<const ResultTable> tables);
-
-  /// Writes table2.csv and table2.md. Throws WriteError.
-  void write(std::span<const StructureRow> rows);
 
  private:
   /// Writes everything under temporary names to the disk before any file is replaced, except `programs`.

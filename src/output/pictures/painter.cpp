@@ -12,6 +12,7 @@
 #include "picture/legend.h"
 #include "scene/fields/fields.h"
 #include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -49,9 +50,7 @@ DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::v
 
 /// Makes one point for each smooth side of a node.
 void divide_at_creases(Skin& skin, const std::vector<Vec3d>& start) {
-  std::vector<Vec3d> position;
-  position.reserve(skin.node.size());
-  for (const std::uint32_t node : skin.node) position.push_back(start[node]);
+  const auto position = mapped<Vec3d>(skin.node, [&](std::uint32_t node) { return start[node]; });
   DisjointSets corners = smooth_corners(skin.triangles, position);
   std::vector<std::uint32_t> node, part, point(3 * skin.triangles.size());
   for (std::uint32_t corner = 0; corner < point.size(); ++corner) {
@@ -113,9 +112,7 @@ Painter::Painter(const TraceContent& content, const std::vector<Vec3d>& start, c
       floor_(stated_floor(content.scene_json)) {}
 
 std::vector<Vec3d> Painter::points_at(const std::vector<Vec3d>& positions) const {
-  std::vector<Vec3d> points;
-  points.reserve(skin_.node.size() + content_.body.points.size());
-  for (const std::uint32_t node : skin_.node) points.push_back(positions[node]);
+  auto points = mapped<Vec3d>(skin_.node, [&](std::uint32_t node) { return positions[node]; });
   points.insert(points.end(), content_.body.points.begin(), content_.body.points.end());
   return points;
 }
@@ -188,8 +185,7 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions, bool with_legen
       subject.front.push_back(light_of(diverging_map().at(0.5 + 0.5 * strain[node] / most_strain_)));
     subject.back = subject.front;
   } else {
-    std::vector<Light> colour;  // by part: a skin has many more points
-    for (const Rgb& code : colour_) colour.push_back(light_of(code));
+    const auto colour = mapped<Light>(colour_, light_of);  // by part: a skin has many more points
     for (const std::uint32_t part : skin_.part) {
       subject.front.push_back(colour[part]);
       subject.back.push_back(inside_of(colour[part]));

@@ -15,8 +15,8 @@ std::pair<std::string_view, std::string_view> split_at_last(std::string_view tex
 }
 
 int ranks_of(std::string_view backend, const Provenance& provenance) {
-  const auto program = std::ranges::find(provenance.backend_programs, backend, &BackendProgramRecord::name);
-  return program == provenance.backend_programs.end() ? 0 : program->ranks;
+  const auto* program = found_in(provenance.backend_programs, backend, &BackendProgramRecord::name);
+  return program ? program->ranks : 0;
 }
 
 /// Steps between two messages of a cloth in ranks, from the row's note: "2 steps an exchange".
@@ -255,11 +255,7 @@ Document page_of(const ClusterRows& rows, RowPointers pointers, const Provenance
   add_sentence(page, verdict_on_model(rows));
   add_sentence(page, links_of(rows));
   std::vector<std::pair<std::string_view, std::string_view>> families;  // base scene, integrator
-  for (const ClusterRow& row : rows.all())
-    if (const auto family =
-            std::pair<std::string_view, std::string_view>(row.scene.base, row.row->integrator);
-        std::ranges::find(families, family) == families.end())
-      families.push_back(family);
+  for (const ClusterRow& row : rows.all()) add_once(families, {row.scene.base, row.row->integrator});
   const auto add_section = [&](const auto& family, const std::string& title, const auto& belongs) {
     Table table{columns_of_cluster, {}};
     for (const ClusterRow& row : rows.all())

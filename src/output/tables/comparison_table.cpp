@@ -82,7 +82,7 @@ Document comparison_page(const RunComparison& comparison) {
                {"rows", mean.rows},
                {"NEW / BASE", mean.ratio}});
   Document page{rows};
-  add_sentence(page, legend_of_ratios(rows));
+  add_sentence(page, legend_of_ratios(page));
   if (!comparison.means.empty()) page.emplace_back(means);
   return page;
 }

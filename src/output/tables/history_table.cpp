@@ -18,19 +18,10 @@ std::string short_commit(const std::string& commit) {
 }  // namespace
 
 Table history_table(const MachineHistory& machine, double threshold) {
-  Table table{{{"scene"},
-               {"backend"},
-               {"integrator"},
-               {"device"},
-               {"nodes"},
-               {"since"},
-               {"commits"},
-               {"ms"},
-               {"ratio"},
-               {"low"},
-               {"high"},
-               {"verdict"}},
-              {}};  // also without a series
+  Table table;  // with columns also without a series
+  for (const char* name : {"scene", "backend", "integrator", "device", "nodes", "since", "commits", "ms",
+                           "ratio", "low", "high", "verdict"})
+    table.columns.push_back({name});
   for (const HistorySeries& series : machine.series) {
     const auto add = [&](std::size_t entry, Cell count, Cell ms, const RatioEstimate* ratio,
                          const std::string& verdict) {

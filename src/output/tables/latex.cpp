@@ -50,19 +50,6 @@ constexpr auto replacements = std::to_array<Replacement>({{"\\", "\\textbackslas
                                                           {"✓ ", ""},
                                                           {"✗ ", ""}});
 
-/// A character of UTF-8 beyond ASCII, at the front of a valid text.
-struct Character {
-  std::uint32_t code;
-  std::size_t bytes;
-};
-Character character_at(std::string_view text) {
-  const auto first = static_cast<unsigned char>(text.front());
-  const std::size_t bytes = first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-  std::uint32_t code = first & (0xFFU >> (bytes + 1));
-  for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (static_cast<unsigned char>(text[i]) & 0x3FU);
-  return {code, bytes};
-}
-
 std::string code_text(std::string_view text) {
   std::string result;
   for (std::size_t end = text.find('\''); end != std::string_view::npos; end = text.find('\'')) {
@@ -280,15 +267,12 @@ std::string latex_text(std::string_view any_text) {
     if (found != replacements.end()) {
       result += found->latex;
       length = found->text.size();
-    } else if (static_cast<unsigned char>(text.front()) < 0x80) {
-      result += text.front();
     } else {
-      const Character character = character_at(text);
-      length = character.bytes;
-      if (character.code >= 0xC0 && character.code <= 0xFF)
-        result += text.substr(0, length);
-      else
-        result += fmt::format("{{[}}U+{:04X}]", character.code);
+      const auto [code, bytes] = first_character(text);
+      length = bytes;
+      const bool is_latin = code < 0x80 || (code >= 0xC0 && code <= 0xFF);
+      result +=
+          is_latin ? std::string(text.substr(0, length)) : fmt::format("{{[}}U+{:04X}]", std::uint32_t{code});
     }
     text.remove_prefix(length);
   }

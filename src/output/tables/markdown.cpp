@@ -64,14 +64,6 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// Removes the text up to `end`, and `end` itself, from the front and returns it.
-std::string_view take_to(std::string_view& text, std::string_view end) {
-  const std::size_t length = std::min(text.find(end), text.size());
-  const std::string_view part = text.substr(0, length);
-  text.remove_prefix(std::min(length + end.size(), text.size()));
-  return part;
-}
-
 /// Reverses the writer's escaping of characters with a meaning in Markdown.
 std::string plain(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, char>, 3> replaced{

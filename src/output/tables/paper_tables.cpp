@@ -136,23 +136,18 @@ class PaperTable {
     for (const auto& integrator : legend_.integrators)
       for (const auto& backend : legend_.backends) {
         if (!has(integrator.name, backend.name)) continue;
-        const auto line = [&](std::string_view quantity, auto cell) {
-          std::vector<Cell>& cells = table.rows.emplace_back();
-          cells = {integrator.name, backend.configuration, backend.name, quantity};
-          for (const PaperScene& scene : scenes_)
-            cells.push_back(cell(scene, find_row(rows_, scene.name, backend.name, integrator.name)));
-        };
-        const auto from_paper = [&](const PaperScene& scene) {
-          return published_timing(published_, integrator, backend.configuration, scene);
-        };
-        line("published_ms", [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).ms; });
-        line("measured_ms", [](const PaperScene&, const ResultRow* row) { return measured_timing(row).ms; });
-        line("published_speedup",
-             [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).speedup; });
-        line("measured_speedup",
-             [](const PaperScene&, const ResultRow* row) { return measured_timing(row).speedup; });
-        line("status",
-             [](const PaperScene&, const ResultRow* row) { return row ? Cell(status_of(*row)) : Cell(); });
+        const std::size_t first = table.rows.size();
+        for (const char* quantity :
+             {"published_ms", "measured_ms", "published_speedup", "measured_speedup", "status"})
+          table.rows.push_back({integrator.name, backend.configuration, backend.name, quantity});
+        for (const PaperScene& scene : scenes_) {
+          const ResultRow* row = find_row(rows_, scene.name, backend.name, integrator.name);
+          const Timing paper = published_timing(published_, integrator, backend.configuration, scene),
+                       ours = measured_timing(row);
+          const std::array<Cell, 5> cells{paper.ms, ours.ms, paper.speedup, ours.speedup,
+                                          row ? Cell(status_of(*row)) : Cell()};
+          for (std::size_t i = 0; i < cells.size(); ++i) table.rows[first + i].push_back(cells[i]);
+        }
       }
     return table;
   }
@@ -277,30 +272,23 @@ constexpr std::string_view how_to_read_structure =
     "three values for each spring. Inner points and surfaces were chosen so that TetGen meets both published "
     "numbers; the paper shows neither its surfaces nor its switches.";
 
-struct Match {
-  const StructureRow* row;
-  const PublishedBody* body;  ///< null if the paper has no such body
-
-  bool same() const { return row->nodes == body->nodes && row->springs_published == body->springs; }
-};
-
-std::vector<Match> paired(std::span<const StructureRow> rows, const std::vector<PublishedBody>& bodies) {
-  std::vector<Match> matches;
-  for (const StructureRow& row : rows) {
-    const auto body = std::ranges::find(bodies, row.scene, &PublishedBody::scene);
-    matches.push_back({&row, body == bodies.end() ? nullptr : &*body});
-  }
-  return matches;
+/// The paper's body of the scene; null if it has none.
+const PublishedBody* body_of(const StructureRow& row, const std::vector<PublishedBody>& bodies) {
+  return found_in(bodies, row.scene, &PublishedBody::scene);
 }
 
-Table data_of(std::span<const StructureRow> rows, const std::vector<Match>& matches) {
+bool are_same(const StructureRow& row, const PublishedBody& body) {
+  return row.nodes == body.nodes && row.springs_published == body.springs;
+}
+
+Table data_of(std::span<const StructureRow> rows, const std::vector<PublishedBody>& bodies) {
   Table table = structure_rows(rows);
   for (const std::string_view name : {"paper_nodes", "paper_springs", "same_as_paper"})
     table.columns.push_back({std::string(name)});
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const PublishedBody* body = matches[i].body;
-    const auto cells =
-        body ? std::array<Cell, 3>{body->nodes, body->springs, matches[i].same()} : std::array<Cell, 3>();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const PublishedBody* body = body_of(rows[i], bodies);
+    const auto cells = body ? std::array<Cell, 3>{body->nodes, body->springs, are_same(rows[i], *body)}
+                            : std::array<Cell, 3>();
     table.rows[i].insert(table.rows[i].end(), cells.begin(), cells.end());
   }
   return table;
@@ -311,7 +299,8 @@ Cell strong(Cell cell) {
   return cell;
 }
 
-Document page_of(const std::vector<Match>& matches, const Provenance& provenance) {
+Document page_of(std::span<const StructureRow> rows, const std::vector<PublishedBody>& bodies,
+                 const Provenance& provenance) {
   Table table{{{"body", Align::left},
                {"size", Align::left},
                {"nodes, *published*", Align::right},
@@ -323,13 +312,12 @@ Document page_of(const std::vector<Match>& matches, const Provenance& provenance
                {"smallest dihedral angle", Align::right, "°"},
                {"same", Align::left}},
               {}};
-  for (const Match& match : matches) {
-    const auto& [row, body] = match;
-    if (!body) continue;
-    table.rows.push_back({body->object, body->size, body->nodes, strong(row->nodes), body->springs,
-                          strong(row->springs_published), row->springs_unique, row->tetrahedra,
-                          row->smallest_dihedral_angle_deg, match.same() ? Cell(true) : strong(false)});
-  }
+  for (const StructureRow& row : rows)
+    if (const PublishedBody* body = body_of(row, bodies))
+      table.rows.push_back({body->object, body->size, body->nodes, strong(row.nodes), body->springs,
+                            strong(row.springs_published), row.springs_unique, row.tetrahedra,
+                            row.smallest_dihedral_angle_deg,
+                            are_same(row, *body) ? Cell(true) : strong(false)});
   return {Heading{1, "Bodies: Table 2 of Hong et al. (2016), published and built"},
           Paragraph{made_by(provenance) + "."}, Paragraph{std::string(how_to_read_structure)},
           std::move(table)};
@@ -373,8 +361,7 @@ std::vector<StructureRow> read_structure(const CsvTable& table) {
 
 ResultTable structure_table(std::span<const StructureRow> rows, const Provenance& provenance) {
   const std::vector<PublishedBody> bodies = published_bodies();
-  const std::vector<Match> matches = paired(rows, bodies);
-  return {"table2", data_of(rows, matches), page_of(matches, provenance)};
+  return {"table2", data_of(rows, bodies), page_of(rows, bodies, provenance)};
 }
 
 }  // namespace mssim

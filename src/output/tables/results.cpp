@@ -27,16 +27,8 @@ constexpr std::string_view ratio_mark = "†";
 /// The number as shown with three digits.
 double rounded(double value) { return number_in<double>(three_digits(value)).value_or(value); }
 
-bool has_mark(const Table& table) {
-  return std::ranges::any_of(table.rows, [](const std::vector<Cell>& row) {
-    return std::ranges::any_of(
-        row, [](const Cell& cell) { return cell.suffix.find(ratio_mark) != std::string::npos; });
-  });
-}
-
-/// The meaning of `mark`; empty without a mark.
+/// The meaning of `mark`.
 std::string legend(std::string_view mark) {
-  if (mark.empty()) return {};
   return std::string(mark) +
          " the two times shown contradict this ratio: their quotient differs from it by more than a quarter, "
          "or names the other one as the faster; trust the ratio, which compares single samples instead of "
@@ -46,9 +38,7 @@ std::string legend(std::string_view mark) {
 }  // namespace
 
 std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows) {
-  std::vector<const ResultRow*> pointers;
-  for (const ResultRow& row : rows) pointers.push_back(&row);
-  return pointers;
+  return mapped<const ResultRow*>(rows, [](const ResultRow& row) { return &row; });
 }
 
 const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_view backend,
@@ -92,10 +82,6 @@ std::string_view opencl_device(const ResultRow& row) {
   return host ? std::string_view() : std::string_view(row.device);
 }
 
-bool is_this_processor(const ResultRow& row, const Provenance& provenance) {
-  return is_this_processor(opencl_device(row), provenance);
-}
-
 bool is_this_processor(std::string_view device, const Provenance& provenance) {
   if (device.empty()) return false;
   // CPU drivers name their device after the processor's model; some models have no name.
@@ -118,8 +104,9 @@ std::string backend_label(RowPointers rows, std::string_view backend, const Prov
   const ResultRow* row = row_with_device(rows, backend);
   if (!row) return fmt::format("`{}`", backend);
   const std::string device = device_name(opencl_device(*row));
-  return is_this_processor(*row, provenance) ? fmt::format("`{}` on the CPU ({})", backend, device)
-                                             : fmt::format("`{}` on {}", backend, device);
+  return is_this_processor(opencl_device(*row), provenance)
+             ? fmt::format("`{}` on the CPU ({})", backend, device)
+             : fmt::format("`{}` on {}", backend, device);
 }
 
 std::optional<double> counted_ms(const ResultRow& row) {
@@ -202,9 +189,7 @@ std::string reason_without_speedups(std::span<const std::string_view> backends) 
 }
 
 std::string reason_without_speedups(RowPointers rows) {
-  std::vector<std::string_view> backends;
-  for (const ResultRow* row : rows) backends.emplace_back(row->backend);
-  return reason_without_speedups(backends);
+  return reason_without_speedups(mapped<std::string_view>(rows, &ResultRow::backend));
 }
 
 void add_rows_without_a_time(Document& page, RowPointers rows) {
@@ -229,8 +214,6 @@ std::string_view mark_of_ratio(double ratio, double time, double other) {
   return differs || (shown - 1) * (quotient - 1) < 0 ? ratio_mark : "";
 }
 
-std::string legend_of_ratios(const Table& table) { return legend(has_mark(table) ? ratio_mark : ""); }
-
 std::string legend_of_ratios(std::string_view table) {
   for (const std::string_view mark : {ratio_mark, ascii_ratio_mark})
     if (table.find(mark) != std::string_view::npos) return legend(mark);
@@ -238,11 +221,12 @@ std::string legend_of_ratios(std::string_view table) {
 }
 
 std::string legend_of_ratios(const Document& page) {
-  const bool marked = std::ranges::any_of(page, [](const auto& block) {
-    const auto* table = std::get_if<Table>(&block);
-    return table != nullptr && has_mark(*table);
-  });
-  return legend(marked ? ratio_mark : "");
+  for (const auto& block : page)
+    if (const auto* table = std::get_if<Table>(&block))
+      for (const std::vector<Cell>& row : table->rows)
+        for (const Cell& cell : row)
+          if (cell.suffix.find(ratio_mark) != std::string::npos) return legend(ratio_mark);
+  return "";
 }
 
 }  // namespace mssim

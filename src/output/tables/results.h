@@ -182,8 +182,6 @@ std::string backend_label(RowPointers rows, std::string_view backend, const Prov
 /// The row's OpenCL device; empty for backends of the host.
 std::string_view opencl_device(const ResultRow& row);
 
-/// Whether the row's OpenCL device is the machine's processor.
-bool is_this_processor(const ResultRow& row, const Provenance& provenance);
 /// Whether an OpenCL device, by its name, is the machine's processor.
 bool is_this_processor(std::string_view device, const Provenance& provenance);
 
@@ -220,7 +218,6 @@ inline constexpr std::string_view ascii_ratio_mark = "(?)";
 std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row);
 
 /// The meaning of that mark; empty if no cell has it or, for a text, if it does not occur.
-std::string legend_of_ratios(const Table& table);
 std::string legend_of_ratios(const Document& page);
 std::string legend_of_ratios(std::string_view table);
 

@@ -195,15 +195,11 @@ RowColumn::RowColumn(const char* name, std::string_view column) : RowColumn(colu
 }
 
 std::vector<Column> heads_of(const std::vector<RowColumn>& columns) {
-  std::vector<Column> heads;
-  for (const RowColumn& column : columns) heads.push_back(column.head);
-  return heads;
+  return mapped<Column>(columns, &RowColumn::head);
 }
 
 std::vector<Cell> cells_of(const ResultRow& row, const std::vector<RowColumn>& columns) {
-  std::vector<Cell> cells;
-  for (const RowColumn& column : columns) cells.push_back(column.value(row));
-  return cells;
+  return mapped<Cell>(columns, [&](const RowColumn& column) { return column.value(row); });
 }
 
 Table table_of(RowPointers rows, const std::vector<RowColumn>& columns) {
@@ -249,8 +245,7 @@ std::string samples_csv(std::span<const ResultRow> rows) {
 }
 
 std::vector<ResultRow> read_timings(const CsvTable& table) {
-  std::vector<std::string_view> names;
-  for (const ResultColumn& column : result_columns) names.push_back(column.name);
+  auto names = mapped<std::string_view>(result_columns, &ResultColumn::name);
   names.resize(std::clamp(table.header().size(), oldest_columns, names.size()));
   table.require_columns(names);
   std::vector<ResultRow> rows(table.size());

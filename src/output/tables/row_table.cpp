@@ -177,7 +177,7 @@ std::string reasons_of(RowPointers rows, std::size_t width) {
     const std::string reason = status_of(*row);
     auto at = std::ranges::find(known, reason, &decltype(known)::value_type::first);
     if (at == known.end()) at = known.insert(known.end(), {reason, {}});
-    if (std::ranges::find(at->second, row->backend) == at->second.end()) at->second.push_back(row->backend);
+    add_once(at->second, row->backend);
   }
   std::string text;
   for (const auto& [reason, backends] : known)

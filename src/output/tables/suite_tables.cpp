@@ -106,14 +106,6 @@ Table data_of(RowPointers rows, const std::string& base) {
                    {{"status"}, status_of}});
 }
 
-/// Values of a member, each once, in the order of the rows.
-std::vector<std::string> each_of(RowPointers rows, std::string ResultRow::*member) {
-  std::vector<std::string> values;
-  for (const ResultRow* row : rows)
-    if (std::ranges::find(values, row->*member) == values.end()) values.push_back(row->*member);
-  return values;
-}
-
 /// The ratio is that of the two times shown, so that they always agree.
 Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base,
                const Provenance& provenance) {
@@ -130,15 +122,13 @@ Document page_of(RowPointers rows, const std::string& base, const Provenance& pr
       Heading{1, "Scaling: cost per node of increasingly large cloths"}, measured_on(rows, provenance),
       Paragraph{"Nanoseconds per node and step, medians; in brackets relative to the same backend on `" +
                 base + "`. If a line stays at 1, the cost is proportional to the number of nodes."}};
-  const std::vector<std::string> scenes = each_of(rows, &ResultRow::scene);
+  const auto scenes = distinct<std::string>(rows, &ResultRow::scene);
   std::vector<Column> columns{{"backend"}};
-  for (const std::string& scene : scenes) {
-    const auto row = std::ranges::find(rows, scene, &ResultRow::scene);
-    columns.push_back(scene_column(**row));
-  }
-  for (const std::string& integrator : each_of(rows, &ResultRow::integrator)) {
+  for (const std::string& scene : scenes)
+    columns.push_back(scene_column(**std::ranges::find(rows, scene, &ResultRow::scene)));
+  for (const std::string& integrator : distinct<std::string>(rows, &ResultRow::integrator)) {
     Table table{columns, {}};
-    for (const std::string& backend : each_of(rows, &ResultRow::backend)) {
+    for (const std::string& backend : distinct<std::string>(rows, &ResultRow::backend)) {
       std::vector<Cell>& cells = table.rows.emplace_back();
       cells.emplace_back(backend_label(rows, backend, provenance));
       for (const std::string& scene : scenes)
@@ -231,11 +221,8 @@ std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenan
 /// Notes of the backends, each once.
 BulletList notes_of(RowPointers rows) {
   BulletList notes;
-  for (const ResultRow* row : rows) {
-    if (row->note.empty()) continue;
-    const std::string item = "`" + row->backend + "`: " + row->note;
-    if (std::ranges::find(notes.items, item) == notes.items.end()) notes.items.push_back(item);
-  }
+  for (const ResultRow* row : rows)
+    if (!row->note.empty()) add_once(notes.items, "`" + row->backend + "`: " + row->note);
   return notes;
 }
 
@@ -258,8 +245,7 @@ constexpr std::string_view how_to_read_threads =
     "kept busy.";
 
 ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenance& provenance) {
-  std::vector<const ResultRow*> all;
-  for (const ThreadRow& row : rows) all.push_back(row.row);
+  const auto all = mapped<const ResultRow*>(rows, &ThreadRow::row);
   const auto of = [&](const ResultRow& row) { return *std::ranges::find(rows, &row, &ThreadRow::row); };
   const auto threads = [&](const ResultRow& row) { return Cell(of(row).threads); };
   const auto speedup = [&](double RatioInterval::*part) {

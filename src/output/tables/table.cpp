@@ -11,81 +11,52 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A value as text: the parts that all formats spell alike.
-struct Spelling {
-  std::string operator()(std::monostate) const { return {}; }
-  std::string operator()(bool truth) const { return truth ? "true" : "false"; }
-  std::string operator()(std::int64_t number) const { return std::to_string(number); }
-  std::string operator()(const std::string& text) const { return text; }
-};
-
-struct CsvSpelling : Spelling {
-  std::string (*real)(double);
-
-  using Spelling::operator();
-  std::string operator()(double number) const { return real(number); }
-};
-
-/// Values as people read them, with their unit. No text from a file controls the terminal.
-struct TerminalSpelling : Spelling {
-  const std::string& unit;
-
-  using Spelling::operator();
-  std::string operator()(std::monostate) const { return "-"; }
-  std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
-  std::string operator()(std::int64_t number) const { return fmt::format("{}{}", number, unit); }
-  std::string operator()(const std::string& text) const { return escaped(text); }
-  std::string operator()(double number) const { return fmt::format("{:.4g}{}", number, unit); }
-};
-
-struct PageSpelling : Spelling {
-  const std::string& unit;
-  bool exact;
-
-  using Spelling::operator();
-  std::string operator()(std::monostate) const { return "–"; }
-  std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
-  std::string operator()(std::int64_t number) const {
-    return grouped(static_cast<std::uint64_t>(number)) + unit;
-  }
-  std::string operator()(double number) const {
-    return (exact ? decimal(number) : three_digits(number)) + unit;
-  }
-};
-
-struct AsJson {
-  ordered_json operator()(std::monostate) const { return nullptr; }
-  template <class Value>
-  ordered_json operator()(const Value& value) const {
-    return value;
-  }
-};
-
 /// A number with a point or an exponent.
 std::string json_number(double number) { return ordered_json(number).dump(); }
+std::string four_digits(double number) { return fmt::format("{:.4g}", number); }
+std::string ungrouped(std::int64_t number) { return std::to_string(number); }
+std::string grouped_whole(std::int64_t number) { return grouped(static_cast<std::uint64_t>(number)); }
+std::string unchanged(std::string_view text) { return std::string(text); }
 
-std::string terminal_cell(const Cell& cell, const Column& column) {
-  return std::visit(TerminalSpelling{{}, column.unit}, cell.value) + cell.suffix;
+/// How a format spells values.
+struct CellSpelling {
+  std::string_view nothing, no, yes;
+  std::string (*whole)(std::int64_t number);
+  std::string (*real)(double number);
+  std::string (*text)(std::string_view text);
+};
+constexpr CellSpelling csv_file{"", "false", "true", ungrouped, csv_number, unchanged};
+constexpr CellSpelling csv_listing{"", "false", "true", ungrouped, json_number, unchanged};
+/// No text from a file controls the terminal.
+constexpr CellSpelling terminal{"-", "no", "yes", ungrouped, four_digits, escaped};
+constexpr CellSpelling page{"–", "no", "yes", grouped_whole, three_digits, unchanged};
+constexpr CellSpelling exact_page{"–", "no", "yes", grouped_whole, decimal, unchanged};
+
+/// The value, a number with its unit.
+std::string value_text(const Cell& cell, const CellSpelling& how, const std::string& unit = "") {
+  if (const auto* truth = std::get_if<bool>(&cell.value)) return std::string(*truth ? how.yes : how.no);
+  if (const auto* number = std::get_if<std::int64_t>(&cell.value)) return how.whole(*number) + unit;
+  if (const auto* number = std::get_if<double>(&cell.value)) return how.real(*number) + unit;
+  if (const auto* text = std::get_if<std::string>(&cell.value)) return how.text(*text);
+  return std::string(how.nothing);
 }
 
-std::string csv_of(const Table& table, std::string (*real)(double)) {
+std::string terminal_cell(const Cell& cell, const Column& column) {
+  return value_text(cell, terminal, column.unit) + cell.suffix;
+}
+
+std::string csv_of(const Table& table, const CellSpelling& spelling) {
   if (table.columns.empty()) return {};
-  std::vector<std::string> fields;
-  for (const Column& column : table.columns) fields.push_back(column.name);
-  std::string text = csv_line(fields);
-  for (const std::vector<Cell>& row : table.rows) {
-    fields.clear();
-    for (const Cell& cell : row) fields.push_back(std::visit(CsvSpelling{{}, real}, cell.value));
-    text += csv_line(fields);
-  }
+  const auto field_of = [&](const Cell& cell) { return value_text(cell, spelling); };
+  std::string text = csv_line(mapped<std::string>(table.columns, &Column::name));
+  for (const std::vector<Cell>& row : table.rows) text += csv_line(mapped<std::string>(row, field_of));
   return text;
 }
 
 /// Columns next to each other.
 std::string terminal_text(const Table& table) {
   if (table.columns.empty()) return {};
-  std::vector<std::vector<std::string>> lines{{}};
-  for (const Column& column : table.columns) lines.front().push_back(column.name);
+  std::vector<std::vector<std::string>> lines{mapped<std::string>(table.columns, &Column::name)};
   for (const std::vector<Cell>& row : table.rows) {
     std::vector<std::string>& line = lines.emplace_back();
     for (std::size_t i = 0; i < row.size(); ++i) line.push_back(terminal_cell(row[i], table.columns[i]));
@@ -131,11 +102,11 @@ bool is_right_aligned(const Table& table, std::size_t column) {
 
 std::string cell_text(const Cell& cell, const Column& column) {
   const std::string around = cell.strong ? "**" : "";
-  return around + std::visit(PageSpelling{{}, column.unit, cell.exact}, cell.value) + around + cell.suffix;
+  return around + value_text(cell, cell.exact ? exact_page : page, column.unit) + around + cell.suffix;
 }
 
 std::string to_text(const Table& table, ListingFormat format) {
-  if (format == ListingFormat::csv) return csv_of(table, json_number);
+  if (format == ListingFormat::csv) return csv_of(table, csv_listing);
   return format == ListingFormat::json ? json_text(table_json(table)) : terminal_text(table);
 }
 
@@ -155,7 +126,7 @@ std::string record_text(const Table& table, std::optional<int> width) {
   return text;
 }
 
-std::string table_csv(const Table& table) { return csv_of(table, csv_number); }
+std::string table_csv(const Table& table) { return csv_of(table, csv_file); }
 
 std::string csv_line(const std::vector<std::string>& fields) {
   std::string line;
@@ -183,7 +154,12 @@ ordered_json table_json(const Table& table) {
   for (const std::vector<Cell>& row : table.rows) {
     ordered_json& object = rows.emplace_back(ordered_json::object());
     for (std::size_t i = 0; i < row.size(); ++i)
-      object[table.columns[i].name] = std::visit(AsJson{}, row[i].value);
+      object[table.columns[i].name] = std::visit(
+          []<class Value>(const Value& value) -> ordered_json {
+            if constexpr (!std::same_as<Value, std::monostate>) return value;
+            return nullptr;
+          },
+          row[i].value);
   }
   return rows;
 }

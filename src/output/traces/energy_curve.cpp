@@ -14,22 +14,14 @@ std::string ten_digits(double value) {
   return fmt::format("{:.10g}", value);
 }
 
-void append_comment(std::string& text, std::string_view comment) {
-  while (!comment.empty()) {
-    const std::size_t length = comment.find('\n');
-    const std::string_view line = comment.substr(0, length);
-    text += line.empty() ? "#" : "# ";
-    text += line;
-    text += '\n';
-    comment.remove_prefix(length == std::string_view::npos ? comment.size() : length + 1);
-  }
-}
-
 }  // namespace
 
 EnergyCurve::EnergyCurve(std::filesystem::path file, std::string_view comment) : file_(std::move(file)) {
   std::string text;
-  append_comment(text, comment);
+  while (!comment.empty()) {
+    const std::string_view line = take_to(comment, "\n");
+    text += fmt::format("{}{}\n", line.empty() ? "#" : "# ", line);
+  }
   file_.append(text + "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n");
 }
 

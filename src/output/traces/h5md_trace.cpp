@@ -6,9 +6,14 @@
 
 #include "garment/output/h5md_garment.h"
 #include "hdf5/hdf5_table.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
+
+/// Of vectors in a file. HDF5 rounds their numbers to single precision if the dataset holds it.
+constexpr std::size_t dimensions = 3;
+static_assert(sizeof(Vec3d) == dimensions * sizeof(double));
 
 struct UnitInfo {
   const char* quantity;
@@ -70,11 +75,10 @@ void create_particles(hid_t file, const std::string& particles) {
 void write_springs(hid_t file, const System& system) {
   if (system.springs.empty()) return;
   const auto write = [&](std::string_view name, const auto& number_of) {
-    std::vector<double> numbers;
-    numbers.reserve(system.springs.size());
-    for (const Spring& spring : system.springs)
-      numbers.push_back(number_of(spring, system.materials[spring.kind]));
-    write_numbers(file, "/parameters/springs/" + std::string(name), numbers);
+    write_numbers(file, "/parameters/springs/" + std::string(name),
+                  mapped<double>(system.springs, [&](const Spring& spring) {
+                    return number_of(spring, system.materials[spring.kind]);
+                  }));
   };
   create_group(file, "/parameters/springs");
   write("rest_length",
@@ -87,11 +91,11 @@ void write_springs(hid_t file, const System& system) {
 void write_connectivity(hid_t file, const std::string& particles, const System& system,
                         const NodeShape& shape) {
   const Hdf5Group connectivity = create_group(file, "/connectivity");
-  std::vector<std::array<std::uint32_t, 2>> ends;
-  ends.reserve(system.springs.size());
-  for (const Spring& spring : system.springs) ends.push_back({spring.first, spring.second});
+  const auto ends = mapped<std::array<std::uint32_t, 2>>(system.springs, [](const Spring& spring) {
+    return std::array{spring.first, spring.second};
+  });
   write_tuples<2>(file, "/connectivity/springs", particles, ends);
-  if (!shape.tetrahedra.empty()) write_tuples<4>(file, tetrahedra_dataset, particles, shape.tetrahedra);
+  write_tuples<4>(file, tetrahedra_dataset, particles, shape.tetrahedra);
   if (shape.in_panels) write_joints(file, particles, std::get<Garment>(system.topology));
 }
 
@@ -111,17 +115,12 @@ void write_h5md_head(hid_t file, const std::string& particles, const System& sys
 void write_static_body(hid_t file, const Surface& body) {
   if (body.triangles.empty()) return;
   create_group(file, "/body");
-  std::vector<std::array<float, 3>> points;
-  points.reserve(body.points.size());
-  for (const Vec3d& point : body.points)
-    points.push_back({static_cast<float>(point.x), static_cast<float>(point.y), static_cast<float>(point.z)});
-  write_array(file, body_points_dataset, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT,
-              std::array<hsize_t, 2>{points.size(), 3}, points.data());
+  write_array(file, body_points_dataset, H5T_IEEE_F32LE, H5T_NATIVE_DOUBLE,
+              std::array<hsize_t, 2>{body.points.size(), dimensions}, body.points.data());
   write_array(file, body_triangles_dataset, H5T_STD_U32LE, H5T_NATIVE_UINT32,
               std::array<hsize_t, 2>{body.triangles.size(), 3}, body.triangles.data());
 }
 
-constexpr std::size_t dimensions = 3;
 /// Upper bound of what HDF5 adds to a file at a time: a few index nodes and chunks of numbers.
 constexpr std::size_t room_for_metadata = 65536;
 
@@ -143,16 +142,11 @@ constexpr auto observable_kinds = std::to_array<ObservableInfo>({
      [](auto&, const EnergyLosses& losses) { return losses.integration; }},
 });
 
-/// Series of single numbers. Their chunks hold many frames and are rewritten in place at every flush, which
+/// Chunks of series of single numbers hold many frames and are rewritten in place at every flush, which
 /// requires chunks of constant stored size: no deflation.
 Hdf5Dataset create_number_series(hid_t file, const std::string& path, hid_t type) {
-  constexpr std::array<hsize_t, 1> none{0}, frames_per_chunk{256};
-  return create_dataset(file, path, type, none, true, chunked(frames_per_chunk, Packing::plain));
-}
-
-Hdf5Dataset create_vector_series(hid_t file, const std::string& path, hid_t type, hsize_t nodes) {
-  return create_dataset(file, path, type, std::array<hsize_t, 3>{0, nodes, dimensions}, true,
-                        chunked(std::array<hsize_t, 3>{1, nodes, dimensions}, Packing::deflated));
+  constexpr std::array<hsize_t, 1> frames_per_chunk{256};
+  return create_series(file, path, type, frames_per_chunk, Packing::plain);
 }
 
 void link_step_and_time(hid_t file, const std::string& from, const std::string& to) {
@@ -213,21 +207,21 @@ void H5mdTrace::create(const System& system, const NodeShape& shape, const Trace
                    "creating " + temporary);
   write_h5md_head(file_.get(), particles(), system, shape, header);
   write_static_body(file_.get(), body);
-  create_series(system);
+  create_all_series(system);
   checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing the head of the trace");
 }
 
-void H5mdTrace::create_series(const System& system) {
+void H5mdTrace::create_all_series(const System& system) {
   const hid_t file = file_.get();
-  const hsize_t nodes = system.nodes();
+  const std::array<hsize_t, 3> frame{1, system.nodes(), dimensions};
   const std::string position = particles() + "/position", velocity = particles() + "/velocity";
   create_group(file, position);
   create_group(file, velocity);
   step_ = create_number_series(file, position + "/step", H5T_STD_I64LE);
   time_ = create_number_series(file, position + "/time", H5T_IEEE_F64LE);
   const hid_t type = mesh_.in_double ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
-  position_ = create_vector_series(file, position + "/value", type, nodes);
-  velocity_ = create_vector_series(file, velocity + "/value", type, nodes);
+  position_ = create_series(file, position + "/value", type, frame, Packing::deflated);
+  velocity_ = create_series(file, velocity + "/value", type, frame, Packing::deflated);
   link_step_and_time(file, position, velocity);
 
   const Hdf5Group observables = create_group(file, "/observables");
@@ -260,8 +254,6 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
   const hsize_t frame = times_s_.size();
   reserve_room(file_.get(), name(),
                2 * dimensions * mesh_.nodes * mesh_.bytes_per_number() + room_for_metadata);
-  // HDF5 rounds to single precision if the dataset holds it.
-  static_assert(sizeof(Vec3d) == dimensions * sizeof(double));
   write_row(position_, "positions", frame, H5T_NATIVE_DOUBLE, state.position.data());
   write_row(velocity_, "velocities", frame, H5T_NATIVE_DOUBLE, state.velocity.data());
   for (std::size_t kind = 0; kind < observables_.size(); ++kind) {

@@ -80,11 +80,6 @@ inline constexpr const char* body_triangles_dataset = "/body/triangles";
 /// /xdmf/position/2/000012. `vector` is "position" or "velocity"; the dataset has the part's shape and [3].
 std::string xdmf_dataset(std::string_view vector, const XdmfPart& part, std::size_t frame);
 
-/// Path in the trace of the panel's number at each node of a part, [1][rows][columns] int32, and at each
-/// point of the body. These datasets consist of their fill value and take no space.
-std::string xdmf_panel_dataset(const XdmfPart& part);
-inline constexpr const char* xdmf_panel_dataset_of_body = "/xdmf/panel/body";
-
 /// Adds the virtual datasets of frames 0 to frames - 1, and the panel numbers, to an open trace. Throws
 /// Hdf5Error.
 void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames);
@@ -154,7 +149,7 @@ class H5mdTrace {
 
  private:
   void create(const System& system, const NodeShape& shape, const TraceHeader& header, const Surface& body);
-  void create_series(const System& system);
+  void create_all_series(const System& system);
   std::string particles() const { return "/particles/" + std::string(mesh_.particles); }
   void append(std::int64_t step, double time_s, const State& state, const Energy& energy,
               const EnergyLosses& losses);

@@ -39,8 +39,8 @@ void read_series(hid_t file, TraceContent& content) {
     throw Hdf5ContentError(position + "/value has more nodes than mssim can number");
   content.in_double = positions.bytes_per_number() == sizeof(double);
   content.nodes = positions.extent(1);
-  content.step = step.integers(0, fewest);
-  content.time_s = time.doubles(0, fewest);
+  content.step = step.read<std::int64_t>(0, fewest);
+  content.time_s = time.read<double>(0, fewest);
   const bool finite =
       std::ranges::all_of(content.time_s, [](double time_s) { return std::isfinite(time_s); });
   if (!finite || std::ranges::adjacent_find(content.step, std::greater_equal<>()) != content.step.end() ||
@@ -49,9 +49,9 @@ void read_series(hid_t file, TraceContent& content) {
   // In H5MD, velocities may be sampled at other times than positions.
   const std::vector<hsize_t> list{Hdf5Table::any};
   if ((exists(file, velocity + "/step") &&
-       Hdf5Table(file, velocity + "/step", list).integers(0, fewest) != content.step) ||
+       Hdf5Table(file, velocity + "/step", list).read<std::int64_t>(0, fewest) != content.step) ||
       (exists(file, velocity + "/time") &&
-       Hdf5Table(file, velocity + "/time", list).doubles(0, fewest) != content.time_s))
+       Hdf5Table(file, velocity + "/time", list).read<double>(0, fewest) != content.time_s))
     throw Hdf5ContentError(fmt::format("{} and {} have different steps or times", position, velocity));
 }
 
@@ -225,7 +225,7 @@ std::vector<Vec3d> TraceReader::vectors(const Hdf5Table& series, const std::stri
                                         std::size_t frame) const {
   if (frame >= frames()) throw std::out_of_range("a trace has no such frame");
   return explained(name_, [&] {
-    const std::vector<double> numbers = series.doubles(frame, 1);
+    const std::vector<double> numbers = series.read<double>(frame, 1);
     std::vector<Vec3d> vectors(content_.nodes);
     for (std::size_t node = 0; node < vectors.size(); ++node) {
       vectors[node] = {numbers[3 * node], numbers[3 * node + 1], numbers[3 * node + 2]};

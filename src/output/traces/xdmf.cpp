@@ -12,6 +12,15 @@
 namespace mssim {
 namespace {
 
+/// The group of a part's virtual datasets or, of `panel`, a dataset: the panel's number at each node,
+/// [1][rows][columns] int32.
+std::string folder_of(std::string_view vector, const XdmfPart& part) {
+  const std::string folder = "/xdmf/" + std::string(vector);
+  return part.panel ? fmt::format("{}/{}", folder, *part.panel) : folder;
+}
+/// The same at each point of the body.
+constexpr const char* panel_dataset_of_body = "/xdmf/panel/body";
+
 /// The extents, separated by blanks.
 std::string dimensions_of(std::span<const hsize_t> shape) { return fmt::format("{}", fmt::join(shape, " ")); }
 
@@ -64,7 +73,7 @@ std::vector<std::string> part_elements(const std::string& trace, const XdmfMesh&
                                     attribute("velocity", "Vector", vectors("velocity"))};
   if (part.panel)
     elements.push_back(
-        attribute("panel", "Scalar", data_item(trace, xdmf_panel_dataset(part), shape, "Int")));
+        attribute("panel", "Scalar", data_item(trace, folder_of("panel", part), shape, "Int")));
   return elements;
 }
 
@@ -72,7 +81,7 @@ std::vector<std::string> body_elements(const std::string& trace, const XdmfMesh&
   const std::string points = std::to_string(mesh.body_points);
   return {cells(trace, "Triangle", mesh.body_triangles, body_triangles_dataset, 3),
           geometry(data_item(trace, body_points_dataset, points + " 3", "Float")),
-          attribute("panel", "Scalar", data_item(trace, xdmf_panel_dataset_of_body, points, "Int"))};
+          attribute("panel", "Scalar", data_item(trace, panel_dataset_of_body, points, "Int"))};
 }
 
 /// Everything that a frame shows: one grid, or a collection of named grids.
@@ -93,27 +102,21 @@ std::string frame_grids(const std::string& trace, const XdmfMesh& mesh, double t
   return text + outer + "</Grid>\n";
 }
 
-/// The group of a part's virtual datasets.
-std::string folder_of(std::string_view vector, const XdmfPart& part) {
-  const std::string folder = "/xdmf/" + std::string(vector);
-  return part.panel ? fmt::format("{}/{}", folder, *part.panel) : folder;
-}
-
 /// Writes a dataset with one number everywhere.
 void write_constant(hid_t file, const std::string& path, std::span<const hsize_t> shape,
                     std::int32_t number) {
   const std::string action = "writing " + path;
   const Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), action);
   checked(H5Pset_fill_value(properties.get(), H5T_NATIVE_INT32, &number), action);
-  create_dataset(file, path, H5T_STD_I32LE, shape, false, properties).close(action);
+  create_dataset(file, path, H5T_STD_I32LE, shape, properties).close(action);
 }
 
+/// The datasets of panels' numbers consist of their fill value and take no space.
 void number_panels_for_xdmf(hid_t trace, const XdmfMesh& mesh) {
   create_group(trace, "/xdmf/panel");
   for (const XdmfPart& part : mesh.parts)
-    write_constant(trace, xdmf_panel_dataset(part), part.shape, part.panel.value());
-  if (mesh.body_triangles > 0)
-    write_constant(trace, xdmf_panel_dataset_of_body, std::array{mesh.body_points}, -1);
+    write_constant(trace, folder_of("panel", part), part.shape, part.panel.value());
+  if (mesh.body_triangles > 0) write_constant(trace, panel_dataset_of_body, std::array{mesh.body_points}, -1);
 }
 
 }  // namespace
@@ -133,10 +136,6 @@ XdmfMesh xdmf_mesh_of(const NodeShape& shape, std::size_t nodes, const Surface& 
 std::string xdmf_dataset(std::string_view vector, const XdmfPart& part, std::size_t frame) {
   constexpr std::size_t digits = 6;  // so that viewers sort the frames
   return fmt::format("{}/{:0{}}", folder_of(vector, part), frame, digits);
-}
-
-std::string xdmf_panel_dataset(const XdmfPart& part) {
-  return fmt::format("/xdmf/panel/{}", part.panel.value());
 }
 
 void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) {
@@ -165,8 +164,7 @@ void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) 
             action);
         // "." is this file, whatever its name.
         checked(H5Pset_virtual(properties.get(), target.get(), ".", values.c_str(), source.get()), action);
-        create_dataset(trace, xdmf_dataset(vector, part, frame), type, shape, false, properties)
-            .close(action);
+        create_dataset(trace, xdmf_dataset(vector, part, frame), type, shape, properties).close(action);
       }
     }
   }

@@ -114,11 +114,11 @@ TEST(RatioMark, JudgesWhatIsShown) {
 TEST(RatioMark, IsExplainedWhereACellHasIt) {
   Table table;
   table.add({{"ratio", 2.0}});
-  EXPECT_EQ(legend_of_ratios(table), "");
+  EXPECT_EQ(legend_of_ratios({table}), "");
   EXPECT_EQ(legend_of_ratios(Document{Paragraph{"†"}, table}), "");
   table.rows[0][0].suffix = "†";
-  EXPECT_TRUE(legend_of_ratios(table).starts_with("† the two times shown contradict this ratio: "));
-  EXPECT_EQ(legend_of_ratios(Document{Heading{1, "Times"}, table}), legend_of_ratios(table));
+  EXPECT_TRUE(legend_of_ratios({table}).starts_with("† the two times shown contradict this ratio: "));
+  EXPECT_EQ(legend_of_ratios({Heading{1, "Times"}, table}), legend_of_ratios({table}));
 }
 
 std::string table_of(const std::vector<ResultRow>& rows, const Terminal& terminal) {

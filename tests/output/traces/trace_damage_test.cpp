@@ -125,7 +125,7 @@ TEST_F(TraceDamage, OfTheLengthThatAPartInflatesToIsSaid) {
       const std::array<hsize_t, 3> shape{3, 20, 3}, chunk{3, 20, 2}, second{0, 0, 2};
       checked(H5Pset_chunk(properties.get(), 3, chunk.data()), "chunks");
       checked(H5Pset_deflate(properties.get(), 1), "deflation");
-      const Hdf5Dataset dataset = create_dataset(h5, path, H5T_IEEE_F32LE, shape, false, properties);
+      const Hdf5Dataset dataset = create_dataset(h5, path, H5T_IEEE_F32LE, shape, properties);
       const std::array<float, 180> zeros{};
       checked(H5Dwrite(dataset.get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()), path);
       const std::vector<Bytef> text(bytes, 0);
@@ -267,7 +267,7 @@ TEST_F(TraceDamage, IsSaidOfWhatLiesElsewhere) {
                       checked(
                           H5Pset_external(properties.get(), (folder() / "secret.bin").c_str(), 0, 8 * count),
                           "external");
-                      create_dataset(h5, path, H5T_IEEE_F64LE, std::array{count}, false, properties);
+                      create_dataset(h5, path, H5T_IEEE_F64LE, std::array{count}, properties);
                     }),
               HasSubstr("stores its numbers in another file"));
 }
@@ -288,7 +288,7 @@ TEST_F(TraceDamage, IsSaidOfMoreThanAFileCanHold) {
                     [&](hid_t h5) {
                       remove(h5, "/connectivity/springs");
                       const std::array<hsize_t, 2> shape{absurd, 2}, chunk{65536, 2};
-                      create_dataset(h5, "/connectivity/springs", H5T_STD_U32LE, shape, false,
+                      create_dataset(h5, "/connectivity/springs", H5T_STD_U32LE, shape,
                                      chunked(chunk, Packing::deflated));
                     }),
               HasSubstr("larger than the file can hold"));

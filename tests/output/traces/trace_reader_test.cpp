@@ -194,7 +194,7 @@ TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
       checked(H5Pset_fletcher32(properties.get()), path);
       checked(H5Pset_deflate(properties.get(), 9), path);
     }
-    const Hdf5Dataset dataset = create_dataset(h5.get(), path, type, shape, false, properties);
+    const Hdf5Dataset dataset = create_dataset(h5.get(), path, type, shape, properties);
     checked(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), path);
   };
   repack(particles + "/position/value", H5T_IEEE_F32BE, {2, 7, 2}, true);
