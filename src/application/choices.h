@@ -52,6 +52,15 @@ struct OwnBackendOptions {
   std::optional<double> limit_s;     ///< for every answer; none: as described, or 120 s
 };
 
+/// What a user asks for: scenes, and the backends and integrators with which each is stepped.
+struct AskedCombinations {
+  std::vector<std::string> scenes;
+  std::vector<std::string> backends;
+  OwnBackendOptions own_backends;
+  std::vector<std::string> integrators;
+  ExecutionOptions execution;
+};
+
 /// Whether the backend of that name is a program that comes with mssim.
 bool is_shipped(const std::string& name);
 

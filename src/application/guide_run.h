@@ -12,13 +12,9 @@
 namespace mssim {
 
 /// What `mssim guide`, or a suite that it measures, was asked for.
-struct GuideOptions {
-  std::vector<std::string> scenes;
+/// Without backends those of guide_backends(), without integrators every one.
+struct GuideOptions : AskedCombinations {
   Wish wish;
-  std::vector<std::string> backends;  ///< none: guide_backends
-  OwnBackendOptions own_backends;
-  std::vector<std::string> integrators;  ///< none, or "all": every one
-  ExecutionOptions execution;
   double horizon_s = 0.1;               ///< errors are measured so long after the start, at most
   std::optional<double> time_budget_s;  ///< for all scenes; none: usual_guide_s for each
   std::string folder;                   ///< empty: results are only printed

@@ -215,12 +215,9 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(options.instruction_sets.size() > 1, "a list of --instruction-set");
   refuse(options.format != SummaryFormat::table, "--format");
   GuideOptions guide;
+  static_cast<AskedCombinations&>(guide) = options;
   guide.scenes = scenes_of_suite(options.suite, true);
   guide.scenes.insert(guide.scenes.end(), options.scenes.begin(), options.scenes.end());
-  guide.backends = options.backends;
-  guide.own_backends = options.own_backends;
-  guide.integrators = options.integrators;
-  guide.execution = options.execution;
   guide.time_budget_s = options.time_budget_s;
   guide.folder = options.output.folder;
   guide.overwrite = options.output.overwrite;
@@ -293,15 +290,12 @@ std::function<int()> declare_bench(Arguments& arguments) {
                 "Scenes, and what to compare on them: " + listed(suites, "or") +
                     " (see mssim list suites); tables stands for table1, table2 and table3",
                 one_of("suite", names, {{"all", "tables"}}));
-  add_backends(
-      arguments, options->backends,
+  declare_backends_and_integrators(
+      arguments, *options,
       "Backends, or methods with --suite races (default: all of mssim's); NAME:each steps each body for "
       "itself, NAME:4 takes four threads, NAME:AVX2 that instruction set, serial:double and openmp:double "
-      "that precision; a path with a slash, or a described name, is a program of your own");
-  declare_backend_folders(arguments, options->own_backends);
-  declare_backend_limit(arguments, options->own_backends);
-  add_integrators(arguments, options->integrators,
-                  fmt::format("Integrators, or all (default: {})", default_integrators()));
+      "that precision; a path with a slash, or a described name, is a program of your own",
+      fmt::format("Integrators, or all (default: {})", default_integrators()));
   declare_execution(arguments, options->execution, &options->threads, &options->instruction_sets);
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",

@@ -44,6 +44,12 @@ std::size_t length_of_first(std::string_view text) {
   return shortest;
 }
 
+Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
+  return arguments.add_number("--backend-limit SECONDS", options.limit_s,
+                              "Time limit for each answer of a program that is a backend (default: 120)",
+                              number_between(0.001, longest_time_limit_s));
+}
+
 }  // namespace
 
 Argument declare_frames(Arguments& arguments, FrameOptions& options) {
@@ -175,15 +181,15 @@ Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<s
       .offers(scene_names);
 }
 
-Argument add_backends(Arguments& arguments, std::vector<std::string>& target,
-                      const std::string& description) {
-  return arguments.add_list("--backend NAME|FILE,...", target, description, names_and_files_in)
-      .offers(backend_names);
-}
-
-Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
-                         const std::string& description) {
-  return arguments.add_list("--integrator NAME,...", target, description).offers(integrator_names);
+std::vector<Argument> declare_backends_and_integrators(Arguments& arguments, AskedCombinations& asked,
+                                                       const std::string& about_backends,
+                                                       const std::string& about_integrators) {
+  return {arguments.add_list("--backend NAME|FILE,...", asked.backends, about_backends, names_and_files_in)
+              .offers(backend_names),
+          declare_backend_folders(arguments, asked.own_backends),
+          declare_backend_limit(arguments, asked.own_backends),
+          arguments.add_list("--integrator NAME,...", asked.integrators, about_integrators)
+              .offers(integrator_names)};
 }
 
 void declare_listing_format(Arguments& arguments, ListingFormat& target) {
@@ -262,12 +268,6 @@ std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& 
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
   return arguments.add_list("--backend-folder DIR,...", options.folders,
                             "Folders with descriptions of backends, NAME.json (see docs/protocol.md)");
-}
-
-Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
-  return arguments.add_number("--backend-limit SECONDS", options.limit_s,
-                              "Time limit for each answer of a program that is a backend (default: 120)",
-                              number_between(0.001, longest_time_limit_s));
 }
 
 void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps,

@@ -119,7 +119,8 @@ class AbProgram {
     const OwnBackendOptions& own = options_.own_backends;
     if (!own.folders.empty()) add(child, "--backend-folder", join(own.folders, ","));
     if (own.limit_s) add(child, "--backend-limit", decimal(*own.limit_s));
-    if (options_.threads > 0) add(child, "--threads", std::to_string(options_.threads));
+    const int threads = options_.execution.threads;
+    if (threads > 0) add(child, "--threads", std::to_string(threads));
     return child;
   }
 
@@ -259,11 +260,7 @@ std::vector<std::string> backends_wanted(const AbOptions& options, const std::ve
 /// estimate: a compared program may have scenes or backends that this one does not know.
 bool both_fit(const AbOptions& options) {
   BenchOptions bench;
-  bench.scenes = options.scenes;
-  bench.backends = options.backends;
-  bench.own_backends = options.own_backends;
-  bench.integrators = options.integrators;
-  bench.execution.threads = options.threads;
+  static_cast<AskedCombinations&>(bench) = options;
   bench.dry_run = true;
   try {
     return std::ranges::all_of(plan_of(bench).timed, [](const PlannedScene& scene) {
