@@ -29,24 +29,16 @@
 namespace mssim {
 namespace {
 
-/// How a bench prints its rows; `github` is github_table().
-enum class SummaryFormat : std::uint8_t { table, csv, json, github };
+/// How a bench prints its rows: as a listing, or without a format as github_table().
+using SummaryFormat = std::optional<ListingFormat>;
 
 /// The requested bench, and how to print it.
 struct BenchRequest : BenchOptions {
-  SummaryFormat format = SummaryFormat::table;
+  SummaryFormat format = ListingFormat::table;
 };
 
-/// The format of a listing of these rows; `github` has none.
-ListingFormat listing_format(SummaryFormat format) {
-  return format == SummaryFormat::csv    ? ListingFormat::csv
-         : format == SummaryFormat::json ? ListingFormat::json
-                                         : ListingFormat::table;
-}
-
 std::string text_of(const Table& table, SummaryFormat format) {
-  if (table.rows.empty() || format == SummaryFormat::github) return "";
-  return to_text(table, listing_format(format));
+  return table.rows.empty() || !format ? "" : to_text(table, *format);
 }
 
 /// "opencl, hybrid ran on DEVICE", for each OpenCL device.
@@ -82,29 +74,20 @@ std::string remarks(RowPointers rows, std::string_view table, const Provenance& 
 /// for a table without rows.
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
                     const Terminal& terminal) {
-  if (format == SummaryFormat::github) return to_text(github_table(rows), ListingFormat::json);
-  if (format == SummaryFormat::table) {
-    const std::vector<const ResultRow*> pointers = pointers_to(rows);
-    const std::string text = row_table(pointers, provenance, terminal);
-    return text + remarks(pointers, text, provenance, terminal.width);
-  }
-  return text_of(printed_table(pointers_to(rows)), format);
-}
-
-/// The rows of scenes whose structure is shown but which are not timed; empty in the format `github`, which
-/// is for times.
-std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
-  return text_of(structure_rows(rows), format);
+  if (!format) return to_text(github_table(rows), ListingFormat::json);
+  const std::vector<const ResultRow*> pointers = pointers_to(rows);
+  if (format != ListingFormat::table) return text_of(printed_table(pointers), format);
+  const std::string text = row_table(pointers, provenance, terminal);
+  return text + remarks(pointers, text, provenance, terminal.width);
 }
 
 /// Throws UsageError for a plan of two tables in a format of one, and for one without times in a format of
 /// times.
 void require_table_for(const BenchPlan& plan, SummaryFormat format, bool dry_run) {
-  if (plan.timed.empty() && (format == SummaryFormat::github || (dry_run && format != SummaryFormat::table)))
+  if (plan.timed.empty() && (!format || (dry_run && format != ListingFormat::table)))
     throw UsageError("{} is of scenes that are timed, and there are none: leave it out, or name a --scene",
                      dry_run ? "--format with --dry-run" : "--format github");
-  if (format != SummaryFormat::csv && format != SummaryFormat::json) return;
-  if (plan.described.empty() || plan.timed.empty()) return;
+  if (!format || format == ListingFormat::table || plan.described.empty() || plan.timed.empty()) return;
   throw UsageError(
       "--format csv and json are of one table, and sizes and times are two: ask for --suite {} alone, and "
       "for the others without it",
@@ -113,7 +96,7 @@ void require_table_for(const BenchPlan& plan, SummaryFormat format, bool dry_run
 
 /// Prints the plan: what would be measured, and the expected time.
 void tell_plan(const BenchPlan& plan, SummaryFormat format) {
-  if (format == SummaryFormat::github)
+  if (!format)
     throw UsageError("--format github is of times, which --dry-run does not measure: leave one of them out");
   const ExpectedTime all = total(times_of(plan.timed));
   const double rounds = expected_rounds(plan);
@@ -126,8 +109,8 @@ void tell_plan(const BenchPlan& plan, SummaryFormat format) {
                {"combinations", scene.backends.size() * plan.settings.integrators.size()},
                {"rounds", std::lround(rounds)},
                {"expected_s", seconds(scene.time)}});
-  if (format != SummaryFormat::table) {
-    std::cout << to_text(table, listing_format(format));
+  if (format != ListingFormat::table) {
+    std::cout << to_text(table, *format);
     return;
   }
   for (const UnbuiltScene& scene : plan.described)
@@ -213,7 +196,7 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(!options.verified.empty(), "--verified");
   refuse(options.threads.size() > 1, "a list of --threads");
   refuse(options.instruction_sets.size() > 1, "a list of --instruction-set");
-  refuse(options.format != SummaryFormat::table, "--format");
+  refuse(options.format != ListingFormat::table, "--format");
   GuideOptions guide;
   static_cast<AskedCombinations&>(guide) = options;
   guide.scenes = scenes_of_suite(options.suite, true);
@@ -240,15 +223,15 @@ int run(const BenchRequest& options) {
   std::vector<StructureRow> structure;
   if (!plan.described.empty()) {
     structure = describe_scenes(plan.described);
-    std::cout << summary(structure, format);
+    std::cout << text_of(structure_rows(structure), format);  // nothing in the format of times
   }
   int code = exit_ok;
   StopRequest stop;
   if (!plan.timed.empty()) {
     measure_scenes(plan, budget, stop, results);
-    if (!plan.described.empty() && format == SummaryFormat::table) std::cout << '\n';
+    if (!plan.described.empty() && format == ListingFormat::table) std::cout << '\n';
     std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
-    if (format == SummaryFormat::github && !results.rows().empty()) results.keep_for_github();
+    if (!format && !results.rows().empty()) results.keep_for_github();
     const BenchVerdict verdict =
         verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
     tell_first(verdict.reasons);
@@ -331,10 +314,10 @@ std::function<int()> declare_bench(Arguments& arguments) {
       "Also trace each combination into FOLDER/traces, after it has been timed (not of garments)");
   arguments.add_choice<SummaryFormat>(
       "--format", options->format,
-      {{"table", SummaryFormat::table},
-       {"csv", SummaryFormat::csv},
-       {"json", SummaryFormat::json},
-       {"github", SummaryFormat::github}},
+      {{"table", ListingFormat::table},
+       {"csv", ListingFormat::csv},
+       {"json", ListingFormat::json},
+       {"github", std::nullopt}},
       "What to print: table, csv, json, or github (the input of github-action-benchmark, "
       "also written into FOLDER) (default: table)");
   arguments.add(
