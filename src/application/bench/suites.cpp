@@ -10,6 +10,7 @@
 #include "garment/output/garment_tables.h"
 #include "integrators/all_integrators.h"
 #include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -144,6 +145,14 @@ TableMaker table_of_cluster() {
 TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
 
 constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
+constexpr Comparison of_methods{all_methods, cheapest_method, table_of_races};
+constexpr Comparison of_sizes{table_backends, cheapest_method, table_of_scaling};
+constexpr Comparison of_peers{baseline_and_best, cheapest_method, peer_tables, true};
+constexpr Comparison of_ranks{
+    baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1};
+constexpr Comparison of_dressings{all_that_dress, cheapest_method, garment_tables,
+                                  false,          nullptr,         is_dressed_soon};
+constexpr Comparison of_guides{guide_backends, every_integrator, no_tables};
 
 constexpr auto table = std::to_array<Suite>({
     {"table1", "times of cloths: Table 1 of Hong et al.", true, true, cloths, of_backends,
@@ -151,42 +160,20 @@ constexpr auto table = std::to_array<Suite>({
     {"table2", "sizes of single bodies: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "times of several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends,
      bodies_as_published},
-    {"races",
-     "the cost of each method to avoid the data race of springs (mssim list methods)",
-     false,
-     true,
-     race_scenes,
-     {all_methods, cheapest_method, table_of_races}},
-    {"scaling",
-     "the time per node in cloths of up to 16 million nodes",
-     false,
-     true,
-     ever_larger_cloths,
-     {table_backends, cheapest_method, table_of_scaling}},
-    {"peers",
-     "comparison with the same scenes in other languages and libraries (scripts/peers)",
-     false,
-     true,
-     scenes_of_peers,
-     {baseline_and_best, cheapest_method, peer_tables, true}},
+    {"races", "the cost of each method to avoid the data race of springs (mssim list methods)", false, true,
+     race_scenes, of_methods},
+    {"scaling", "the time per node in cloths of up to 16 million nodes", false, true, ever_larger_cloths,
+     of_sizes},
+    {"peers", "comparison with the same scenes in other languages and libraries (scripts/peers)", false, true,
+     scenes_of_peers, of_peers},
     {"cluster",
      "several processes on one or more machines: the cost of messages, and estimates for larger clusters",
-     false,
-     true,
-     cluster_scenes,
-     {baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1}},
-    {"garment",
-     "jeans on a body, dressing and draped: Figure 6 of Vassilev",
-     false,
-     true,
-     jeans,
-     {all_that_dress, cheapest_method, garment_tables, false, nullptr, is_dressed_soon}},
+     false, true, cluster_scenes, of_ranks},
+    {"garment", "jeans on a body, dressing and draped: Figure 6 of Vassilev", false, true, jeans,
+     of_dressings},
     {guide_suite,
-     "recommended integrator, backend and step for each cloth and body, as mssim guide finds them",
-     false,
-     true,
-     scenes_of_guide,
-     {guide_backends, every_integrator, no_tables}},
+     "recommended integrator, backend and step for each cloth and body, as mssim guide finds them", false,
+     true, scenes_of_guide, of_guides},
 });
 
 bool belongs(const Suite& suite, std::string_view name) {
@@ -238,8 +225,7 @@ std::vector<std::string_view> variants_of_suite(std::string_view name,
   std::vector<std::string_view> variants;
   for (const Suite& suite : table)
     if (belongs(suite, name) && (!scene || std::ranges::find(suite.scenes, *scene) != suite.scenes.end()))
-      for (const std::string_view variant : suite.variants)
-        if (std::ranges::find(variants, variant) == variants.end()) variants.push_back(variant);
+      for (const std::string_view variant : suite.variants) add_once(variants, variant);
   return variants;
 }
 
