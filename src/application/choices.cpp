@@ -159,9 +159,8 @@ void require_within_limit(int threads, std::string_view asked = {}) {
 
 const Integrator& require_integrator(const std::string& name) {
   if (const Integrator* integrator = find_integrator(name)) return *integrator;
-  std::vector<std::string_view> names;
-  for (const Integrator* integrator : all_integrators) names.push_back(integrator->name);
-  throw UsageError(unknown_name("integrator", name, names));
+  throw UsageError(
+      unknown_name("integrator", name, mapped<std::string_view>(all_integrators, &Integrator::name)));
 }
 
 std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>& asked,
@@ -178,9 +177,8 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
 
 std::string_view require_instruction_set(const std::string& name) {
   if (const auto set = instruction_set_named(name)) return *set;
-  std::vector<std::string_view> names;
-  for (const std::string_view set : instruction_sets()) names.push_back(instruction_set_name(set));
-  throw UsageError(unknown_name("instruction set", name, names));
+  throw UsageError(unknown_name("instruction set", name,
+                                mapped<std::string_view>(instruction_sets(), instruction_set_name)));
 }
 
 std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
@@ -221,8 +219,7 @@ std::vector<const BackendInfo*> table_backends() {
 }
 
 std::vector<const BackendInfo*> with_garment_backends(std::vector<const BackendInfo*> rows) {
-  for (const BackendInfo& backend : garment_backends())
-    if (std::ranges::find(rows, &backend) == rows.end()) rows.push_back(&backend);
+  for (const BackendInfo& backend : garment_backends()) add_once(rows, &backend);
   return rows;
 }
 
@@ -382,8 +379,8 @@ std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std
   for (const std::string& name : names) asked.push_back(&require(name));
   for (const BackendInfo* row : known_)
     if (std::ranges::find(asked, row) != asked.end()) rows.push_back(row);
-  for (const BackendInfo* row : asked)  // not own(): NAME:each:2 has made NAME:each on the way
-    if (std::ranges::find(rows, row) == rows.end()) rows.push_back(row);
+  // Not own(): NAME:each:2 has made NAME:each on the way.
+  for (const BackendInfo* row : asked) add_once(rows, row);
   return rows;
 }
 
@@ -407,8 +404,7 @@ std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs
       infos.push_back(&require(file.stem().string()));
     } catch (const Error& error) {
       if (broken == nullptr) throw;
-      // Two of one name have one reason.
-      if (std::ranges::find(*broken, error.what()) == broken->end()) broken->emplace_back(error.what());
+      add_once(*broken, error.what());  // two of one name have one reason
     }
   }
   return infos;

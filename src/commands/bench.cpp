@@ -46,9 +46,7 @@ std::vector<std::string> devices_of(RowPointers rows) {
   std::map<std::string_view, std::vector<std::string>> backends;
   for (const ResultRow* row : rows) {
     const std::string_view device = opencl_device(*row);
-    if (device.empty()) continue;
-    std::vector<std::string>& names = backends[device];
-    if (std::ranges::find(names, row->backend) == names.end()) names.push_back(row->backend);
+    if (!device.empty()) add_once(backends[device], row->backend);
   }
   std::vector<std::string> sentences;
   for (const auto& [device, names] : backends)

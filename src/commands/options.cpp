@@ -256,12 +256,7 @@ std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& 
       (sets == nullptr
            ? arguments.add("--instruction-set NAME", options.instruction_set, of_sets)
            : arguments.add_list("--instruction-set NAME,...", *sets, of_sets + std::string(several)))
-          .offers([] {
-            std::vector<std::string> names;
-            for (const std::string_view set : instruction_sets())
-              names.emplace_back(instruction_set_name(set));
-            return names;
-          }));
+          .offers([] { return mapped<std::string>(instruction_sets(), instruction_set_name); }));
   return of_backends;
 }
 

@@ -242,8 +242,7 @@ bool add_round(Series& series, const std::vector<CombinationTime>& base,
 std::vector<std::string> still_wanted(std::string PairedTimes::*member, const std::vector<Series>& series) {
   std::vector<std::string> names;
   for (const Series& one : series)
-    if (!one.settled && std::ranges::find(names, one.pairs.*member) == names.end())
-      names.push_back(one.pairs.*member);
+    if (!one.settled) add_once(names, one.pairs.*member);
   return names;
 }
 

@@ -91,8 +91,7 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
 
 std::vector<std::string> timed_names(const BenchOptions& options) {
   std::vector<std::string> scenes = scenes_of_suite(options.suite, true);
-  for (const std::string& scene : options.scenes)
-    if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
+  for (const std::string& scene : options.scenes) add_once(scenes, scene);
   return scenes;
 }
 
