@@ -206,8 +206,7 @@ void require_precision(const RunOptions& options, const BackendInfo& info, const
         names_of(steps, "or"), options.backend);
 }
 
-/// Makes the chosen backend with make(row, system, integrator, dt_s, execution). Throws Unsupported and
-/// Unavailable with the backend's name.
+/// Makes the chosen backend with make(execution). Throws Unsupported and Unavailable with the backend's name.
 template <class Make>
 auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                     const Integrator& integrator, const Make& make) {
@@ -217,7 +216,7 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   execution.scene_file = scene.spec.file;
   auto backend = [&] {
     try {
-      return make(info, scene.system, integrator, scene.dt_s, execution);
+      return make(execution);
     } catch (const Unsupported& reason) {
       throw Unsupported("{}: {}", options.backend, reason.what());
     } catch (const Unavailable& reason) {
@@ -281,12 +280,10 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
 int run_garment(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                 const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
-      chosen_backend(options, info, scene, integrator,
-                     [](const BackendInfo& row, const System& system, const Integrator& method, double dt_s,
-                        const ExecutionOptions& execution) {
-                       if (row.in_double) return make_reference_dressing(system, method, dt_s);
-                       return make_dressing_backend(row, system, method, dt_s, execution);
-                     });
+      chosen_backend(options, info, scene, integrator, [&](const ExecutionOptions& execution) {
+        if (info.in_double) return make_reference_dressing(scene.system, integrator, scene.dt_s);
+        return make_dressing_backend(info, scene.system, integrator, scene.dt_s, execution);
+      });
   if (options.losses)
     throw UsageError(
         "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
@@ -358,12 +355,11 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
 int run_simulation(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                    const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
-      chosen_backend(options, info, scene, integrator,
-                     [](const BackendInfo& row, const System& system, const Integrator& method, double dt_s,
-                        const ExecutionOptions& execution) {
-                       if (row.in_double && is_implicit(method)) return make_reference(system, method, dt_s);
-                       return make_backend(row, system, method, dt_s, execution);
-                     });
+      chosen_backend(options, info, scene, integrator, [&](const ExecutionOptions& execution) {
+        if (info.in_double && is_implicit(integrator))
+          return make_reference(scene.system, integrator, scene.dt_s);
+        return make_backend(info, scene.system, integrator, scene.dt_s, execution);
+      });
   const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
   StopRequest stop;  // as in run_garment
   RunRecorder recorder(options.files, scene, headers);
