@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <iostream>
 
 #include "platform/process.h"
 #include "text/error.h"
@@ -105,13 +106,11 @@ void answer(int socket, std::string_view status, std::string_view type, std::str
 
 }  // namespace
 
-void serve_page(const std::function<std::string()>& make_page, int port, bool once,
-                const std::function<std::string(const std::string& text)>& taken,
-                const std::function<void(const std::string& address)>& ready) {
+void serve_page(int port, bool once, const std::function<std::string(const std::string& text)>& taken) {
   std::string address;
   const Descriptor socket = listener(port, address);
-  const std::string page = make_page();
-  ready(address);
+  const std::string page = web_page(true);
+  std::cout << address << std::endl;
   for (;;) {
     const Descriptor connection(::accept4(socket.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!connection.is_open()) continue;
