@@ -1,8 +1,5 @@
 #include "application/bench/bench_run.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <thread>
 
 #include "backends/backends.h"
@@ -12,9 +9,6 @@
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 ResultRow row(const std::string& scene, const std::string& backend, int rounds = 3) {
   ResultRow row;
