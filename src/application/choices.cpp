@@ -213,9 +213,7 @@ std::string row_name(const std::string& asked) {
 }
 
 std::vector<const BackendInfo*> table_backends() {
-  std::vector<const BackendInfo*> rows;
-  for (const BackendInfo& backend : backends()) rows.push_back(&backend);
-  return rows;
+  return mapped<const BackendInfo*>(backends(), [](const BackendInfo& row) { return &row; });
 }
 
 std::vector<const BackendInfo*> with_garment_backends(std::vector<const BackendInfo*> rows) {
@@ -259,7 +257,8 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
 }
 
 const BackendInfo& BackendChoice::require(const std::string& name) {
-  if (is_path(name)) return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
+  if (is_path(name))
+    return add(name.ends_with(description_extension) ? described_by(name) : program_at(name));
   const std::optional<fs::path> file = description_of(name);
   if (!file)
     if (const BackendInfo* row = variant(name)) {
@@ -268,7 +267,7 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
     }
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;
-  if (file) return add_file(*file);
+  if (file) return add(described_by(*file));
   std::vector<std::string> broken;  // not what was asked for
   std::vector<std::string_view> names;
   for (const BackendInfo* info : known_) names.push_back(info->name);
@@ -411,9 +410,7 @@ std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs
 }
 
 std::vector<const BackendInfo*> BackendChoice::own() const {
-  std::vector<const BackendInfo*> infos;
-  for (const std::unique_ptr<Row>& row : rows_) infos.push_back(&row->info);
-  return infos;
+  return mapped<const BackendInfo*>(rows_, [](const std::unique_ptr<Row>& row) { return &row->info; });
 }
 
 std::optional<fs::path> BackendChoice::description_of(const std::string& name) const {
@@ -437,8 +434,6 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
                      shown(found[0]), shown(found[1]));
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
-
-const BackendInfo& BackendChoice::add_file(const fs::path& file) { return add(described_by(file)); }
 
 const BackendInfo& BackendChoice::add(BackendProgram program) {
   if (escaped(program.name) != program.name)

@@ -142,7 +142,6 @@ class BackendChoice {
   std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders,
                                                std::vector<std::string>* broken);
   const BackendInfo& add(BackendProgram program);
-  const BackendInfo& add_file(const std::filesystem::path& file);
   /// The row for a name with a colon; null if there is none. Throws UsageError.
   const BackendInfo* variant(const std::string& name);
   const BackendInfo& add_variant(const BackendInfo& info, std::string_view how);

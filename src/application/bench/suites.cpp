@@ -62,9 +62,8 @@ constexpr auto every_integrator = [] {
 }();
 
 std::vector<const BackendInfo*> all_methods() {
-  std::vector<const BackendInfo*> rows;
-  for (const AccumulationMethod& method : accumulation_methods()) rows.push_back(&method.backend);
-  return rows;
+  return mapped<const BackendInfo*>(accumulation_methods(),
+                                    [](const AccumulationMethod& method) { return &method.backend; });
 }
 
 /// All backends, including those that cannot dress, whose rows give that reason.
@@ -206,8 +205,7 @@ PaperLegend paper_legend() {
 std::span<const Suite> suites() { return table; }
 
 std::vector<std::string> suite_names() {
-  std::vector<std::string> names;
-  for (const Suite& suite : table) names.emplace_back(suite.name);
+  auto names = mapped<std::string>(table, &Suite::name);
   names.emplace_back(suites_of_tables);
   return names;
 }
