@@ -118,19 +118,13 @@ void tell_plan(const BenchPlan& plan, SummaryFormat format) {
 }
 
 /// Printed before hours of measuring, not after.
-void warn_of_missing_speedups(const BenchPlan& plan) {
-  std::vector<std::string_view> backends;
-  if (!plan.timed.empty())
-    for (const BackendInfo* backend : plan.settings.backends) backends.push_back(backend->name);
+void tell_before(const BenchPlan& plan) {
+  if (plan.timed.empty()) return;
+  for (const std::string& noise : plan.provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  if (plan.uses_device) tell_of_opencl();
+  const auto backends = mapped<std::string_view>(plan.settings.backends, &BackendInfo::name);
   if (const std::string reason = reason_without_speedups(backends); !reason.empty())
     std::cerr << "mssim: " << reason << '\n';
-}
-
-void tell_before(const BenchPlan& plan) {
-  if (!plan.timed.empty())
-    for (const std::string& noise : plan.provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
-  if (plan.uses_device) tell_of_opencl();
-  warn_of_missing_speedups(plan);
 }
 
 /// The structure of a scene of bodies. Throws std::invalid_argument for a scene without tetrahedra.
@@ -175,10 +169,8 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
 
 /// Row names of the requested backends, including those given as a path.
 std::vector<std::string> asked_backends(const BenchOptions& options, const BenchPlan& plan) {
-  std::vector<std::string> names;
-  if (!options.backends.empty())
-    for (const BackendInfo* backend : plan.settings.backends) names.emplace_back(backend->name);
-  return names;
+  if (options.backends.empty()) return {};
+  return mapped<std::string>(plan.settings.backends, &BackendInfo::name);
 }
 
 /// Runs the suite whose scenes are measured by guides, without samples of single steps.
