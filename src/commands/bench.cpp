@@ -152,13 +152,13 @@ std::vector<StructureRow> describe_scenes(std::vector<UnbuiltScene>& scenes) {
   return rows;
 }
 
-void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, bool stopped) {
-  if (plan.output.folder.empty()) return;
+void tell_where_results_are(const BenchPlan& plan, BenchResults& results, bool stopped) {
+  if (!results.folder()) return;
   const std::string folder = escaped(plan.output.folder);
   std::cerr << "mssim: ";
   if (!stopped)
     std::cerr << "results are in " << folder;
-  else if (results.rows().empty() && results.are_in_folder())
+  else if (results.rows().empty() && results.folder()->has_results())
     std::cerr << "nothing was measured yet; earlier results are still in " << folder;
   else if (results.rows().empty())
     std::cerr << "nothing was measured yet; --resume continues";
@@ -221,14 +221,16 @@ int run(const BenchRequest& options) {
     measure_scenes(plan, budget, stop, results);
     if (!plan.described.empty() && format == ListingFormat::table) std::cout << '\n';
     std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
-    if (!format && !results.rows().empty()) results.keep_for_github();
+    if (!format && results.folder() && !results.rows().empty())
+      results.folder()->write_for_github(results.rows());
     const BenchVerdict verdict =
         verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
     tell_first(verdict.reasons);
     code = verdict.exit_code;
   }
   // The first write replaces earlier results, so nothing is written before there is a row.
-  if (!structure.empty() && (plan.timed.empty() || !results.rows().empty())) results.keep(structure);
+  if (results.folder() && !structure.empty() && (plan.timed.empty() || !results.rows().empty()))
+    results.folder()->write(structure);
   tell_where_results_are(plan, results, stop.requested());
   stop.throw_if_requested();
   return code;

@@ -270,12 +270,4 @@ void BenchResults::keep(const std::string& scene, std::vector<ResultRow> rows) {
   if (folder_) folder_->write(rows_);
 }
 
-void BenchResults::keep(const std::vector<StructureRow>& rows) {
-  if (folder_) folder_->write(rows);
-}
-
-void BenchResults::keep_for_github() const {
-  if (folder_) folder_->write_for_github(rows_);
-}
-
 }  // namespace mssim

@@ -56,18 +56,14 @@ class BenchResults {
 
   const std::vector<ResultRow>& rows() const { return rows_; }
   std::vector<ResultRow> of_scene(const std::string& name) const { return rows_of_scene(rows_, name); }
-  /// Whether there is a folder with results, also those of an earlier run that stay for now.
-  bool are_in_folder() const { return folder_ && folder_->has_results(); }
+  /// The plan's folder, if it has one.
+  std::optional<ResultFolder>& folder() { return folder_; }
   /// The names of the files of the scene's rows (file_stems), unique among those of all scenes.
   std::vector<std::string> stems_of_scene(const std::string& name) const;
 
   /// Replaces the rows of a scene, adds the published times, and writes the folder. Throws UsageError if they
   /// are not comparable with those of an earlier run, and WriteError.
   void keep(const std::string& scene, std::vector<ResultRow> rows);
-  /// Writes the structure of scenes. Throws WriteError.
-  void keep(const std::vector<StructureRow>& rows);
-  /// Writes the input of github-action-benchmark. Throws WriteError.
-  void keep_for_github() const;
 
  private:
   const BenchPlan& plan_;
