@@ -176,15 +176,12 @@ json integrators_json() {
   for (const Integrator* integrator : all_integrators) {
     if (is_implicit(*integrator)) continue;
     json stages = json::array();
-    for (std::size_t s = 0; s < integrator->stage_count; ++s) {
-      const Stage& stage = integrator->stages[s];
+    for (const Stage& stage : std::span(integrator->stages).first(integrator->stage_count)) {
       json assignments = json::array();
-      for (std::size_t a = 0; a < assignment_count(stage); ++a) {
-        const Assignment& assignment = stage.assignments[a];
+      for (const Assignment& assignment : std::span(stage.assignments).first(assignment_count(stage))) {
         json terms = json::array();
-        for (std::size_t t = 0; t < term_count(assignment); ++t)
-          terms.push_back({assignment.terms[t].coefficient, assignment.terms[t].dt_power,
-                           name_of(assignment.terms[t].slot)});
+        for (const Term& term : std::span(assignment.terms).first(term_count(assignment)))
+          terms.push_back({term.coefficient, term.dt_power, name_of(term.slot)});
         assignments.push_back({{"out", name_of(assignment.out)}, {"terms", terms}});
       }
       stages.push_back({{"gather", index(stage.gather)}, {"assignments", assignments}});
