@@ -6,7 +6,6 @@
 
 #include "application/choices.h"
 #include "backends/backends.h"
-#include "backends/interface/backend.h"
 #include "guide/guide.h"
 
 namespace mssim {

@@ -10,7 +10,6 @@
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "output/folders/result_folder.h"
-#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 

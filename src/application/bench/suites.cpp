@@ -1,6 +1,7 @@
 #include "application/bench/suites.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <set>
 

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
-#include <span>
 #include <sstream>
 #include <string_view>
 #include <vector>
