@@ -89,10 +89,7 @@ Provenance run_provenance(int threads, bool uses_device) {
 }
 
 std::string command_line(const Provenance& provenance) {
-  std::string text;
-  for (const std::string& argument : provenance.command_line)
-    text.append(text.empty() ? "" : " ").append(shell_word(argument));
-  return text;
+  return join(mapped<std::string>(provenance.command_line, shell_word), " ");
 }
 
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const BackendInfo& info,

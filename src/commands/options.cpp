@@ -136,11 +136,11 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_v
                                                                    std::uint32_t most) {
   const std::size_t x = text.find('x');
   if (x == std::string_view::npos) return std::nullopt;
-  const auto first = number_in<std::int64_t>(text.substr(0, x));
-  const auto second = number_in<std::int64_t>(text.substr(x + 1));
-  const auto good = [&](const std::optional<std::int64_t>& n) { return n && *n >= 1 && *n <= most; };
+  const auto first = number_in<std::uint32_t>(text.substr(0, x));
+  const auto second = number_in<std::uint32_t>(text.substr(x + 1));
+  const auto good = [&](const std::optional<std::uint32_t>& n) { return n && *n >= 1 && *n <= most; };
   if (!good(first) || !good(second)) return std::nullopt;
-  return std::pair{static_cast<std::uint32_t>(*first), static_cast<std::uint32_t>(*second)};
+  return std::pair{*first, *second};
 }
 
 std::vector<std::string> names_and_files_in(std::string_view argument) {
