@@ -1,12 +1,10 @@
 #include "application/guide_run.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <system_error>
 
 #include "application/console.h"
@@ -120,8 +118,6 @@ void print(const SceneGuide& guide) {
   for (const std::string& sentence : about_trusted_state(guide.trusted)) std::cout << sentence << '\n';
 }
 
-constexpr std::array<std::string_view, 1> every_integrator{"all"};
-
 /// A scene gets so much even where those before it have overrun the whole, s.
 constexpr double least_scene_s = 1;
 
@@ -222,7 +218,7 @@ int run_guide(const GuideOptions& options) {
   BackendChoice choice(table_backends(), options.own_backends, options.scenes);
   request.backends = options.backends.empty() ? guide_backends() : choice.require_all(options.backends);
   require_use_of_options(options.execution, request.backends);
-  request.integrators = chosen_integrators(options.integrators, every_integrator);
+  request.integrators = chosen_integrators(options.integrators, guide_integrators);
   plan.scenes = asked_scenes(options);
   request.execution = complete(options.execution);
   plan.seconds = options.time_budget_s.value_or(usual_guide_s * static_cast<double>(plan.scenes.size()));

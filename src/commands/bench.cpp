@@ -17,7 +17,6 @@
 #include "application/prepared_scene.h"
 #include "commands/command.h"
 #include "commands/options.h"
-#include "integrators/all_integrators.h"
 #include "mesh/meshing.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
@@ -239,9 +238,7 @@ int run(const BenchRequest& options) {
 /// The default integrators, followed by those of suites with other defaults.
 std::string default_integrators() {
   const auto named = [](std::span<const std::string_view> integrators) {
-    return integrators.size() == all_integrators.size()
-               ? "all"
-               : join(std::vector<std::string>(integrators.begin(), integrators.end()), ",");
+    return join(std::vector<std::string>(integrators.begin(), integrators.end()), ",");
   };
   const std::string usual = named(comparison_of_suite("").integrators);
   std::map<std::string, std::vector<std::string>> others;
@@ -257,12 +254,12 @@ std::string default_integrators() {
 
 std::function<int()> declare_bench(Arguments& arguments) {
   const auto options = std::make_shared<BenchRequest>();
-  const std::vector<std::string> names = suite_names();
-  const std::vector<std::string_view> suites(names.begin(), names.end());
+  auto names = mapped<std::string>(suites(), &Suite::name);
+  names.emplace_back("tables");
   add_scenes(arguments, "--scene", options->scenes,
              "Scenes to measure: names (see mssim list scenes) or files");
   arguments.add("--suite NAME", options->suite,
-                "Scenes, and what to compare on them: " + listed(suites, "or") +
+                "Scenes, and what to compare on them: " + listed(names, "or") +
                     " (see mssim list suites); tables stands for table1, table2 and table3",
                 one_of("suite", names, {{"all", "tables"}}));
   declare_backends_and_integrators(

@@ -16,8 +16,6 @@
 namespace mssim {
 namespace {
 
-constexpr std::string_view suites_of_tables = "tables";
-
 constexpr std::array<std::string_view, 6> cloths{"cloth2500", "cloth4900", "cloth10k",
                                                  "cloth40k",  "cloth200k", "cloth350k"};
 constexpr std::array<std::string_view, 9> single_bodies{"box-small",    "box-medium",    "box-large",
@@ -56,11 +54,6 @@ constexpr std::array<std::string_view, 7> bodies_as_published{
 /// Integrators of Hong et al. under their own names.
 constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
 constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
-constexpr auto every_integrator = [] {
-  std::array<std::string_view, all_integrators.size()> names{};
-  std::ranges::transform(all_integrators, names.begin(), &Integrator::name);
-  return names;
-}();
 
 std::vector<const BackendInfo*> all_methods() {
   return mapped<const BackendInfo*>(accumulation_methods(),
@@ -152,7 +145,7 @@ constexpr Comparison of_ranks{
     baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1};
 constexpr Comparison of_dressings{all_that_dress, cheapest_method, garment_tables,
                                   false,          nullptr,         is_dressed_soon};
-constexpr Comparison of_guides{guide_backends, every_integrator, no_tables};
+constexpr Comparison of_guides{guide_backends, guide_integrators, no_tables};
 
 constexpr auto table = std::to_array<Suite>({
     {"table1", "times of cloths: Table 1 of Hong et al.", true, true, cloths, of_backends,
@@ -177,7 +170,7 @@ constexpr auto table = std::to_array<Suite>({
 });
 
 bool belongs(const Suite& suite, std::string_view name) {
-  return name == suite.name || (name == suites_of_tables && suite.in_tables);
+  return name == suite.name || (name == "tables" && suite.in_tables);
 }
 
 }  // namespace
@@ -204,12 +197,6 @@ PaperLegend paper_legend() {
 }
 
 std::span<const Suite> suites() { return table; }
-
-std::vector<std::string> suite_names() {
-  auto names = mapped<std::string>(table, &Suite::name);
-  names.emplace_back(suites_of_tables);
-  return names;
-}
 
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed) {
   std::vector<std::string> scenes;

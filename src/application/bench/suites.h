@@ -47,9 +47,6 @@ std::span<const Suite> suites();
 /// The papers' names from the tables of backends, integrators and suites.
 PaperLegend paper_legend();
 
-/// The names of the suites, and "tables".
-std::vector<std::string> suite_names();
-
 /// The scenes, each once, of the suite `name`, or of all suites in "tables": of timed suites, or of the
 /// others.
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
