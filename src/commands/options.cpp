@@ -215,49 +215,44 @@ ValueRule time_budget() { return number_between(0.001, 1e8); }
 
 std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& options,
                                         std::vector<int>* threads, std::vector<std::string>* sets) {
-  std::vector<Argument> of_backends;
   constexpr std::string_view several = "; each of several gets rows of its own";
   const std::string meaning =
       "Threads, and compute units of an OpenCL device that is a CPU (default: one per available CPU)";
+  const std::string of_sets =
+      "Instruction set of the vector code of openmp, gather-vectors and mpi (default: the best)";
   if (threads == nullptr)
     arguments.add_number("--threads N", options.threads, meaning, whole_number(1, most_threads));
   else
     arguments.add_number("--threads N,...", *threads, meaning + std::string(several),
                          whole_numbers(1, most_threads));
-  of_backends.push_back(
+  return {
       arguments.add_number("--ranks N", options.ranks,
                            "Processes of the backend mpi, of --threads threads each; mpi:N sets it for one "
                            "row (default: as many as --threads, of one thread each)",
-                           whole_number(1, most_ranks)));
-  of_backends.push_back(
+                           whole_number(1, most_ranks)),
       arguments.add("--launcher COMMAND", options.launcher,
                     "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)",
                     [](const std::string& text) -> std::string {
                       if (text.find_first_not_of(" \t\r\n") != std::string::npos) return "";
                       return fmt::format("\"{}\" names no program", printable(text));
-                    }));
-  of_backends.push_back(
+                    }),
       arguments.add("--device N|NAME", options.device,
-                    "OpenCL device: its number or a part of its name or platform (see mssim list devices)"));
-  of_backends.push_back(arguments.add_choice<DeviceMemory>(
-      "--memory", options.memory,
-      {{name_of(DeviceMemory::copy), DeviceMemory::copy},
-       {name_of(DeviceMemory::shared), DeviceMemory::shared}},
-      "How host and OpenCL device exchange data: shared (without copying if the device can) or copy "
-      "(default: shared)"));
-  of_backends.push_back(arguments.add_choice<Roots>(
-      "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
-      "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and a "
-      "Newton step) or exact (bitwise identical on every processor with fused multiply-adds) (default: "
-      "fast)"));
-  const std::string of_sets =
-      "Instruction set of the vector code of openmp, gather-vectors and mpi (default: the best)";
-  of_backends.push_back(
+                    "OpenCL device: its number or a part of its name or platform (see mssim list devices)"),
+      arguments.add_choice<DeviceMemory>(
+          "--memory", options.memory,
+          {{name_of(DeviceMemory::copy), DeviceMemory::copy},
+           {name_of(DeviceMemory::shared), DeviceMemory::shared}},
+          "How host and OpenCL device exchange data: shared (without copying if the device can) or copy "
+          "(default: shared)"),
+      arguments.add_choice<Roots>(
+          "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
+          "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and "
+          "a Newton step) or exact (bitwise identical on every processor with fused multiply-adds) "
+          "(default: fast)"),
       (sets == nullptr
            ? arguments.add("--instruction-set NAME", options.instruction_set, of_sets)
            : arguments.add_list("--instruction-set NAME,...", *sets, of_sets + std::string(several)))
-          .offers([] { return mapped<std::string>(instruction_sets(), instruction_set_name); }));
-  return of_backends;
+          .offers([] { return mapped<std::string>(instruction_sets(), instruction_set_name); })};
 }
 
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
