@@ -88,10 +88,6 @@ Provenance run_provenance(int threads, bool uses_device) {
   return provenance;
 }
 
-std::string command_line(const Provenance& provenance) {
-  return join(mapped<std::string>(provenance.command_line, shell_word), " ");
-}
-
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const BackendInfo& info,
                          const Integrator& integrator, const Provenance& provenance) {
   TraceHeader header;

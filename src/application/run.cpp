@@ -92,7 +92,7 @@ namespace {
 /// Headers of the files, and options of the pictures.
 struct FileHeaders {
   TraceHeader trace;
-  std::string command_line;  ///< of the energy curve
+  std::string command_line;  ///< in one line, quoted for a shell if necessary; for the energy curve
   PictureOptions pictures;
 };
 
@@ -310,8 +310,8 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
   Provenance provenance = run_provenance(backend.threads(), info.uses_device);
   add_programs(provenance, {&info}, complete(options.execution));
   add_scene(provenance, scene.spec.name, scene.spec.source);
-  FileHeaders headers{trace_header(scene, backend, info, integrator, provenance), command_line(provenance),
-                      options.pictures};
+  FileHeaders headers{trace_header(scene, backend, info, integrator, provenance),
+                      join(mapped<std::string>(provenance.command_line, shell_word), " "), options.pictures};
   headers.pictures.threads = complete(options.execution).threads;
   headers.trace.with_losses = options.losses;
   return headers;
