@@ -116,14 +116,11 @@ class RunRecorder {
                         headers.pictures);
   }
 
-  /// Whether anything is written.
-  bool wanted() const { return trace_ || curve_ || pictures_; }
-
   /// Throws WriteError if the previous frame could not be written.
   void record(const Frame& frame) {
     wait_for_frame();
     energies_.push_back({frame.time_s, frame.energy});
-    if (!wanted()) return;
+    if (!trace_ && !curve_ && !pictures_) return;
     const OnAllProcessCpus unbound;  // not only on the CPU of this thread
     writing_ = std::async(as_the_system_can, [this, frame, state = frame.state] {
       write({frame.step, frame.time_s, state, frame.energy, frame.losses});
@@ -368,7 +365,7 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
           progress.update(activity, 0);  // the time of settling is unknown
           return true;
         },
-        recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
+        options.files.any() ? DressingFrames{frames, record} : DressingFrames{});
     seconds = watch.seconds();
   });
   tell_note(options, *backend);
