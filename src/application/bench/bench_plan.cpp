@@ -109,11 +109,6 @@ std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const C
   return all;
 }
 
-/// A user who names backends or threads gets those and no others.
-bool has_variants(const BenchOptions& options) {
-  return options.backends.empty() && options.execution.threads == 0;
-}
-
 /// The requested instruction sets, the best first.
 std::vector<std::string_view> sets_of(const BenchOptions& options) {
   std::vector<std::string_view> asked, sets;
@@ -133,8 +128,6 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   settings.backends =
       choice.with_lesser_sets(backends_of(options, comparison, settings.execution, choice), sets);
   settings.backends = choice.with_fewer_threads(settings.backends, options.threads, settings.execution);
-  if (has_variants(options))
-    settings.backends = choice.with_variants(settings.backends, variants_of_suite(options.suite));
   require_use_of_options(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.windows = options.windows;
@@ -151,20 +144,14 @@ void require_folder_where_needed(const BenchOutput& output) {
                      " needs the folder of an earlier run: give --out too");
 }
 
-/// The settings with the backends that the suite has for this scene.
+/// The settings with the backends that the suite has for this scene. A user who names backends or threads
+/// gets those and no variants.
 BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
-                                const BenchOptions& options, const std::string& scene) {
+                                const BenchOptions& options, const std::string& scene,
+                                BackendChoice& choice) {
   BenchSettings settings = all;
-  if (has_variants(options)) {
-    const std::vector<std::string_view> any = variants_of_suite(options.suite),
-                                        its = variants_of_suite(options.suite, scene);
-    const auto has = [](const std::vector<std::string_view>& names, std::string_view name) {
-      return std::ranges::find(names, name) != names.end();
-    };
-    std::erase_if(settings.backends, [&](const BackendInfo* backend) {
-      return has(any, backend->name) && !has(its, backend->name);
-    });
-  }
+  if (options.backends.empty() && options.execution.threads == 0)
+    settings.backends = choice.with_variants(settings.backends, variants_of_suite(options.suite, scene));
   if (comparison.is_compared)
     std::erase_if(settings.backends,
                   [&](const BackendInfo* backend) { return !comparison.is_compared(scene, backend->name); });
@@ -239,7 +226,7 @@ BenchPlan plan_of(const BenchOptions& options) {
   }
   std::vector<SceneSpec> timed = mapped<SceneSpec>(timed_ones, find_scene);
   std::erase_if(timed, [&](const SceneSpec& spec) {
-    return settings_of_scene(plan.settings, comparison, options, spec.name).backends.empty();
+    return settings_of_scene(plan.settings, comparison, options, spec.name, plan.backends).backends.empty();
   });
   if (options.output.trace) std::ranges::for_each(timed, require_traceable);
   require_distinct_names(timed);
@@ -257,7 +244,8 @@ BenchPlan plan_of(const BenchOptions& options) {
   if (!options.verified.empty()) plan.settings.verified = verified_rows(options.verified, plan.provenance);
   for (SceneSpec& spec : timed) {
     SceneParts parts = parts_of(spec);
-    const BenchSettings settings = settings_of_scene(plan.settings, comparison, options, spec.name);
+    const BenchSettings settings =
+        settings_of_scene(plan.settings, comparison, options, spec.name, plan.backends);
     if (settings.verified) require_rows(*settings.verified, spec.name, settings, options.verified);
     plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
     if (options.output.trace && !plan.timed.back().windows.empty())

@@ -204,11 +204,10 @@ std::vector<std::string> scenes_of_suite(std::string_view name, bool timed) {
   return scenes;
 }
 
-std::vector<std::string_view> variants_of_suite(std::string_view name,
-                                                std::optional<std::string_view> scene) {
+std::vector<std::string_view> variants_of_suite(std::string_view name, std::string_view scene) {
   std::vector<std::string_view> variants;
   for (const Suite& suite : table)
-    if (belongs(suite, name) && (!scene || std::ranges::find(suite.scenes, *scene) != suite.scenes.end()))
+    if (belongs(suite, name) && std::ranges::find(suite.scenes, scene) != suite.scenes.end())
       for (const std::string_view variant : suite.variants) add_once(variants, variant);
   return variants;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,10 +50,8 @@ PaperLegend paper_legend();
 /// others.
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
 
-/// The variants, each once, of the suite `name`, or of all suites in "tables"; given a scene, of those that
-/// have it.
-std::vector<std::string_view> variants_of_suite(std::string_view name,
-                                                std::optional<std::string_view> scene = std::nullopt);
+/// The variants, each once, of the suite `name`, or of all suites in "tables", that have the scene.
+std::vector<std::string_view> variants_of_suite(std::string_view name, std::string_view scene);
 
 /// The comparison of the suite `name`. For "tables" and an empty name, it is that of `bench`'s default
 /// backends.
