@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -159,9 +158,8 @@ void require_within_limit(int threads, std::string_view asked = {}) {
 
 const Integrator& require_integrator(const std::string& name) {
   if (const Integrator* integrator = find_integrator(name)) return *integrator;
-  std::vector<std::string_view> names;
-  for (const Integrator* integrator : all_integrators) names.push_back(integrator->name);
-  throw UsageError(unknown_name("integrator", name, names));
+  throw UsageError(
+      unknown_name("integrator", name, mapped<std::string_view>(all_integrators, &Integrator::name)));
 }
 
 std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>& asked,
@@ -178,9 +176,8 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
 
 std::string_view require_instruction_set(const std::string& name) {
   if (const auto set = instruction_set_named(name)) return *set;
-  std::vector<std::string_view> names;
-  for (const std::string_view set : instruction_sets()) names.push_back(instruction_set_name(set));
-  throw UsageError(unknown_name("instruction set", name, names));
+  throw UsageError(unknown_name("instruction set", name,
+                                mapped<std::string_view>(instruction_sets(), instruction_set_name)));
 }
 
 std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
@@ -215,14 +212,11 @@ std::string row_name(const std::string& asked) {
 }
 
 std::vector<const BackendInfo*> table_backends() {
-  std::vector<const BackendInfo*> rows;
-  for (const BackendInfo& backend : backends()) rows.push_back(&backend);
-  return rows;
+  return mapped<const BackendInfo*>(backends(), [](const BackendInfo& row) { return &row; });
 }
 
 std::vector<const BackendInfo*> with_garment_backends(std::vector<const BackendInfo*> rows) {
-  for (const BackendInfo& backend : garment_backends())
-    if (std::ranges::find(rows, &backend) == rows.end()) rows.push_back(&backend);
+  for (const BackendInfo& backend : garment_backends()) add_once(rows, &backend);
   return rows;
 }
 
@@ -262,7 +256,8 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
 }
 
 const BackendInfo& BackendChoice::require(const std::string& name) {
-  if (is_path(name)) return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
+  if (is_path(name))
+    return add(name.ends_with(description_extension) ? described_by(name) : program_at(name));
   const std::optional<fs::path> file = description_of(name);
   if (!file)
     if (const BackendInfo* row = variant(name)) {
@@ -271,7 +266,7 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
     }
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;
-  if (file) return add_file(*file);
+  if (file) return add(described_by(*file));
   std::vector<std::string> broken;  // not what was asked for
   std::vector<std::string_view> names;
   for (const BackendInfo* info : known_) names.push_back(info->name);
@@ -382,8 +377,8 @@ std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std
   for (const std::string& name : names) asked.push_back(&require(name));
   for (const BackendInfo* row : known_)
     if (std::ranges::find(asked, row) != asked.end()) rows.push_back(row);
-  for (const BackendInfo* row : asked)  // not own(): NAME:each:2 has made NAME:each on the way
-    if (std::ranges::find(rows, row) == rows.end()) rows.push_back(row);
+  // Not own(): NAME:each:2 has made NAME:each on the way.
+  for (const BackendInfo* row : asked) add_once(rows, row);
   return rows;
 }
 
@@ -407,17 +402,14 @@ std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs
       infos.push_back(&require(file.stem().string()));
     } catch (const Error& error) {
       if (broken == nullptr) throw;
-      // Two of one name have one reason.
-      if (std::ranges::find(*broken, error.what()) == broken->end()) broken->emplace_back(error.what());
+      add_once(*broken, error.what());  // two of one name have one reason
     }
   }
   return infos;
 }
 
 std::vector<const BackendInfo*> BackendChoice::own() const {
-  std::vector<const BackendInfo*> infos;
-  for (const std::unique_ptr<Row>& row : rows_) infos.push_back(&row->info);
-  return infos;
+  return mapped<const BackendInfo*>(rows_, [](const std::unique_ptr<Row>& row) { return &row->info; });
 }
 
 std::optional<fs::path> BackendChoice::description_of(const std::string& name) const {
@@ -441,8 +433,6 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
                      shown(found[0]), shown(found[1]));
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
-
-const BackendInfo& BackendChoice::add_file(const fs::path& file) { return add(described_by(file)); }
 
 const BackendInfo& BackendChoice::add(BackendProgram program) {
   if (escaped(program.name) != program.name)

@@ -52,6 +52,15 @@ struct OwnBackendOptions {
   std::optional<double> limit_s;     ///< for every answer; none: as described, or 120 s
 };
 
+/// What a user asks for: scenes, and the backends and integrators with which each is stepped.
+struct AskedCombinations {
+  std::vector<std::string> scenes;
+  std::vector<std::string> backends;
+  OwnBackendOptions own_backends;
+  std::vector<std::string> integrators;
+  ExecutionOptions execution;
+};
+
 /// Whether the backend of that name is a program that comes with mssim.
 bool is_shipped(const std::string& name);
 
@@ -133,7 +142,6 @@ class BackendChoice {
   std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders,
                                                std::vector<std::string>* broken);
   const BackendInfo& add(BackendProgram program);
-  const BackendInfo& add_file(const std::filesystem::path& file);
   /// The row for a name with a colon; null if there is none. Throws UsageError.
   const BackendInfo* variant(const std::string& name);
   const BackendInfo& add_variant(const BackendInfo& info, std::string_view how);

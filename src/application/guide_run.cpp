@@ -1,12 +1,10 @@
 #include "application/guide_run.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <system_error>
 
 #include "application/console.h"
@@ -120,37 +118,27 @@ void print(const SceneGuide& guide) {
   for (const std::string& sentence : about_trusted_state(guide.trusted)) std::cout << sentence << '\n';
 }
 
-constexpr std::array<std::string_view, 1> every_integrator{"all"};
-
 /// A scene gets so much even where those before it have overrun the whole, s.
 constexpr double least_scene_s = 1;
 
 /// What can be known before anything is measured.
 struct GuidePlan {
   std::vector<SceneSpec> scenes;
-  std::vector<const BackendInfo*> backends;
-  std::vector<const Integrator*> integrators;
-  ExecutionOptions execution;
-  double seconds = 0;  ///< wall time for all scenes
+  GuideRequest request;  ///< what is the same for all scenes
+  double seconds = 0;    ///< wall time for all scenes
 };
 
 /// `seconds`: wall time for this scene.
-SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::size_t number, double seconds,
-                    ProgressLine& progress, const StopRequest& stop) {
+SceneGuide measured(const GuidePlan& plan, std::size_t number, double seconds, ProgressLine& progress,
+                    const StopRequest& stop) {
   const SceneSpec& spec = plan.scenes[number];
   const PreparedScene scene = prepare_scene(spec);
   warn_of_note(scene);
-  GuideRequest request{.scene = spec.name,
-                       .system = &scene.system,
-                       .backends = plan.backends,
-                       .integrators = plan.integrators,
-                       .execution = plan.execution,
-                       .wish = options.wish,
-                       .seconds = seconds,
-                       .longest_horizon_s = options.horizon_s,
-                       .make_cloth = {}};
-  request.execution.scene = spec.name;
+  GuideRequest request = plan.request;
+  request.scene = request.execution.scene = spec.name;
   request.execution.scene_file = spec.file;
+  request.system = &scene.system;
+  request.seconds = seconds;
   // Once for every family.
   const auto earlier = plan.scenes.begin() + static_cast<std::ptrdiff_t>(number);
   if (std::none_of(plan.scenes.begin(), earlier, [&](const SceneSpec& s) { return same_family(s, spec); }))
@@ -207,8 +195,8 @@ void tell(const GuidePlan& plan) {
   Table table;
   for (const SceneSpec& spec : plan.scenes)
     table.add({{"scene", spec.name},
-               {"integrators", plan.integrators.size()},
-               {"backends", plan.backends.size()},
+               {"integrators", plan.request.integrators.size()},
+               {"backends", plan.request.backends.size()},
                {"expected_s", plan.seconds / static_cast<double>(plan.scenes.size())}});
   std::cout << to_text(table) << "about " << three_digits(plan.seconds) << " s in all\n";
 }
@@ -224,22 +212,25 @@ std::vector<const BackendInfo*> guide_backends() {
 
 int run_guide(const GuideOptions& options) {
   GuidePlan plan;
+  GuideRequest& request = plan.request;
+  request.wish = options.wish;
+  request.longest_horizon_s = options.horizon_s;
   BackendChoice choice(table_backends(), options.own_backends, options.scenes);
-  plan.backends = options.backends.empty() ? guide_backends() : choice.require_all(options.backends);
-  require_use_of_options(options.execution, plan.backends);
-  plan.integrators = chosen_integrators(options.integrators, every_integrator);
+  request.backends = options.backends.empty() ? guide_backends() : choice.require_all(options.backends);
+  require_use_of_options(options.execution, request.backends);
+  request.integrators = chosen_integrators(options.integrators, guide_integrators);
   plan.scenes = asked_scenes(options);
-  plan.execution = complete(options.execution);
+  request.execution = complete(options.execution);
   plan.seconds = options.time_budget_s.value_or(usual_guide_s * static_cast<double>(plan.scenes.size()));
   if (options.dry_run) {
     tell(plan);
     return exit_ok;
   }
-  require_available(options, plan.backends, plan.execution);
-  const bool uses_device = std::ranges::any_of(plan.backends, &BackendInfo::uses_device);
-  Provenance provenance = run_provenance(plan.execution.threads, uses_device);
-  add_programs(provenance, choice.own(), plan.execution);
-  provenance.device_memory = name_of(plan.execution.memory);
+  require_available(options, request.backends, request.execution);
+  const bool uses_device = std::ranges::any_of(request.backends, &BackendInfo::uses_device);
+  Provenance provenance = run_provenance(request.execution.threads, uses_device);
+  add_programs(provenance, choice.own(), request.execution);
+  provenance.device_memory = name_of(request.execution.memory);
   for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
   const std::unique_ptr<ResultFolder> folder = result_folder(options, provenance);
   for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
@@ -257,7 +248,7 @@ int run_guide(const GuideOptions& options) {
       const double share =
           (plan.seconds - watch.seconds()) / static_cast<double>(plan.scenes.size() - number);
       try {
-        guides.push_back(measured(plan, options, number, std::max(share, least_scene_s), progress, stop));
+        guides.push_back(measured(plan, number, std::max(share, least_scene_s), progress, stop));
       } catch (const Interrupted& interrupted) {
         // A wait for a program; the guides of earlier scenes are kept.
         note_ending_signal(interrupted.signal);

@@ -88,13 +88,6 @@ Provenance run_provenance(int threads, bool uses_device) {
   return provenance;
 }
 
-std::string command_line(const Provenance& provenance) {
-  std::string text;
-  for (const std::string& argument : provenance.command_line)
-    text.append(text.empty() ? "" : " ").append(shell_word(argument));
-  return text;
-}
-
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const BackendInfo& info,
                          const Integrator& integrator, const Provenance& provenance) {
   TraceHeader header;

@@ -34,9 +34,6 @@ void remember_arguments(int argc, char** argv);
 /// queried. Scenes are added with add_scene.
 Provenance run_provenance(int threads, bool uses_device);
 
-/// The command line of the run in one line, quoted for a shell if necessary.
-std::string command_line(const Provenance& provenance);
-
 /// The header of a trace of `scene`, stepped by `backend`, which is of the row `info`, in the run of that
 /// provenance.
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const BackendInfo& info,

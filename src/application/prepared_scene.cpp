@@ -1,13 +1,11 @@
 #include "application/prepared_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <iostream>
 #include <set>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "bench/verification/verification.h"
 #include "garment/contact/solid.h"

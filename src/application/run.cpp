@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <iostream>
 #include <limits>
+#include <vector>
 
+#include "application/console.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "output/tables/table.h"
+#include "output/traces/energy_curve.h"
+#include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "platform/process.h"
@@ -20,7 +25,9 @@
 #include "text/text.h"
 
 namespace mssim {
+namespace {
 
+/// Number of steps of a plan. Throws UsageError like simulate().
 std::int64_t count_steps(const SimulationPlan& plan) {
   // A frame's steps are counted in an int, and beyond 2^53 steps times are not exact.
   constexpr double most_steps = std::numeric_limits<int>::max();
@@ -34,6 +41,7 @@ std::int64_t count_steps(const SimulationPlan& plan) {
   return static_cast<std::int64_t>(std::llround(exact_steps));
 }
 
+/// The frames of a simulation with steps of `dt_s`. Throws UsageError for more than one frame per step.
 FrameGrid frame_grid(double frames_per_second, double dt_s) {
   const double steps_per_frame = 1 / (frames_per_second * dt_s);
   if (!(steps_per_frame >= 1))
@@ -42,6 +50,8 @@ FrameGrid frame_grid(double frames_per_second, double dt_s) {
         frames_per_second, dt_s, dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s));
   return {steps_per_frame};
 }
+
+}  // namespace
 
 void simulate(Backend& backend, const System& system, const Integrator& integrator,
               const SimulationPlan& plan, const SimulationWatch& watch) {
@@ -77,87 +87,118 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
   }
 }
 
-RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers)
-    : temporary_(files.temporary) {
-  if (!files.energy_curve.empty()) {
-    std::string comment = headers.command_line;
-    if (const std::string_view work = energies_leave_out(scene.system); !work.empty())
-      comment.append("\nleft out: ").append(work);
-    curve_.emplace(files.energy_curve, comment);
-  }
-  const Surface body = scene.body ? scene.body->surface : Surface{};
-  if (!files.trace.empty()) trace_.emplace(files.trace, scene.system, headers.trace, body);
-  if (!files.pictures.empty())
-    pictures_.emplace(files.pictures, trace_content_of(scene.system, headers.trace, body), headers.pictures);
-}
-
-void RunRecorder::record(const Frame& frame) {
-  wait_for_frame();
-  energies_.push_back({frame.time_s, frame.energy});
-  if (!wanted()) return;
-  const OnAllProcessCpus unbound;  // not only on the CPU of this thread
-  writing_ = std::async(as_the_system_can, [this, frame, state = frame.state] {
-    write({frame.step, frame.time_s, state, frame.energy, frame.losses});
-  });
-}
-
-void RunRecorder::write(const Frame& frame) {
-  // The curve comes first, so that it has the energies of every frame of the trace, whichever of the two
-  // fails.
-  if (curve_) curve_->append({frame.time_s, frame.energy});
-  if (trace_) trace_->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
-  if (pictures_) pictures_->draw(frame.state.position);
-}
-
-void RunRecorder::wait_for_frame() {
-  if (writing_.valid()) writing_.get();
-}
-
-void RunRecorder::finish_after(const std::function<void()>& simulation) {
-  try {
-    try {
-      simulation();
-    } catch (const NotVerified&) {
-      finish();
-      throw;
-    } catch (const Interrupted&) {
-      finish();
-      throw;
-    } catch (const BackendFailure&) {
-      finish();
-      throw;
-    }
-    finish();
-  } catch (const WriteError& error) {
-    throw WriteError(error.what() + kept());
-  }
-}
-
-void RunRecorder::finish() {
-  if (energies_.empty()) return;  // files without a frame are removed
-  wait_for_frame();
-  if (curve_) curve_->close();
-  if (trace_) trace_->close();
-  if (temporary_) return;
-  const auto tell = [](const std::string& what) { std::cerr << "mssim: wrote " << what << '\n'; };
-  if (curve_) tell(printable(curve_->name().string(), 1000));
-  if (trace_)
-    tell(fmt::format("{} and {}", printable(trace_->name().string(), 1000),
-                     printable(xdmf_of(trace_->name()).string(), 1000)));
-  if (pictures_)
-    tell(fmt::format("{} into {}", pluralize(pictures_->pictures(), "picture"),
-                     printable(pictures_->name().string(), 1000)));
-}
-
-std::string RunRecorder::kept() {
-  std::string text;
-  if (temporary_) return text;
-  if (trace_) text += kept_in_part(trace_->name(), "frames", trace_->give_up());
-  if (curve_) text += kept_in_part(curve_->name(), "energies", curve_->give_up());
-  return text;
-}
-
 namespace {
+
+/// Headers of the files, and options of the pictures.
+struct FileHeaders {
+  TraceHeader trace;
+  std::string command_line;  ///< in one line, quoted for a shell if necessary; for the energy curve
+  PictureOptions pictures;
+};
+
+/// Writes the frames of a run into its files while the simulation continues, because compressing a large
+/// frame takes as long as many steps. Also keeps their energies.
+class RunRecorder {
+ public:
+  /// Opens the files. Throws WriteError, also if another process writes one of them.
+  RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers)
+      : temporary_(files.temporary) {
+    if (!files.energy_curve.empty()) {
+      std::string comment = headers.command_line;
+      if (const std::string_view work = energies_leave_out(scene.system); !work.empty())
+        comment.append("\nleft out: ").append(work);
+      curve_.emplace(files.energy_curve, comment);
+    }
+    const Surface body = scene.body ? scene.body->surface : Surface{};
+    if (!files.trace.empty()) trace_.emplace(files.trace, scene.system, headers.trace, body);
+    if (!files.pictures.empty())
+      pictures_.emplace(files.pictures, trace_content_of(scene.system, headers.trace, body),
+                        headers.pictures);
+  }
+
+  /// Throws WriteError if the previous frame could not be written.
+  void record(const Frame& frame) {
+    wait_for_frame();
+    energies_.push_back({frame.time_s, frame.energy});
+    if (!trace_ && !curve_ && !pictures_) return;
+    const OnAllProcessCpus unbound;  // not only on the CPU of this thread
+    writing_ = std::async(as_the_system_can, [this, frame, state = frame.state] {
+      write({frame.step, frame.time_s, state, frame.energy, frame.losses});
+    });
+  }
+
+  const std::vector<EnergySample>& energies() const { return energies_; }
+
+  /// Runs `simulation`, which records frames, and finishes the files. It finishes them even if the simulation
+  /// blows up, is interrupted or its program fails, because the earlier frames are good. Prints the names of
+  /// the written files to stderr. If a file cannot be written, the files keep their temporary names and all
+  /// frames recorded before, and the WriteError says so. Rethrows the exceptions of `simulation`.
+  void finish_after(const std::function<void()>& simulation) {
+    try {
+      try {
+        simulation();
+      } catch (const NotVerified&) {
+        finish();
+        throw;
+      } catch (const Interrupted&) {
+        finish();
+        throw;
+      } catch (const BackendFailure&) {
+        finish();
+        throw;
+      }
+      finish();
+    } catch (const WriteError& error) {
+      throw WriteError(error.what() + kept());
+    }
+  }
+
+ private:
+  void write(const Frame& frame) {
+    // The curve comes first, so that it has the energies of every frame of the trace, whichever of the two
+    // fails.
+    if (curve_) curve_->append({frame.time_s, frame.energy});
+    if (trace_) trace_->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+    if (pictures_) pictures_->draw(frame.state.position);
+  }
+
+  /// Waits until the last frame is written. Throws WriteError on failure.
+  void wait_for_frame() {
+    if (writing_.valid()) writing_.get();
+  }
+
+  void finish() {
+    if (energies_.empty()) return;  // files without a frame are removed
+    wait_for_frame();
+    if (curve_) curve_->close();
+    if (trace_) trace_->close();
+    if (temporary_) return;
+    const auto tell = [](const std::string& what) { std::cerr << "mssim: wrote " << what << '\n'; };
+    if (curve_) tell(printable(curve_->name().string(), 1000));
+    if (trace_)
+      tell(fmt::format("{} and {}", printable(trace_->name().string(), 1000),
+                       printable(xdmf_of(trace_->name()).string(), 1000)));
+    if (pictures_)
+      tell(fmt::format("{} into {}", pluralize(pictures_->pictures(), "picture"),
+                       printable(pictures_->name().string(), 1000)));
+  }
+
+  /// The content of files that did not get their names, as the end of a message.
+  std::string kept() {
+    std::string text;
+    if (temporary_) return text;
+    if (trace_) text += kept_in_part(trace_->name(), "frames", trace_->give_up());
+    if (curve_) text += kept_in_part(curve_->name(), "energies", curve_->give_up());
+    return text;
+  }
+
+  bool temporary_;
+  std::optional<H5mdTrace> trace_;
+  std::optional<EnergyCurve> curve_;
+  std::optional<PictureFolder> pictures_;
+  std::vector<EnergySample> energies_;
+  std::future<void> writing_;  ///< of a frame; nothing else accesses the files meanwhile
+};
 
 /// The files that a run reads: those of the scene, and the program of the backend, its description and the
 /// files of its command.
@@ -206,8 +247,7 @@ void require_precision(const RunOptions& options, const BackendInfo& info, const
         names_of(steps, "or"), options.backend);
 }
 
-/// Makes the chosen backend with make(row, system, integrator, dt_s, execution). Throws Unsupported and
-/// Unavailable with the backend's name.
+/// Makes the chosen backend with make(execution). Throws Unsupported and Unavailable with the backend's name.
 template <class Make>
 auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                     const Integrator& integrator, const Make& make) {
@@ -217,7 +257,7 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   execution.scene_file = scene.spec.file;
   auto backend = [&] {
     try {
-      return make(info, scene.system, integrator, scene.dt_s, execution);
+      return make(execution);
     } catch (const Unsupported& reason) {
       throw Unsupported("{}: {}", options.backend, reason.what());
     } catch (const Unavailable& reason) {
@@ -267,8 +307,8 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
   Provenance provenance = run_provenance(backend.threads(), info.uses_device);
   add_programs(provenance, {&info}, complete(options.execution));
   add_scene(provenance, scene.spec.name, scene.spec.source);
-  FileHeaders headers{trace_header(scene, backend, info, integrator, provenance), command_line(provenance),
-                      options.pictures};
+  FileHeaders headers{trace_header(scene, backend, info, integrator, provenance),
+                      join(mapped<std::string>(provenance.command_line, shell_word), " "), options.pictures};
   headers.pictures.threads = complete(options.execution).threads;
   headers.trace.with_losses = options.losses;
   return headers;
@@ -281,12 +321,10 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
 int run_garment(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                 const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
-      chosen_backend(options, info, scene, integrator,
-                     [](const BackendInfo& row, const System& system, const Integrator& method, double dt_s,
-                        const ExecutionOptions& execution) {
-                       if (row.in_double) return make_reference_dressing(system, method, dt_s);
-                       return make_dressing_backend(row, system, method, dt_s, execution);
-                     });
+      chosen_backend(options, info, scene, integrator, [&](const ExecutionOptions& execution) {
+        if (info.in_double) return make_reference_dressing(scene.system, integrator, scene.dt_s);
+        return make_dressing_backend(info, scene.system, integrator, scene.dt_s, execution);
+      });
   if (options.losses)
     throw UsageError(
         "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
@@ -327,7 +365,7 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
           progress.update(activity, 0);  // the time of settling is unknown
           return true;
         },
-        recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
+        options.files.any() ? DressingFrames{frames, record} : DressingFrames{});
     seconds = watch.seconds();
   });
   tell_note(options, *backend);
@@ -356,12 +394,11 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
 int run_simulation(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                    const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
-      chosen_backend(options, info, scene, integrator,
-                     [](const BackendInfo& row, const System& system, const Integrator& method, double dt_s,
-                        const ExecutionOptions& execution) {
-                       if (row.in_double && is_implicit(method)) return make_reference(system, method, dt_s);
-                       return make_backend(row, system, method, dt_s, execution);
-                     });
+      chosen_backend(options, info, scene, integrator, [&](const ExecutionOptions& execution) {
+        if (info.in_double && is_implicit(integrator))
+          return make_reference(scene.system, integrator, scene.dt_s);
+        return make_backend(info, scene.system, integrator, scene.dt_s, execution);
+      });
   const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
   StopRequest stop;  // as in run_garment
   RunRecorder recorder(options.files, scene, headers);

@@ -2,22 +2,17 @@
 
 #include <cstdint>
 #include <functional>
-#include <future>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "application/choices.h"
-#include "application/console.h"
 #include "application/outputs.h"
 #include "application/prepared_scene.h"
 #include "backends/interface/backend.h"
 #include "bench/verification/verification.h"
 #include "model/system.h"
 #include "output/pictures/painter.h"
-#include "output/traces/energy_curve.h"
-#include "output/traces/h5md_trace.h"
 
 namespace mssim {
 
@@ -56,12 +51,6 @@ struct SimulationWatch {
 void simulate(Backend& backend, const System& system, const Integrator& integrator,
               const SimulationPlan& plan, const SimulationWatch& watch);
 
-/// Number of steps of a plan. Throws UsageError like simulate().
-std::int64_t count_steps(const SimulationPlan& plan);
-
-/// The frames of a simulation with steps of `dt_s`. Throws UsageError for more than one frame per step.
-FrameGrid frame_grid(double frames_per_second, double dt_s);
-
 /// Files that a run writes from its frames; an empty name means none.
 struct RunFiles {
   std::string trace;
@@ -72,48 +61,6 @@ struct RunFiles {
   std::optional<NamedFile> later;
 
   bool any() const { return !trace.empty() || !energy_curve.empty() || !pictures.empty(); }
-};
-
-/// Headers of the files, and options of the pictures.
-struct FileHeaders {
-  TraceHeader trace;
-  std::string command_line;  ///< of the energy curve
-  PictureOptions pictures;
-};
-
-/// Writes the frames of a run into its files while the simulation continues, because compressing a large
-/// frame takes as long as many steps. Also keeps their energies.
-class RunRecorder {
- public:
-  /// Opens the files. Throws WriteError, also if another process writes one of them.
-  RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers);
-
-  /// Whether anything is written.
-  bool wanted() const { return trace_ || curve_ || pictures_; }
-  /// Throws WriteError if the previous frame could not be written.
-  void record(const Frame& frame);
-  const std::vector<EnergySample>& energies() const { return energies_; }
-
-  /// Runs `simulation`, which records frames, and finishes the files. It finishes them even if the simulation
-  /// blows up, is interrupted or its program fails, because the earlier frames are good. Prints the names of
-  /// the written files to stderr. If a file cannot be written, the files keep their temporary names and all
-  /// frames recorded before, and the WriteError says so. Rethrows the exceptions of `simulation`.
-  void finish_after(const std::function<void()>& simulation);
-
- private:
-  void write(const Frame& frame);
-  /// Waits until the last frame is written. Throws WriteError on failure.
-  void wait_for_frame();
-  void finish();
-  /// The content of files that did not get their names, as the end of a message.
-  std::string kept();
-
-  bool temporary_;
-  std::optional<H5mdTrace> trace_;
-  std::optional<EnergyCurve> curve_;
-  std::optional<PictureFolder> pictures_;
-  std::vector<EnergySample> energies_;
-  std::future<void> writing_;  ///< of a frame; nothing else accesses the files meanwhile
 };
 
 /// Default simulated time, s.

@@ -17,7 +17,6 @@
 #include "application/prepared_scene.h"
 #include "commands/command.h"
 #include "commands/options.h"
-#include "integrators/all_integrators.h"
 #include "mesh/meshing.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
@@ -29,24 +28,16 @@
 namespace mssim {
 namespace {
 
-/// How a bench prints its rows; `github` is github_table().
-enum class SummaryFormat : std::uint8_t { table, csv, json, github };
+/// How a bench prints its rows: as a listing, or without a format as github_table().
+using SummaryFormat = std::optional<ListingFormat>;
 
 /// The requested bench, and how to print it.
 struct BenchRequest : BenchOptions {
-  SummaryFormat format = SummaryFormat::table;
+  SummaryFormat format = ListingFormat::table;
 };
 
-/// The format of a listing of these rows; `github` has none.
-ListingFormat listing_format(SummaryFormat format) {
-  return format == SummaryFormat::csv    ? ListingFormat::csv
-         : format == SummaryFormat::json ? ListingFormat::json
-                                         : ListingFormat::table;
-}
-
 std::string text_of(const Table& table, SummaryFormat format) {
-  if (table.rows.empty() || format == SummaryFormat::github) return "";
-  return to_text(table, listing_format(format));
+  return table.rows.empty() || !format ? "" : to_text(table, *format);
 }
 
 /// "opencl, hybrid ran on DEVICE", for each OpenCL device.
@@ -54,9 +45,7 @@ std::vector<std::string> devices_of(RowPointers rows) {
   std::map<std::string_view, std::vector<std::string>> backends;
   for (const ResultRow* row : rows) {
     const std::string_view device = opencl_device(*row);
-    if (device.empty()) continue;
-    std::vector<std::string>& names = backends[device];
-    if (std::ranges::find(names, row->backend) == names.end()) names.push_back(row->backend);
+    if (!device.empty()) add_once(backends[device], row->backend);
   }
   std::vector<std::string> sentences;
   for (const auto& [device, names] : backends)
@@ -82,29 +71,20 @@ std::string remarks(RowPointers rows, std::string_view table, const Provenance& 
 /// for a table without rows.
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
                     const Terminal& terminal) {
-  if (format == SummaryFormat::github) return to_text(github_table(rows), ListingFormat::json);
-  if (format == SummaryFormat::table) {
-    const std::vector<const ResultRow*> pointers = pointers_to(rows);
-    const std::string text = row_table(pointers, provenance, terminal);
-    return text + remarks(pointers, text, provenance, terminal.width);
-  }
-  return text_of(printed_table(pointers_to(rows)), format);
-}
-
-/// The rows of scenes whose structure is shown but which are not timed; empty in the format `github`, which
-/// is for times.
-std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
-  return text_of(structure_rows(rows), format);
+  if (!format) return to_text(github_table(rows), ListingFormat::json);
+  const std::vector<const ResultRow*> pointers = pointers_to(rows);
+  if (format != ListingFormat::table) return text_of(printed_table(pointers), format);
+  const std::string text = row_table(pointers, provenance, terminal);
+  return text + remarks(pointers, text, provenance, terminal.width);
 }
 
 /// Throws UsageError for a plan of two tables in a format of one, and for one without times in a format of
 /// times.
 void require_table_for(const BenchPlan& plan, SummaryFormat format, bool dry_run) {
-  if (plan.timed.empty() && (format == SummaryFormat::github || (dry_run && format != SummaryFormat::table)))
+  if (plan.timed.empty() && (!format || (dry_run && format != ListingFormat::table)))
     throw UsageError("{} is of scenes that are timed, and there are none: leave it out, or name a --scene",
                      dry_run ? "--format with --dry-run" : "--format github");
-  if (format != SummaryFormat::csv && format != SummaryFormat::json) return;
-  if (plan.described.empty() || plan.timed.empty()) return;
+  if (!format || format == ListingFormat::table || plan.described.empty() || plan.timed.empty()) return;
   throw UsageError(
       "--format csv and json are of one table, and sizes and times are two: ask for --suite {} alone, and "
       "for the others without it",
@@ -113,7 +93,7 @@ void require_table_for(const BenchPlan& plan, SummaryFormat format, bool dry_run
 
 /// Prints the plan: what would be measured, and the expected time.
 void tell_plan(const BenchPlan& plan, SummaryFormat format) {
-  if (format == SummaryFormat::github)
+  if (!format)
     throw UsageError("--format github is of times, which --dry-run does not measure: leave one of them out");
   const ExpectedTime all = total(times_of(plan.timed));
   const double rounds = expected_rounds(plan);
@@ -126,8 +106,8 @@ void tell_plan(const BenchPlan& plan, SummaryFormat format) {
                {"combinations", scene.backends.size() * plan.settings.integrators.size()},
                {"rounds", std::lround(rounds)},
                {"expected_s", seconds(scene.time)}});
-  if (format != SummaryFormat::table) {
-    std::cout << to_text(table, listing_format(format));
+  if (format != ListingFormat::table) {
+    std::cout << to_text(table, *format);
     return;
   }
   for (const UnbuiltScene& scene : plan.described)
@@ -137,19 +117,13 @@ void tell_plan(const BenchPlan& plan, SummaryFormat format) {
 }
 
 /// Printed before hours of measuring, not after.
-void warn_of_missing_speedups(const BenchPlan& plan) {
-  std::vector<std::string_view> backends;
-  if (!plan.timed.empty())
-    for (const BackendInfo* backend : plan.settings.backends) backends.push_back(backend->name);
+void tell_before(const BenchPlan& plan) {
+  if (plan.timed.empty()) return;
+  for (const std::string& noise : plan.provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  if (plan.uses_device) tell_of_opencl();
+  const auto backends = mapped<std::string_view>(plan.settings.backends, &BackendInfo::name);
   if (const std::string reason = reason_without_speedups(backends); !reason.empty())
     std::cerr << "mssim: " << reason << '\n';
-}
-
-void tell_before(const BenchPlan& plan) {
-  if (!plan.timed.empty())
-    for (const std::string& noise : plan.provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
-  if (plan.uses_device) tell_of_opencl();
-  warn_of_missing_speedups(plan);
 }
 
 /// The structure of a scene of bodies. Throws std::invalid_argument for a scene without tetrahedra.
@@ -177,13 +151,13 @@ std::vector<StructureRow> describe_scenes(std::vector<UnbuiltScene>& scenes) {
   return rows;
 }
 
-void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, bool stopped) {
-  if (plan.output.folder.empty()) return;
+void tell_where_results_are(const BenchPlan& plan, BenchResults& results, bool stopped) {
+  if (!results.folder()) return;
   const std::string folder = escaped(plan.output.folder);
   std::cerr << "mssim: ";
   if (!stopped)
     std::cerr << "results are in " << folder;
-  else if (results.rows().empty() && results.are_in_folder())
+  else if (results.rows().empty() && results.folder()->has_results())
     std::cerr << "nothing was measured yet; earlier results are still in " << folder;
   else if (results.rows().empty())
     std::cerr << "nothing was measured yet; --resume continues";
@@ -194,10 +168,8 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
 
 /// Row names of the requested backends, including those given as a path.
 std::vector<std::string> asked_backends(const BenchOptions& options, const BenchPlan& plan) {
-  std::vector<std::string> names;
-  if (!options.backends.empty())
-    for (const BackendInfo* backend : plan.settings.backends) names.emplace_back(backend->name);
-  return names;
+  if (options.backends.empty()) return {};
+  return mapped<std::string>(plan.settings.backends, &BackendInfo::name);
 }
 
 /// Runs the suite whose scenes are measured by guides, without samples of single steps.
@@ -213,14 +185,11 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(!options.verified.empty(), "--verified");
   refuse(options.threads.size() > 1, "a list of --threads");
   refuse(options.instruction_sets.size() > 1, "a list of --instruction-set");
-  refuse(options.format != SummaryFormat::table, "--format");
+  refuse(options.format != ListingFormat::table, "--format");
   GuideOptions guide;
+  static_cast<AskedCombinations&>(guide) = options;
   guide.scenes = scenes_of_suite(options.suite, true);
   guide.scenes.insert(guide.scenes.end(), options.scenes.begin(), options.scenes.end());
-  guide.backends = options.backends;
-  guide.own_backends = options.own_backends;
-  guide.integrators = options.integrators;
-  guide.execution = options.execution;
   guide.time_budget_s = options.time_budget_s;
   guide.folder = options.output.folder;
   guide.overwrite = options.output.overwrite;
@@ -243,22 +212,24 @@ int run(const BenchRequest& options) {
   std::vector<StructureRow> structure;
   if (!plan.described.empty()) {
     structure = describe_scenes(plan.described);
-    std::cout << summary(structure, format);
+    std::cout << text_of(structure_rows(structure), format);  // nothing in the format of times
   }
   int code = exit_ok;
   StopRequest stop;
   if (!plan.timed.empty()) {
     measure_scenes(plan, budget, stop, results);
-    if (!plan.described.empty() && format == SummaryFormat::table) std::cout << '\n';
+    if (!plan.described.empty() && format == ListingFormat::table) std::cout << '\n';
     std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
-    if (format == SummaryFormat::github && !results.rows().empty()) results.keep_for_github();
+    if (!format && results.folder() && !results.rows().empty())
+      results.folder()->write_for_github(results.rows());
     const BenchVerdict verdict =
         verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
     tell_first(verdict.reasons);
     code = verdict.exit_code;
   }
   // The first write replaces earlier results, so nothing is written before there is a row.
-  if (!structure.empty() && (plan.timed.empty() || !results.rows().empty())) results.keep(structure);
+  if (results.folder() && !structure.empty() && (plan.timed.empty() || !results.rows().empty()))
+    results.folder()->write(structure);
   tell_where_results_are(plan, results, stop.requested());
   stop.throw_if_requested();
   return code;
@@ -267,9 +238,7 @@ int run(const BenchRequest& options) {
 /// The default integrators, followed by those of suites with other defaults.
 std::string default_integrators() {
   const auto named = [](std::span<const std::string_view> integrators) {
-    return integrators.size() == all_integrators.size()
-               ? "all"
-               : join(std::vector<std::string>(integrators.begin(), integrators.end()), ",");
+    return join(std::vector<std::string>(integrators.begin(), integrators.end()), ",");
   };
   const std::string usual = named(comparison_of_suite("").integrators);
   std::map<std::string, std::vector<std::string>> others;
@@ -285,23 +254,20 @@ std::string default_integrators() {
 
 std::function<int()> declare_bench(Arguments& arguments) {
   const auto options = std::make_shared<BenchRequest>();
-  const std::vector<std::string> names = suite_names();
-  const std::vector<std::string_view> suites(names.begin(), names.end());
+  auto names = mapped<std::string>(suites(), &Suite::name);
+  names.emplace_back("tables");
   add_scenes(arguments, "--scene", options->scenes,
              "Scenes to measure: names (see mssim list scenes) or files");
   arguments.add("--suite NAME", options->suite,
-                "Scenes, and what to compare on them: " + listed(suites, "or") +
+                "Scenes, and what to compare on them: " + listed(names, "or") +
                     " (see mssim list suites); tables stands for table1, table2 and table3",
                 one_of("suite", names, {{"all", "tables"}}));
-  add_backends(
-      arguments, options->backends,
+  declare_backends_and_integrators(
+      arguments, *options,
       "Backends, or methods with --suite races (default: all of mssim's); NAME:each steps each body for "
       "itself, NAME:4 takes four threads, NAME:AVX2 that instruction set, serial:double and openmp:double "
-      "that precision; a path with a slash, or a described name, is a program of your own");
-  declare_backend_folders(arguments, options->own_backends);
-  declare_backend_limit(arguments, options->own_backends);
-  add_integrators(arguments, options->integrators,
-                  fmt::format("Integrators, or all (default: {})", default_integrators()));
+      "that precision; a path with a slash, or a described name, is a program of your own",
+      fmt::format("Integrators, or all (default: {})", default_integrators()));
   declare_execution(arguments, options->execution, &options->threads, &options->instruction_sets);
   arguments.add_number("--rounds N", options->rounds,
                        "Samples of each combination (default: 15); with --time-budget the largest number",
@@ -337,10 +303,10 @@ std::function<int()> declare_bench(Arguments& arguments) {
       "Also trace each combination into FOLDER/traces, after it has been timed (not of garments)");
   arguments.add_choice<SummaryFormat>(
       "--format", options->format,
-      {{"table", SummaryFormat::table},
-       {"csv", SummaryFormat::csv},
-       {"json", SummaryFormat::json},
-       {"github", SummaryFormat::github}},
+      {{"table", ListingFormat::table},
+       {"csv", ListingFormat::csv},
+       {"json", ListingFormat::json},
+       {"github", std::nullopt}},
       "What to print: table, csv, json, or github (the input of github-action-benchmark, "
       "also written into FOLDER) (default: table)");
   arguments.add(

@@ -120,7 +120,7 @@ int run(CompareOptions options) {
     if (options.programs) make_folder(options.out);
   }
   if (!options.programs) return compare_runs(options);
-  require_few_threads(options.ab.threads);
+  require_few_threads(options.ab.execution.threads);
   if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
   return report(compare_programs(options.ab), options);
 }
@@ -156,16 +156,15 @@ std::function<int()> declare_compare(Arguments& arguments) {
                 "Compare runs of different machines, builds, threads or scenes anyway")
       .excludes(ab);
   add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
-  add_backends(arguments, options->ab.backends,
-               "With --ab: backends, which may be programs of your own (default: openmp)")
-      .needs(ab);
-  declare_backend_folders(arguments, options->ab.own_backends).needs(ab);
-  declare_backend_limit(arguments, options->ab.own_backends).needs(ab);
-  add_integrators(arguments, options->ab.integrators, "With --ab: integrators (default: semi-euler)")
-      .needs(ab);
+  options->ab.backends = {"openmp"};
+  options->ab.integrators = {"semi-euler"};
+  for (Argument argument : declare_backends_and_integrators(
+           arguments, options->ab, "With --ab: backends, which may be programs of your own (default: openmp)",
+           "With --ab: integrators (default: semi-euler)"))
+    argument.needs(ab);
   arguments
-      .add_number("--threads N", options->ab.threads, "With --ab: threads (default: one per available CPU)",
-                  whole_number(1, most_threads))
+      .add_number("--threads N", options->ab.execution.threads,
+                  "With --ab: threads (default: one per available CPU)", whole_number(1, most_threads))
       .needs(ab);
   arguments
       .add_number("--time-budget SECONDS", options->ab.time_budget_s, "With --ab: time limit (default: 300)",

@@ -18,12 +18,11 @@ std::function<int()> declare_guide(Arguments& arguments) {
   arguments.add_number("--horizon SECONDS", options->horizon_s,
                        "Simulated time after which errors are measured, at most (default: 0.1)",
                        number_between(1e-6, 10));
-  add_backends(arguments, options->backends,
-               "Backends, which may be programs of your own (default: serial, openmp and opencl; see mssim "
-               "list backends)");
-  declare_backend_folders(arguments, options->own_backends);
-  declare_backend_limit(arguments, options->own_backends);
-  add_integrators(arguments, options->integrators, "Integrators (default: all; see mssim list integrators)");
+  declare_backends_and_integrators(
+      arguments, *options,
+      "Backends, which may be programs of your own (default: serial, openmp and opencl; see mssim list "
+      "backends)",
+      "Integrators (default: all; see mssim list integrators)");
   declare_execution(arguments, options->execution);
   arguments.add_number(
       "--time-budget SECONDS", options->time_budget_s,

@@ -42,16 +42,11 @@ Table list_scenes(const ListOptions& /*options*/) {
   std::string first_reason;
   for (const SceneSpec& spec : shipped_scenes()) {
     std::optional<SceneCounts> counts;
-    const auto leave_out = [&](const Error& reason) {
-      if (uncounted.empty()) first_reason = reason.what();
-      uncounted.push_back(spec.name);
-    };
     try {
       counts = counts_of(spec);
-    } catch (const MissingProgram& reason) {
-      leave_out(reason);
-    } catch (const SceneError& reason) {
-      leave_out(reason);
+    } catch (const Error& reason) {
+      if (uncounted.empty()) first_reason = reason.what();
+      uncounted.push_back(spec.name);
     }
     table.add({{"scene", spec.name},
                {"kind", kind_of(spec).name},

@@ -44,6 +44,12 @@ std::size_t length_of_first(std::string_view text) {
   return shortest;
 }
 
+Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
+  return arguments.add_number("--backend-limit SECONDS", options.limit_s,
+                              "Time limit for each answer of a program that is a backend (default: 120)",
+                              number_between(0.001, longest_time_limit_s));
+}
+
 }  // namespace
 
 Argument declare_frames(Arguments& arguments, FrameOptions& options) {
@@ -130,11 +136,11 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_v
                                                                    std::uint32_t most) {
   const std::size_t x = text.find('x');
   if (x == std::string_view::npos) return std::nullopt;
-  const auto first = number_in<std::int64_t>(text.substr(0, x));
-  const auto second = number_in<std::int64_t>(text.substr(x + 1));
-  const auto good = [&](const std::optional<std::int64_t>& n) { return n && *n >= 1 && *n <= most; };
+  const auto first = number_in<std::uint32_t>(text.substr(0, x));
+  const auto second = number_in<std::uint32_t>(text.substr(x + 1));
+  const auto good = [&](const std::optional<std::uint32_t>& n) { return n && *n >= 1 && *n <= most; };
   if (!good(first) || !good(second)) return std::nullopt;
-  return std::pair{static_cast<std::uint32_t>(*first), static_cast<std::uint32_t>(*second)};
+  return std::pair{*first, *second};
 }
 
 std::vector<std::string> names_and_files_in(std::string_view argument) {
@@ -175,15 +181,15 @@ Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<s
       .offers(scene_names);
 }
 
-Argument add_backends(Arguments& arguments, std::vector<std::string>& target,
-                      const std::string& description) {
-  return arguments.add_list("--backend NAME|FILE,...", target, description, names_and_files_in)
-      .offers(backend_names);
-}
-
-Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
-                         const std::string& description) {
-  return arguments.add_list("--integrator NAME,...", target, description).offers(integrator_names);
+std::vector<Argument> declare_backends_and_integrators(Arguments& arguments, AskedCombinations& asked,
+                                                       const std::string& about_backends,
+                                                       const std::string& about_integrators) {
+  return {arguments.add_list("--backend NAME|FILE,...", asked.backends, about_backends, names_and_files_in)
+              .offers(backend_names),
+          declare_backend_folders(arguments, asked.own_backends),
+          declare_backend_limit(arguments, asked.own_backends),
+          arguments.add_list("--integrator NAME,...", asked.integrators, about_integrators)
+              .offers(integrator_names)};
 }
 
 void declare_listing_format(Arguments& arguments, ListingFormat& target) {
@@ -209,65 +215,49 @@ ValueRule time_budget() { return number_between(0.001, 1e8); }
 
 std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& options,
                                         std::vector<int>* threads, std::vector<std::string>* sets) {
-  std::vector<Argument> of_backends;
   constexpr std::string_view several = "; each of several gets rows of its own";
   const std::string meaning =
       "Threads, and compute units of an OpenCL device that is a CPU (default: one per available CPU)";
+  const std::string of_sets =
+      "Instruction set of the vector code of openmp, gather-vectors and mpi (default: the best)";
   if (threads == nullptr)
     arguments.add_number("--threads N", options.threads, meaning, whole_number(1, most_threads));
   else
     arguments.add_number("--threads N,...", *threads, meaning + std::string(several),
                          whole_numbers(1, most_threads));
-  of_backends.push_back(
+  return {
       arguments.add_number("--ranks N", options.ranks,
                            "Processes of the backend mpi, of --threads threads each; mpi:N sets it for one "
                            "row (default: as many as --threads, of one thread each)",
-                           whole_number(1, most_ranks)));
-  of_backends.push_back(
+                           whole_number(1, most_ranks)),
       arguments.add("--launcher COMMAND", options.launcher,
                     "Launcher of the backend mpi, to which mssim appends `-n N PROGRAM` (default: mpirun)",
                     [](const std::string& text) -> std::string {
                       if (text.find_first_not_of(" \t\r\n") != std::string::npos) return "";
                       return fmt::format("\"{}\" names no program", printable(text));
-                    }));
-  of_backends.push_back(
+                    }),
       arguments.add("--device N|NAME", options.device,
-                    "OpenCL device: its number or a part of its name or platform (see mssim list devices)"));
-  of_backends.push_back(arguments.add_choice<DeviceMemory>(
-      "--memory", options.memory,
-      {{name_of(DeviceMemory::copy), DeviceMemory::copy},
-       {name_of(DeviceMemory::shared), DeviceMemory::shared}},
-      "How host and OpenCL device exchange data: shared (without copying if the device can) or copy "
-      "(default: shared)"));
-  of_backends.push_back(arguments.add_choice<Roots>(
-      "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
-      "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and a "
-      "Newton step) or exact (bitwise identical on every processor with fused multiply-adds) (default: "
-      "fast)"));
-  const std::string of_sets =
-      "Instruction set of the vector code of openmp, gather-vectors and mpi (default: the best)";
-  of_backends.push_back(
+                    "OpenCL device: its number or a part of its name or platform (see mssim list devices)"),
+      arguments.add_choice<DeviceMemory>(
+          "--memory", options.memory,
+          {{name_of(DeviceMemory::copy), DeviceMemory::copy},
+           {name_of(DeviceMemory::shared), DeviceMemory::shared}},
+          "How host and OpenCL device exchange data: shared (without copying if the device can) or copy "
+          "(default: shared)"),
+      arguments.add_choice<Roots>(
+          "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
+          "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and "
+          "a Newton step) or exact (bitwise identical on every processor with fused multiply-adds) "
+          "(default: fast)"),
       (sets == nullptr
            ? arguments.add("--instruction-set NAME", options.instruction_set, of_sets)
            : arguments.add_list("--instruction-set NAME,...", *sets, of_sets + std::string(several)))
-          .offers([] {
-            std::vector<std::string> names;
-            for (const std::string_view set : instruction_sets())
-              names.emplace_back(instruction_set_name(set));
-            return names;
-          }));
-  return of_backends;
+          .offers([] { return mapped<std::string>(instruction_sets(), instruction_set_name); })};
 }
 
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
   return arguments.add_list("--backend-folder DIR,...", options.folders,
                             "Folders with descriptions of backends, NAME.json (see docs/protocol.md)");
-}
-
-Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
-  return arguments.add_number("--backend-limit SECONDS", options.limit_s,
-                              "Time limit for each answer of a program that is a backend (default: 120)",
-                              number_between(0.001, longest_time_limit_s));
 }
 
 void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps,

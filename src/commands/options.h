@@ -87,10 +87,11 @@ std::vector<std::string> integrator_names();
 Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,
                     const std::string& description);
 
-/// Declares --backend and --integrator, which take several. `target` must outlive the parsing.
-Argument add_backends(Arguments& arguments, std::vector<std::string>& target, const std::string& description);
-Argument add_integrators(Arguments& arguments, std::vector<std::string>& target,
-                         const std::string& description);
+/// Declares --backend and --integrator, which take several names and have these descriptions,
+/// --backend-folder and --backend-limit; returns all. `asked` must outlive the parsing.
+std::vector<Argument> declare_backends_and_integrators(Arguments& arguments, AskedCombinations& asked,
+                                                       const std::string& about_backends,
+                                                       const std::string& about_integrators);
 
 /// Declares --format for a listing. `target` must outlive the parsing.
 void declare_listing_format(Arguments& arguments, ListingFormat& target);
@@ -114,9 +115,6 @@ std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& 
 
 /// Declares --backend-folder. `options` must outlive the parsing.
 Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options);
-
-/// Declares --backend-limit. `options` must outlive the parsing.
-Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options);
 
 /// Declares --backend, --integrator, --duration, --fps, --dt and the options of declare_execution. `options`
 /// must outlive the parsing. If `needed` is given, options that only a simulation uses are errors without it.

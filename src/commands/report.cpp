@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "application/outputs.h"
-#include "application/prepared_scene.h"
 #include "application/run.h"
 #include "commands/command.h"
 #include "commands/result_folders.h"
@@ -32,11 +31,12 @@ double seconds_of(const ResultRow& row) {
   return row.dressing ? row.dressing->wall_s : *row.ms_per_step / 1000 * simulated_s / row.dt_s;
 }
 
-/// The largest of each kind that comes with mssim, is `wanted` and can be simulated soon.
-template <class Wanted>
-std::map<ContentKind, const ResultRow*> sitters_of(std::span<const ReportFolder> folders, Wanted wanted) {
+/// Calls `simulate` with a row of each kind of scene: of the largest that comes with mssim, is `wanted` and
+/// can be simulated soon. What that throws becomes a problem of the input.
+template <class Wanted, class Simulate>
+void for_each_sitter(ReportInput& input, Wanted wanted, Simulate simulate) {
   std::map<ContentKind, const ResultRow*> sitters;
-  for (const ReportFolder& folder : folders)
+  for (const ReportFolder& folder : input.folders)
     for (const ResultRow& row : folder.rows) {
       if (row.backend != "openmp" || row.integrator != integrator || !counts(row) || !(row.dt_s > 0) ||
           !row.scene_as_shipped || !wanted(row) || seconds_of(row) > patience_s)
@@ -44,7 +44,14 @@ std::map<ContentKind, const ResultRow*> sitters_of(std::span<const ReportFolder>
       const ResultRow*& known = sitters[kind_of(row)];
       if (!known || row.nodes > known->nodes) known = &row;
     }
-  return sitters;
+  for (const auto& [kind, sitter] : sitters) {
+    try {
+      simulate(*sitter);
+    } catch (const std::exception& error) {
+      input.problems.push_back(
+          fmt::format("the scene {} cannot be simulated: {}", sitter->scene, error.what()));
+    }
+  }
 }
 
 RunOptions run_of(const ResultRow& row) {
@@ -89,32 +96,17 @@ const FoundCurve* reference_of(const std::string& scene, std::span<const FoundCu
   return found == references.end() || found->time_s.size() < 2 ? nullptr : &*found;
 }
 
-/// Calls `simulate` with the sitters' rows.
-template <class Simulate>
-void for_each_sitter(const std::map<ContentKind, const ResultRow*>& sitters,
-                     std::vector<std::string>& problems, Simulate simulate) {
-  for (const auto& [kind, sitter] : sitters) {
-    try {
-      simulate(*sitter);
-    } catch (const std::exception& error) {
-      problems.push_back(fmt::format("the scene {} cannot be simulated: {}", sitter->scene, error.what()));
-    }
-  }
-}
-
 /// Simulates scenes of the folders anew, by `openmp`, if they come with mssim: of each kind of scene the
 /// largest that takes no more than about half a second, as the folder's times tell, for half a second of its
 /// time, or until its garment hangs, to draw it; and of each kind the largest of those that has a reference,
 /// named as the scene, for its energies. Adds a problem where one cannot be simulated. Throws Interrupted.
 void simulate_scenes(ReportInput& input) {
-  for_each_sitter(sitters_of(input.folders, [](const ResultRow&) { return true; }), input.problems,
-                  [&](const ResultRow& row) { input.pictures.push_back(drawn(row)); });
-  const auto has_reference = [&](const ResultRow& row) {
-    return reference_of(row.scene, input.references) != nullptr;
-  };
-  for_each_sitter(sitters_of(input.folders, has_reference), input.problems, [&](const ResultRow& row) {
-    input.curves.push_back(energies(row, *reference_of(row.scene, input.references)));
-  });
+  for_each_sitter(
+      input, [](const ResultRow&) { return true; },
+      [&](const ResultRow& row) { input.pictures.push_back(drawn(row)); });
+  const auto reference = [&](const ResultRow& row) { return reference_of(row.scene, input.references); };
+  for_each_sitter(input, reference,
+                  [&](const ResultRow& row) { input.curves.push_back(energies(row, *reference(row))); });
 }
 
 namespace fs = std::filesystem;

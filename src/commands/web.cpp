@@ -76,9 +76,8 @@ int web(const WebOptions& options) {
     return exit_ok;
   }
   AtomicFile(make_folder(options.results) / ".probe").remove();  // before a phone has measured
-  serve_page([] { return web_page(true); }, options.port, options.once,
-             [&](const std::string& text) { return keep(options.results, text); },
-             [](const std::string& address) { std::cout << address << std::endl; });
+  serve_page(options.port, options.once,
+             [&](const std::string& text) { return keep(options.results, text); });
   return exit_ok;
 }
 

@@ -39,9 +39,8 @@ std::vector<Number> numbers_of(std::span<const Vec3d> vectors) {
 }
 
 json constants_of(const SpringMaterial& material) {
-  json constants = json::array();
-  for (const SpringConstantInfo& constant : spring_constants) constants.push_back(material.*constant.number);
-  return constants;
+  return mapped<double>(spring_constants,
+                        [&](const SpringConstantInfo& constant) { return material.*constant.number; });
 }
 
 /// Shapes of bodies, each once: many bodies of the paper are copies of nine.
@@ -78,13 +77,11 @@ class Shapes {
 
 /// Everything of a system but its start.
 json laws_of(const System& system, Shapes& shapes) {
-  json materials = json::array();
-  for (const SpringMaterial& material : system.materials) materials.push_back(constants_of(material));
   json laws{{"nodes", system.nodes()},
             {"gravity", system.gravity},
             {"viscous_damping", system.viscous_damping},
             {"floor", {system.floor.height, system.floor.restitution, system.floor.friction}},
-            {"materials", materials},
+            {"materials", mapped<json>(system.materials, constants_of)},
             {"pins", system.pins},
             {"mean_rest_length", mean_rest_length(system)},
             {"rounding_energy_j", energy_in_motion(system, system.start, Energy())}};
@@ -179,15 +176,12 @@ json integrators_json() {
   for (const Integrator* integrator : all_integrators) {
     if (is_implicit(*integrator)) continue;
     json stages = json::array();
-    for (std::size_t s = 0; s < integrator->stage_count; ++s) {
-      const Stage& stage = integrator->stages[s];
+    for (const Stage& stage : std::span(integrator->stages).first(integrator->stage_count)) {
       json assignments = json::array();
-      for (std::size_t a = 0; a < assignment_count(stage); ++a) {
-        const Assignment& assignment = stage.assignments[a];
+      for (const Assignment& assignment : std::span(stage.assignments).first(assignment_count(stage))) {
         json terms = json::array();
-        for (std::size_t t = 0; t < term_count(assignment); ++t)
-          terms.push_back({assignment.terms[t].coefficient, assignment.terms[t].dt_power,
-                           name_of(assignment.terms[t].slot)});
+        for (const Term& term : std::span(assignment.terms).first(term_count(assignment)))
+          terms.push_back({term.coefficient, term.dt_power, name_of(term.slot)});
         assignments.push_back({{"out", name_of(assignment.out)}, {"terms", terms}});
       }
       stages.push_back({{"gather", index(stage.gather)}, {"assignments", assignments}});
@@ -212,28 +206,26 @@ json page_data() {
   provenance.threads = 1;
   const std::vector<PublishedTable> published = published_tables();
   Shapes shapes;
-  json scenes = json::array(), names = json::array(), stencil = json::array(), columns = json::array(),
-       slots = json::array(), laws = json::array(), configurations = json::object();
+  json scenes = json::array(), stencil = json::array(), slots = json::array(), laws = json::array(),
+       configurations = json::object();
   for (const char* suite : {"table1", "table3"})
     for (const std::string& name : scenes_of_suite(suite, true))
       scenes.push_back(scene_of(name, published, provenance, shapes));
-  for (const SpringConstantInfo& constant : spring_constants) names.push_back(constant.name);
   for (const GridSpring& spring : grid_stencil)
     stencil.push_back({spring.rows, spring.columns, static_cast<int>(spring.kind)});
-  for (const ResultColumn& column : result_columns) columns.push_back(column.name);
   for (std::size_t slot = 0; slot < memory_slots; ++slot) slots.push_back(slot_names[slot]);
   for (const BrowserBackend& backend : browser_backends)
     configurations[std::string(backend.name)] = backend.paper_configuration;
   for (const char* file : {"spring_law.h", "node_laws.h"})
     laws.push_back(read_file(data_folder() / "kernels" / file));
   return {{"laws", laws},
-          {"spring_constants", names},
+          {"spring_constants", mapped<json>(spring_constants, &SpringConstantInfo::name)},
           {"memory_slots", slots},
           {"integrators", integrators_json()},
           {"stencil", stencil},
           {"scenes", scenes},
           {"shapes", shapes.all()},
-          {"columns", columns},
+          {"columns", mapped<json>(result_columns, &ResultColumn::name)},
           {"wasm", module_text("spring_list.wasm")},
           {"wasm_threads", module_text("spring_list_threads.wasm")},
           {"configurations", configurations},

@@ -1,11 +1,11 @@
 #include <netinet/in.h>
-#include <strings.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <iostream>
 
 #include "platform/process.h"
 #include "text/error.h"
@@ -36,19 +36,16 @@ Descriptor listener(int port, std::string& address) {
   return socket;
 }
 
-/// The value of a header of a request, whose names have any case; empty if it has none.
-std::string header(std::string_view head, const std::string& name) {
-  for (std::size_t line = head.find("\r\n"); line != std::string_view::npos;
-       line = head.find("\r\n", line + 2)) {
-    const std::string_view rest = head.substr(line + 2);
-    if (rest.size() > name.size() && ::strncasecmp(rest.data(), name.data(), name.size()) == 0 &&
-        rest[name.size()] == ':') {
-      std::string_view value = rest.substr(name.size() + 1, rest.find("\r\n") - name.size() - 1);
-      while (value.starts_with(' ')) value.remove_prefix(1);
-      return std::string(value);
-    }
-  }
-  return {};
+/// The value of a header of a request, whose names have any case; empty if it has none. `name`: in lower
+/// case.
+std::string header(std::string_view head, std::string_view name) {
+  const std::string before = fmt::format("\r\n{}:", name);
+  const std::size_t line = to_lower(head).find(before);
+  if (line == std::string::npos) return {};
+  std::string_view value = head.substr(line + before.size());
+  value = value.substr(0, value.find("\r\n"));
+  while (value.starts_with(' ')) value.remove_prefix(1);
+  return std::string(value);
 }
 
 struct Request {
@@ -75,11 +72,11 @@ Request read_request(int socket) {
     const std::string_view head = std::string_view(text).substr(0, end + 2);
     // A page of another host must not post results: neither under a name of its own that leads here, nor from
     // its own origin.
-    const std::string host = header(head, "Host"), origin = header(head, "Origin");
+    const std::string host = header(head, "host"), origin = header(head, "origin");
     const std::string name = host.substr(0, host.find(':'));  // a client leaves port 80 out
     if (name != "localhost" && name != "127.0.0.1") return {};
     if (!origin.empty() && origin != "http://" + host) return {};
-    length = number_in<std::size_t>(header(head, "Content-Length")).value_or(0);
+    length = number_in<std::size_t>(header(head, "content-length")).value_or(0);
     if (length > largest_request_bytes) return {};
   }
   return {text.substr(0, text.find("\r\n")), text.substr(end + 4, length)};
@@ -105,13 +102,11 @@ void answer(int socket, std::string_view status, std::string_view type, std::str
 
 }  // namespace
 
-void serve_page(const std::function<std::string()>& make_page, int port, bool once,
-                const std::function<std::string(const std::string& text)>& taken,
-                const std::function<void(const std::string& address)>& ready) {
+void serve_page(int port, bool once, const std::function<std::string(const std::string& text)>& taken) {
   std::string address;
   const Descriptor socket = listener(port, address);
-  const std::string page = make_page();
-  ready(address);
+  const std::string page = web_page(true);
+  std::cout << address << std::endl;
   for (;;) {
     const Descriptor connection(::accept4(socket.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!connection.is_open()) continue;

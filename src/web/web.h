@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <string_view>
 
 #include "application/bench/bench_results.h"
 
@@ -27,13 +26,11 @@ MeasuredRun read_web_results(const std::filesystem::path& file);
 /// Reads the rows of such a file's text; `file` is for messages. Throws like read_web_results.
 MeasuredRun parse_web_results(const std::filesystem::path& file, const std::string& text);
 
-/// Serves what `make_page` makes on this machine's loopback address until an ending signal, or with `once`
-/// until it has taken a result. Calls `make_page` as soon as it has the port, so that a taken port is told
-/// first. `taken` gets the text of each result that the page sends, and returns what to answer; what it
-/// throws is answered as an error. Port 0: any free one. Calls `ready` with the address. Throws UsageError if
-/// the port is taken.
-void serve_page(const std::function<std::string()>& make_page, int port, bool once,
-                const std::function<std::string(const std::string& text)>& taken,
-                const std::function<void(const std::string& address)>& ready);
+/// Serves the page on this machine's loopback address until an ending signal, or with `once` until it has
+/// taken a result. Makes the page when it has the port, so that a taken port is told first, and then prints
+/// the address on stdout. `taken` gets the text of each result that the page sends, and returns what to
+/// answer; what it throws is answered as an error. Port 0: any free one. Throws UsageError if the port is
+/// taken, and like web_page.
+void serve_page(int port, bool once, const std::function<std::string(const std::string& text)>& taken);
 
 }  // namespace mssim

@@ -119,7 +119,8 @@ class AbProgram {
     const OwnBackendOptions& own = options_.own_backends;
     if (!own.folders.empty()) add(child, "--backend-folder", join(own.folders, ","));
     if (own.limit_s) add(child, "--backend-limit", decimal(*own.limit_s));
-    if (options_.threads > 0) add(child, "--threads", std::to_string(options_.threads));
+    const int threads = options_.execution.threads;
+    if (threads > 0) add(child, "--threads", std::to_string(threads));
     return child;
   }
 
@@ -167,12 +168,6 @@ class AbProgram {
   bool verified_ = false;
 };
 
-/// A combination that is being measured. Its pairs grow until they are settled.
-struct Series {
-  PairedTimes pairs;
-  bool settled = false;
-};
-
 const CombinationTime* find(const std::vector<CombinationTime>& times, const PairedTimes& pairs) {
   const auto found =
       std::ranges::find_if(times, [&](const CombinationTime& time) { return same_combination(time, pairs); });
@@ -181,9 +176,9 @@ const CombinationTime* find(const std::vector<CombinationTime>& times, const Pai
 
 /// The combinations that both programs have. Those that only one has, or that have no time in BASE, are
 /// reported and left out.
-std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
-                                    const std::vector<CombinationTime>& next, const AbOptions& options) {
-  std::vector<Series> series;
+std::vector<PairedTimes> combinations_of(const std::vector<CombinationTime>& base,
+                                         const std::vector<CombinationTime>& next, const AbOptions& options) {
+  std::vector<PairedTimes> series;
   const auto pairs_of = [](const CombinationTime& time) {
     return PairedTimes{time.scene, time.backend, time.integrator, {}, {}, {}};
   };
@@ -198,7 +193,7 @@ std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
       std::cerr << "mssim: " << options.base << " has no time for " << combination_name(time) << ": "
                 << time.status << '\n';
     else
-      series.push_back({pairs});
+      series.push_back(pairs);
   }
   for (const CombinationTime& time : next)
     if (!find(base, pairs_of(time))) tell_only(options.next, time);
@@ -209,17 +204,15 @@ std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
 }
 
 /// Marks a combination without a time in NEW as lost; a time of BASE shows what it was.
-void lose(Series& series, const CombinationTime& base, const std::string& why) {
-  if (series.pairs.base_ms.empty()) series.pairs.base_ms.push_back(*base.least_ms);
-  series.pairs.lost = why;
-  series.settled = true;
+void lose(PairedTimes& pairs, const CombinationTime& base, const std::string& why) {
+  if (pairs.base_ms.empty()) pairs.base_ms.push_back(*base.least_ms);
+  pairs.lost = why;
 }
 
 /// Adds a round to a combination. If BASE has no time for it any more, there is nothing to compare with:
 /// reports that and returns false.
-bool add_round(Series& series, const std::vector<CombinationTime>& base,
+bool add_round(PairedTimes& pairs, const std::vector<CombinationTime>& base,
                const std::vector<CombinationTime>& next, const AbOptions& options) {
-  PairedTimes& pairs = series.pairs;
   const CombinationTime *a = find(base, pairs), *b = find(next, pairs);
   if (!a || !a->least_ms) {
     std::cerr << fmt::format(
@@ -228,27 +221,26 @@ bool add_round(Series& series, const std::vector<CombinationTime>& base,
     return false;
   }
   if (!b || !b->least_ms) {
-    lose(series, *a, b ? b->status : "missing in a later round");
+    lose(pairs, *a, b ? b->status : "missing in a later round");
     return true;
   }
   pairs.base_ms.push_back(*a->least_ms);
   pairs.new_ms.push_back(*b->least_ms);
-  series.settled = is_settled(pairs, options.threshold);
   return true;
 }
 
 /// The values of this member in the combinations that are not settled, each once.
-std::vector<std::string> still_wanted(std::string PairedTimes::*member, const std::vector<Series>& series) {
+std::vector<std::string> still_wanted(std::string PairedTimes::*member,
+                                      const std::vector<PairedTimes>& series, const AbOptions& options) {
   std::vector<std::string> names;
-  for (const Series& one : series)
-    if (!one.settled && std::ranges::find(names, one.pairs.*member) == names.end())
-      names.push_back(one.pairs.*member);
+  for (const PairedTimes& one : series)
+    if (!is_settled(one, options.threshold)) add_once(names, one.*member);
   return names;
 }
 
 /// The requested backends whose rows are not settled.
-std::vector<std::string> backends_wanted(const AbOptions& options, const std::vector<Series>& series) {
-  const std::vector<std::string> rows = still_wanted(&PairedTimes::backend, series);
+std::vector<std::string> backends_wanted(const AbOptions& options, const std::vector<PairedTimes>& series) {
+  const std::vector<std::string> rows = still_wanted(&PairedTimes::backend, series, options);
   std::vector<std::string> asked;
   for (const std::string& backend : options.backends)
     if (std::ranges::find(rows, row_name(backend)) != rows.end()) asked.push_back(backend);
@@ -259,11 +251,7 @@ std::vector<std::string> backends_wanted(const AbOptions& options, const std::ve
 /// estimate: a compared program may have scenes or backends that this one does not know.
 bool both_fit(const AbOptions& options) {
   BenchOptions bench;
-  bench.scenes = options.scenes;
-  bench.backends = options.backends;
-  bench.own_backends = options.own_backends;
-  bench.integrators = options.integrators;
-  bench.execution.threads = options.threads;
+  static_cast<AskedCombinations&>(bench) = options;
   bench.dry_run = true;
   try {
     return std::ranges::all_of(plan_of(bench).timed, [](const PlannedScene& scene) {
@@ -276,8 +264,8 @@ bool both_fit(const AbOptions& options) {
 
 /// Verifies both programs once, if both can rely on it later, and returns the combinations. Otherwise every
 /// process verifies again and the result is empty; the first round then finds the combinations.
-std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& options,
-                           ProgressLine& progress) {
+std::vector<PairedTimes> verify(std::array<AbProgram, 2>& programs, const AbOptions& options,
+                                ProgressLine& progress) {
   for (std::size_t which = 0; which < programs.size(); ++which)
     if (!programs[which].takes_verified()) {
       std::cerr
@@ -293,10 +281,10 @@ std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& 
       both_fit(options) ? run_together(processes) : std::vector{run(processes[0]), run(processes[1])};
   const std::array rows{programs[0].take_verification(results[0]), programs[1].take_verification(results[1])};
   for (AbProgram& program : programs) program.allow(watch.seconds());
-  std::vector<Series> series = combinations_of(rows[0], rows[1], options);
-  for (Series& one : series)
-    if (const CombinationTime& next = *find(rows[1], one.pairs); !next.least_ms)
-      lose(one, *find(rows[0], one.pairs), next.status);
+  std::vector<PairedTimes> series = combinations_of(rows[0], rows[1], options);
+  for (PairedTimes& one : series)
+    if (const CombinationTime& next = *find(rows[1], one); !next.least_ms)
+      lose(one, *find(rows[0], one), next.status);
   return series;
 }
 
@@ -305,8 +293,9 @@ std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& 
 RunComparison compare_programs(const AbOptions& options) {
   std::array<AbProgram, 2> programs{AbProgram(options.base, options), AbProgram(options.next, options)};
   std::mt19937_64 random(std::random_device{}());
-  std::vector<Series> series;
-  const auto settled = [&] { return !series.empty() && std::ranges::all_of(series, &Series::settled); };
+  std::vector<PairedTimes> series;
+  const auto is_one_settled = [&](const PairedTimes& one) { return is_settled(one, options.threshold); };
+  const auto settled = [&] { return !series.empty() && std::ranges::all_of(series, is_one_settled); };
   const Stopwatch watch;
   double longest_s = 0;
   std::size_t rounds = 0;
@@ -322,10 +311,11 @@ RunComparison compare_programs(const AbOptions& options) {
       for (const std::size_t which : {first, 1 - first})
         times[which] = programs[which].bench(
             all ? options.backends : backends_wanted(options, series),
-            all ? options.integrators : still_wanted(&PairedTimes::integrator, series), all);
+            all ? options.integrators : still_wanted(&PairedTimes::integrator, series, options), all);
       if (all) series = combinations_of(times[0], times[1], options);
-      std::erase_if(
-          series, [&](Series& one) { return !one.settled && !add_round(one, times[0], times[1], options); });
+      std::erase_if(series, [&](PairedTimes& one) {
+        return !is_one_settled(one) && !add_round(one, times[0], times[1], options);
+      });
       if (series.empty())
         throw UsageError("nothing is left to compare: {} has lost every combination; see the messages above",
                          options.base);
@@ -339,7 +329,7 @@ RunComparison compare_programs(const AbOptions& options) {
             << (settled() ? "" : "; the time budget ended before every verdict was settled") << '\n';
   RunComparison comparison;
   comparison.threshold = options.threshold;
-  for (const Series& one : series) comparison.rows.push_back(compare_pairs(one.pairs, options.threshold));
+  for (const PairedTimes& one : series) comparison.rows.push_back(compare_pairs(one, options.threshold));
   add_means(comparison);
   return comparison;
 }

@@ -12,14 +12,9 @@
 
 namespace mssim {
 
-/// Request of `mssim compare --ab`.
-struct AbOptions {
+/// Request of `mssim compare --ab`. Of `execution` it has the threads; 0: each program's default.
+struct AbOptions : AskedCombinations {
   std::string base, next;  ///< programs with the command line of mssim bench
-  std::vector<std::string> scenes;
-  std::vector<std::string> backends{"openmp"};
-  OwnBackendOptions own_backends;
-  std::vector<std::string> integrators{"semi-euler"};
-  int threads = 0;  ///< 0: each program's default
   double threshold = 0.05;
   double time_budget_s = 300;
 };

@@ -10,11 +10,9 @@
 #include "application/bench/bench_results.h"
 #include "application/bench/suites.h"
 #include "application/outputs.h"
-#include "bench/job/job.h"
 #include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
 #include "integrators/stability.h"
-#include "output/tables/suite_tables.h"
 #include "output/traces/energy_curve.h"
 #include "platform/files.h"
 #include "platform/machine.h"
@@ -91,8 +89,7 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
 
 std::vector<std::string> timed_names(const BenchOptions& options) {
   std::vector<std::string> scenes = scenes_of_suite(options.suite, true);
-  for (const std::string& scene : options.scenes)
-    if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
+  for (const std::string& scene : options.scenes) add_once(scenes, scene);
   return scenes;
 }
 
@@ -110,11 +107,6 @@ std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const C
                      "which makes some, or give their --backend-folder");
   std::ranges::copy(choice.own(), std::back_inserter(all));
   return all;
-}
-
-/// A user who names backends or threads gets those and no others.
-bool has_variants(const BenchOptions& options) {
-  return options.backends.empty() && options.execution.threads == 0;
 }
 
 /// The requested instruction sets, the best first.
@@ -136,8 +128,6 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   settings.backends =
       choice.with_lesser_sets(backends_of(options, comparison, settings.execution, choice), sets);
   settings.backends = choice.with_fewer_threads(settings.backends, options.threads, settings.execution);
-  if (has_variants(options))
-    settings.backends = choice.with_variants(settings.backends, variants_of_suite(options.suite));
   require_use_of_options(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.windows = options.windows;
@@ -154,20 +144,14 @@ void require_folder_where_needed(const BenchOutput& output) {
                      " needs the folder of an earlier run: give --out too");
 }
 
-/// The settings with the backends that the suite has for this scene.
+/// The settings with the backends that the suite has for this scene. A user who names backends or threads
+/// gets those and no variants.
 BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
-                                const BenchOptions& options, const std::string& scene) {
+                                const BenchOptions& options, const std::string& scene,
+                                BackendChoice& choice) {
   BenchSettings settings = all;
-  if (has_variants(options)) {
-    const std::vector<std::string_view> any = variants_of_suite(options.suite),
-                                        its = variants_of_suite(options.suite, scene);
-    const auto has = [](const std::vector<std::string_view>& names, std::string_view name) {
-      return std::ranges::find(names, name) != names.end();
-    };
-    std::erase_if(settings.backends, [&](const BackendInfo* backend) {
-      return has(any, backend->name) && !has(its, backend->name);
-    });
-  }
+  if (options.backends.empty() && options.execution.threads == 0)
+    settings.backends = choice.with_variants(settings.backends, variants_of_suite(options.suite, scene));
   if (comparison.is_compared)
     std::erase_if(settings.backends,
                   [&](const BackendInfo* backend) { return !comparison.is_compared(scene, backend->name); });
@@ -242,7 +226,7 @@ BenchPlan plan_of(const BenchOptions& options) {
   }
   std::vector<SceneSpec> timed = mapped<SceneSpec>(timed_ones, find_scene);
   std::erase_if(timed, [&](const SceneSpec& spec) {
-    return settings_of_scene(plan.settings, comparison, options, spec.name).backends.empty();
+    return settings_of_scene(plan.settings, comparison, options, spec.name, plan.backends).backends.empty();
   });
   if (options.output.trace) std::ranges::for_each(timed, require_traceable);
   require_distinct_names(timed);
@@ -260,7 +244,8 @@ BenchPlan plan_of(const BenchOptions& options) {
   if (!options.verified.empty()) plan.settings.verified = verified_rows(options.verified, plan.provenance);
   for (SceneSpec& spec : timed) {
     SceneParts parts = parts_of(spec);
-    const BenchSettings settings = settings_of_scene(plan.settings, comparison, options, spec.name);
+    const BenchSettings settings =
+        settings_of_scene(plan.settings, comparison, options, spec.name, plan.backends);
     if (settings.verified) require_rows(*settings.verified, spec.name, settings, options.verified);
     plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
     if (options.output.trace && !plan.timed.back().windows.empty())

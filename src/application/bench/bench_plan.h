@@ -26,13 +26,8 @@ struct BenchOutput {
 };
 
 /// What `mssim bench` was asked for.
-struct BenchOptions {
-  std::vector<std::string> scenes;
+struct BenchOptions : AskedCombinations {
   std::string suite;
-  std::vector<std::string> backends;
-  OwnBackendOptions own_backends;
-  std::vector<std::string> integrators;
-  ExecutionOptions execution;
   std::vector<int>
       threads;  ///< backends that have threads also get a row for each that is less than execution's
   /// Backends with vector code also get a row for each of these but the best; empty: the best one only.

@@ -17,20 +17,17 @@
 
 namespace mssim {
 
-std::vector<ResultRow> BenchRows::of_scene(const std::string& name) const {
-  std::vector<ResultRow> rows;
-  std::ranges::copy_if(rows_, std::back_inserter(rows),
-                       [&](const ResultRow& row) { return row.scene == name; });
-  return rows;
+std::vector<ResultRow> rows_of_scene(const std::vector<ResultRow>& rows, const std::string& scene) {
+  std::vector<ResultRow> its;
+  std::ranges::copy_if(rows, std::back_inserter(its),
+                       [&](const ResultRow& row) { return row.scene == scene; });
+  return its;
 }
 
-void BenchRows::replace(const std::string& scene, std::vector<ResultRow> rows) {
-  const auto first = std::ranges::find(rows_, scene, &ResultRow::scene);
-  const auto at =
-      rows_.insert(first, std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
-  const auto behind = at + static_cast<std::ptrdiff_t>(rows.size());
-  rows_.erase(std::remove_if(behind, rows_.end(), [&](const ResultRow& row) { return row.scene == scene; }),
-              rows_.end());
+void replace_rows(std::vector<ResultRow>& rows, const std::string& scene, std::vector<ResultRow> its) {
+  const auto before = std::ranges::find(rows, scene, &ResultRow::scene) - rows.begin();
+  std::erase_if(rows, [&](const ResultRow& row) { return row.scene == scene; });
+  std::ranges::move(its, std::inserter(rows, rows.begin() + before));
 }
 
 namespace {
@@ -260,25 +257,17 @@ BenchResults::BenchResults(const BenchPlan& plan)
 }
 
 std::vector<std::string> BenchResults::stems_of_scene(const std::string& name) const {
-  std::vector<std::string> stems = file_stems(rows()), of_scene;
+  std::vector<std::string> stems = file_stems(rows_), of_scene;
   for (std::size_t i = 0; i < stems.size(); ++i)
-    if (rows()[i].scene == name) of_scene.push_back(std::move(stems[i]));
+    if (rows_[i].scene == name) of_scene.push_back(std::move(stems[i]));
   return of_scene;
 }
 
 void BenchResults::keep(const std::string& scene, std::vector<ResultRow> rows) {
   require_resumable(differences(of_scene(scene), rows), plan_.output.folder);
   add_published_times(rows, plan_);
-  rows_.replace(scene, std::move(rows));
-  if (folder_) folder_->write(rows_.all());
-}
-
-void BenchResults::keep(const std::vector<StructureRow>& rows) {
-  if (folder_) folder_->write(std::vector{structure_table(rows, plan_.provenance)});
-}
-
-void BenchResults::keep_for_github() const {
-  if (folder_) folder_->write_for_github(rows_.all());
+  replace_rows(rows_, scene, std::move(rows));
+  if (folder_) folder_->write(rows_);
 }
 
 }  // namespace mssim

@@ -10,24 +10,14 @@
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "output/folders/result_folder.h"
-#include "output/tables/suite_tables.h"
-#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-/// Rows of a bench: those of an earlier run, and those measured now.
-class BenchRows {
- public:
-  explicit BenchRows(std::vector<ResultRow> earlier) : rows_(std::move(earlier)) {}
+/// The rows of a scene among those of a bench.
+std::vector<ResultRow> rows_of_scene(const std::vector<ResultRow>& rows, const std::string& scene);
 
-  const std::vector<ResultRow>& all() const { return rows_; }
-  std::vector<ResultRow> of_scene(const std::string& name) const;
-  /// Replaces the scene's rows by `rows`, or appends them.
-  void replace(const std::string& scene, std::vector<ResultRow> rows);
-
- private:
-  std::vector<ResultRow> rows_;
-};
+/// Replaces the rows of a scene, where they stand, by `its`, or appends these.
+void replace_rows(std::vector<ResultRow>& rows, const std::string& scene, std::vector<ResultRow> its);
 
 /// Whether an earlier run into `folder` completed every requested combination of the scene, with frames and
 /// the check of its samples. Throws UsageError if it measured other combinations, because samples of
@@ -63,25 +53,21 @@ class BenchResults {
   /// ResultFolder.
   explicit BenchResults(const BenchPlan& plan);
 
-  const std::vector<ResultRow>& rows() const { return rows_.all(); }
-  std::vector<ResultRow> of_scene(const std::string& name) const { return rows_.of_scene(name); }
-  /// Whether there is a folder with results, also those of an earlier run that stay for now.
-  bool are_in_folder() const { return folder_ && folder_->has_results(); }
+  const std::vector<ResultRow>& rows() const { return rows_; }
+  std::vector<ResultRow> of_scene(const std::string& name) const { return rows_of_scene(rows_, name); }
+  /// The plan's folder, if it has one.
+  std::optional<ResultFolder>& folder() { return folder_; }
   /// The names of the files of the scene's rows (file_stems), unique among those of all scenes.
   std::vector<std::string> stems_of_scene(const std::string& name) const;
 
   /// Replaces the rows of a scene, adds the published times, and writes the folder. Throws UsageError if they
   /// are not comparable with those of an earlier run, and WriteError.
   void keep(const std::string& scene, std::vector<ResultRow> rows);
-  /// Writes the structure of scenes. Throws WriteError.
-  void keep(const std::vector<StructureRow>& rows);
-  /// Writes the input of github-action-benchmark. Throws WriteError.
-  void keep_for_github() const;
 
  private:
   const BenchPlan& plan_;
   std::optional<ResultFolder> folder_;
-  BenchRows rows_;
+  std::vector<ResultRow> rows_;  ///< of an earlier run, and of this one
 };
 
 }  // namespace mssim

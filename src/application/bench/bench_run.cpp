@@ -156,8 +156,8 @@ std::optional<TimeBudget::Clock::time_point> TimeBudget::first_round_done() {
 
 void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
   const double rounds = expected_rounds(plan);
-  std::vector<double> seconds;
-  for (const ExpectedTime& time : times_of(plan.timed)) seconds.push_back(time.with(rounds));
+  const auto seconds =
+      mapped<double>(times_of(plan.timed), [&](const ExpectedTime& time) { return time.with(rounds); });
   std::set<std::string> finished_ones;  // known before a scene is measured: --resume may refuse a later one
   for (const PlannedScene& planned : plan.timed) {
     BenchSettings settings = plan.settings;

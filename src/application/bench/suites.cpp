@@ -1,6 +1,7 @@
 #include "application/bench/suites.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <set>
 
@@ -10,11 +11,10 @@
 #include "garment/output/garment_tables.h"
 #include "integrators/all_integrators.h"
 #include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
-
-constexpr std::string_view suites_of_tables = "tables";
 
 constexpr std::array<std::string_view, 6> cloths{"cloth2500", "cloth4900", "cloth10k",
                                                  "cloth40k",  "cloth200k", "cloth350k"};
@@ -54,16 +54,10 @@ constexpr std::array<std::string_view, 7> bodies_as_published{
 /// Integrators of Hong et al. under their own names.
 constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
 constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
-constexpr auto every_integrator = [] {
-  std::array<std::string_view, all_integrators.size()> names{};
-  std::ranges::transform(all_integrators, names.begin(), &Integrator::name);
-  return names;
-}();
 
 std::vector<const BackendInfo*> all_methods() {
-  std::vector<const BackendInfo*> rows;
-  for (const AccumulationMethod& method : accumulation_methods()) rows.push_back(&method.backend);
-  return rows;
+  return mapped<const BackendInfo*>(accumulation_methods(),
+                                    [](const AccumulationMethod& method) { return &method.backend; });
 }
 
 /// All backends, including those that cannot dress, whose rows give that reason.
@@ -108,9 +102,7 @@ bool is_in_cluster(std::string_view scene, std::string_view backend) {
 
 /// No tables, for the suite of the guide, which makes its own.
 TableMaker no_tables() {
-  return [](std::span<const ResultRow> /*rows*/, const Provenance& /*provenance*/) {
-    return std::vector<ResultTable>();
-  };
+  return [](const auto&...) { return std::vector<ResultTable>(); };
 }
 
 TableMaker tables_of_hong() { return paper_tables(paper_legend(), published_tables()); }
@@ -144,6 +136,14 @@ TableMaker table_of_cluster() {
 TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
 
 constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
+constexpr Comparison of_methods{all_methods, cheapest_method, table_of_races};
+constexpr Comparison of_sizes{table_backends, cheapest_method, table_of_scaling};
+constexpr Comparison of_peers{baseline_and_best, cheapest_method, peer_tables, true};
+constexpr Comparison of_ranks{
+    baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1};
+constexpr Comparison of_dressings{all_that_dress, cheapest_method, garment_tables,
+                                  false,          nullptr,         is_dressed_soon};
+constexpr Comparison of_guides{guide_backends, guide_integrators, no_tables};
 
 constexpr auto table = std::to_array<Suite>({
     {"table1", "times of cloths: Table 1 of Hong et al.", true, true, cloths, of_backends,
@@ -151,46 +151,24 @@ constexpr auto table = std::to_array<Suite>({
     {"table2", "sizes of single bodies: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "times of several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends,
      bodies_as_published},
-    {"races",
-     "the cost of each method to avoid the data race of springs (mssim list methods)",
-     false,
-     true,
-     race_scenes,
-     {all_methods, cheapest_method, table_of_races}},
-    {"scaling",
-     "the time per node in cloths of up to 16 million nodes",
-     false,
-     true,
-     ever_larger_cloths,
-     {table_backends, cheapest_method, table_of_scaling}},
-    {"peers",
-     "comparison with the same scenes in other languages and libraries (scripts/peers)",
-     false,
-     true,
-     scenes_of_peers,
-     {baseline_and_best, cheapest_method, peer_tables, true}},
+    {"races", "the cost of each method to avoid the data race of springs (mssim list methods)", false, true,
+     race_scenes, of_methods},
+    {"scaling", "the time per node in cloths of up to 16 million nodes", false, true, ever_larger_cloths,
+     of_sizes},
+    {"peers", "comparison with the same scenes in other languages and libraries (scripts/peers)", false, true,
+     scenes_of_peers, of_peers},
     {"cluster",
      "several processes on one or more machines: the cost of messages, and estimates for larger clusters",
-     false,
-     true,
-     cluster_scenes,
-     {baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1}},
-    {"garment",
-     "jeans on a body, dressing and draped: Figure 6 of Vassilev",
-     false,
-     true,
-     jeans,
-     {all_that_dress, cheapest_method, garment_tables, false, nullptr, is_dressed_soon}},
+     false, true, cluster_scenes, of_ranks},
+    {"garment", "jeans on a body, dressing and draped: Figure 6 of Vassilev", false, true, jeans,
+     of_dressings},
     {guide_suite,
-     "recommended integrator, backend and step for each cloth and body, as mssim guide finds them",
-     false,
-     true,
-     scenes_of_guide,
-     {guide_backends, every_integrator, no_tables}},
+     "recommended integrator, backend and step for each cloth and body, as mssim guide finds them", false,
+     true, scenes_of_guide, of_guides},
 });
 
 bool belongs(const Suite& suite, std::string_view name) {
-  return name == suite.name || (name == suites_of_tables && suite.in_tables);
+  return name == suite.name || (name == "tables" && suite.in_tables);
 }
 
 }  // namespace
@@ -218,13 +196,6 @@ PaperLegend paper_legend() {
 
 std::span<const Suite> suites() { return table; }
 
-std::vector<std::string> suite_names() {
-  std::vector<std::string> names;
-  for (const Suite& suite : table) names.emplace_back(suite.name);
-  names.emplace_back(suites_of_tables);
-  return names;
-}
-
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed) {
   std::vector<std::string> scenes;
   for (const Suite& suite : table)
@@ -233,13 +204,11 @@ std::vector<std::string> scenes_of_suite(std::string_view name, bool timed) {
   return scenes;
 }
 
-std::vector<std::string_view> variants_of_suite(std::string_view name,
-                                                std::optional<std::string_view> scene) {
+std::vector<std::string_view> variants_of_suite(std::string_view name, std::string_view scene) {
   std::vector<std::string_view> variants;
   for (const Suite& suite : table)
-    if (belongs(suite, name) && (!scene || std::ranges::find(suite.scenes, *scene) != suite.scenes.end()))
-      for (const std::string_view variant : suite.variants)
-        if (std::ranges::find(variants, variant) == variants.end()) variants.push_back(variant);
+    if (belongs(suite, name) && std::ranges::find(suite.scenes, scene) != suite.scenes.end())
+      for (const std::string_view variant : suite.variants) add_once(variants, variant);
   return variants;
 }
 

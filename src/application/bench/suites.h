@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,17 +46,12 @@ std::span<const Suite> suites();
 /// The papers' names from the tables of backends, integrators and suites.
 PaperLegend paper_legend();
 
-/// The names of the suites, and "tables".
-std::vector<std::string> suite_names();
-
 /// The scenes, each once, of the suite `name`, or of all suites in "tables": of timed suites, or of the
 /// others.
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
 
-/// The variants, each once, of the suite `name`, or of all suites in "tables"; given a scene, of those that
-/// have it.
-std::vector<std::string_view> variants_of_suite(std::string_view name,
-                                                std::optional<std::string_view> scene = std::nullopt);
+/// The variants, each once, of the suite `name`, or of all suites in "tables", that have the scene.
+std::vector<std::string_view> variants_of_suite(std::string_view name, std::string_view scene);
 
 /// The comparison of the suite `name`. For "tables" and an empty name, it is that of `bench`'s default
 /// backends.

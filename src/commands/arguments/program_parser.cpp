@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
-#include <span>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -16,20 +15,12 @@ namespace {
 /// An entry of a help page, in lines that fit a terminal: `name` on the left, the text on the right.
 std::string help_entry(const std::string& name, const std::string& text) {
   constexpr std::size_t left_column = 26, page_width = 80;
-  std::string page = "  " + name, line;
+  const std::string margin(left_column, ' ');
+  std::string page, left = "  " + name;
   // A name that fills its column gets a line of its own.
-  if (page.size() + 2 > left_column) page += '\n';
-  const auto put = [&] {
-    const std::size_t start = page.rfind('\n') + 1;
-    page.append(left_column - (page.size() - start), ' ').append(line).append("\n");
-    line.clear();
-  };
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (!line.empty() && left_column + line.size() + 1 + word.size() > page_width) put();
-    line.append(line.empty() ? "" : " ").append(word);
-  }
-  put();
+  left += left.size() + 2 > left_column ? '\n' + margin : margin.substr(left.size());
+  std::istringstream lines(wrapped(text, page_width - left_column, ""));
+  for (std::string line; std::getline(lines, line); left = margin) page += left + line + '\n';
   return page;
 }
 

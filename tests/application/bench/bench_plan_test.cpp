@@ -1,11 +1,6 @@
 #include "application/bench/bench_plan.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "application/bench/suites.h"
 #include "bench/results/result.h"
@@ -17,8 +12,6 @@
 namespace mssim {
 namespace {
 
-using testing::SizeIs;
-
 class BenchPlanTest : public TemporaryFolderTest {
  protected:
   BenchPlanTest() {
@@ -27,6 +20,13 @@ class BenchPlanTest : public TemporaryFolderTest {
     options_.integrators = {"semi-euler"};
     options_.execution.threads = 1;
     options_.rounds = 1;
+  }
+
+  void expect_refused(const std::vector<std::string>& backends) {
+    for (const std::string& backend : backends) {
+      options_.backends = {backend};
+      EXPECT_THROW(plan_of(options_), UsageError) << backend;
+    }
   }
 
   std::string text_ = text_of(source_file("scenes/cloth2500.json"));
@@ -81,9 +81,7 @@ TEST_F(BenchPlanTest, RefusesToTraceOrResumeWithoutAFolder) {
 }
 
 std::vector<std::string_view> names_in(const std::vector<const BackendInfo*>& backends) {
-  std::vector<std::string_view> names;
-  for (const BackendInfo* backend : backends) names.push_back(backend->name);
-  return names;
+  return mapped<std::string_view>(backends, &BackendInfo::name);
 }
 
 TEST_F(BenchPlanTest, HasARowForEachNumberOfThreadsButOfABackendOfOneThread) {
@@ -92,7 +90,7 @@ TEST_F(BenchPlanTest, HasARowForEachNumberOfThreadsButOfABackendOfOneThread) {
   options_.execution.threads = 2;
   BenchPlan plan = plan_of(options_);
   EXPECT_THAT(names_in(plan.timed.front().backends),
-              testing::ElementsAre("serial", "threads-mutex:1", "threads-mutex", "openmp:1", "openmp"));
+              ElementsAre("serial", "threads-mutex:1", "threads-mutex", "openmp:1", "openmp"));
   EXPECT_EQ(plan.provenance.threads, 2);
   const System system = plan.timed.front().prepare().system;
   for (const BackendInfo* backend : plan.timed.front().backends) {
@@ -108,19 +106,14 @@ TEST_F(BenchPlanTest, HasARowOnceThatIsNamedByItselfToo) {
   options_.backends = {"openmp:1", "openmp"};
   options_.threads = {1, 2};
   options_.execution.threads = 2;
-  const BenchPlan plan = plan_of(options_);
-  std::vector<std::string_view> names;
-  for (const BackendInfo* backend : plan.settings.backends) names.push_back(backend->name);
-  EXPECT_THAT(names, testing::UnorderedElementsAre("openmp:1", "openmp"));
+  EXPECT_THAT(names_in(plan_of(options_).settings.backends),
+              testing::UnorderedElementsAre("openmp:1", "openmp"));
 }
 
 TEST_F(BenchPlanTest, TakesABackendOnItsOwnNumberOfThreads) {
   options_.backends = {"openmp:2", "openmp"};
-  EXPECT_THAT(names_in(plan_of(options_).settings.backends), testing::ElementsAre("openmp", "openmp:2"));
-  for (const char* wrong : {"serial:2", "openmp:0", "openmp:x", "openmp:4000"}) {
-    options_.backends = {wrong};
-    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
-  }
+  EXPECT_THAT(names_in(plan_of(options_).settings.backends), ElementsAre("openmp", "openmp:2"));
+  expect_refused({"serial:2", "openmp:0", "openmp:x", "openmp:4000"});
 }
 
 TEST_F(BenchPlanTest, HasARowForEachInstructionSetThatIsAskedFor) {
@@ -132,9 +125,8 @@ TEST_F(BenchPlanTest, HasARowForEachInstructionSetThatIsAskedFor) {
   options_.threads = {1, 2};
   options_.execution.threads = 2;
   BenchPlan plan = plan_of(options_);
-  EXPECT_THAT(
-      names_in(plan.settings.backends),
-      testing::ElementsAre("serial", "openmp:" + other + ":1", "openmp:" + other, "openmp:1", "openmp"));
+  EXPECT_THAT(names_in(plan.settings.backends),
+              ElementsAre("serial", "openmp:" + other + ":1", "openmp:" + other, "openmp:1", "openmp"));
   const System system = plan.timed.front().prepare().system;
   for (const BackendInfo* backend : plan.settings.backends) {
     if (!backend->has_vectors) continue;
@@ -153,24 +145,21 @@ TEST_F(BenchPlanTest, HasARowForEachInstructionSetThatIsAskedFor) {
   options_.instruction_sets = {other};
   options_.backends = {"openmp", "openmp:" + best};
   plan = plan_of(options_);
-  EXPECT_THAT(names_in(plan.settings.backends), testing::ElementsAre("openmp", "openmp:" + best));
+  EXPECT_THAT(names_in(plan.settings.backends), ElementsAre("openmp", "openmp:" + best));
   EXPECT_EQ(plan.settings.execution.instruction_set, sets.back());
   EXPECT_EQ(execution_of(*plan.settings.backends[1], plan.settings.execution).instruction_set, sets[0]);
 
-  for (const std::string& wrong : {"serial:" + best, "openmp:" + best + ":" + other, "openmp:1:" + best}) {
-    options_.backends = {wrong};
-    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
-  }
+  expect_refused({"serial:" + best, "openmp:" + best + ":" + other, "openmp:1:" + best});
   options_.backends = {"openmp"};
   options_.instruction_sets = {"parallel"};
-  EXPECT_THAT([&] { plan_of(options_); }, testing::ThrowsMessage<UsageError>(testing::HasSubstr(best)));
+  EXPECT_THAT([&] { plan_of(options_); }, testing::ThrowsMessage<UsageError>(HasSubstr(best)));
 }
 
 TEST_F(BenchPlanTest, TakesTheBaselineInDoublePrecision) {
   options_.backends = {"serial", "serial:double"};
   options_.integrators = {"semi-euler", "rk4", "verlet"};
   BenchPlan plan = plan_of(options_);
-  ASSERT_THAT(names_in(plan.settings.backends), testing::ElementsAre("serial", "serial:double"));
+  ASSERT_THAT(names_in(plan.settings.backends), ElementsAre("serial", "serial:double"));
   const BackendInfo &single = *plan.settings.backends[0], &twice = *plan.settings.backends[1];
   EXPECT_NE(twice.role, BackendRole::baseline);
   const System system = plan.timed.front().prepare().system;
@@ -185,10 +174,7 @@ TEST_F(BenchPlanTest, TakesTheBaselineInDoublePrecision) {
     EXPECT_EQ(end_of(*backend), end_of(*make_reference(system, *integrator, 1e-4))) << integrator->name;
   }
   EXPECT_THROW(make_backend(twice, system, *find_integrator("implicit-euler"), 1e-4, {}), Unsupported);
-  for (const char* wrong : {"hybrid:double", "serial:double:double", "serial:double:2", "openmp:2:double"}) {
-    options_.backends = {wrong};
-    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
-  }
+  expect_refused({"hybrid:double", "serial:double:double", "serial:double:2", "openmp:2:double"});
 }
 
 TEST_F(BenchPlanTest, TakesOpenMpInDoublePrecisionWithThreadsAndInstructionSets) {
@@ -197,7 +183,7 @@ TEST_F(BenchPlanTest, TakesOpenMpInDoublePrecisionWithThreadsAndInstructionSets)
   options_.execution.threads = 2;
   const BenchPlan plan = plan_of(options_);
   ASSERT_THAT(names_in(plan.settings.backends),
-              testing::ElementsAre("openmp", "openmp:double", "openmp:double:1", "openmp:double:" + least));
+              ElementsAre("openmp", "openmp:double", "openmp:double:1", "openmp:double:" + least));
   EXPECT_EQ(std::ranges::count(plan.settings.backends, true, &BackendInfo::in_double), 3);
   EXPECT_GT(plan.settings.backends[1]->step_share, plan.settings.backends[0]->step_share);
   EXPECT_EQ(plan.settings.backends[2]->threads, 1);
@@ -207,7 +193,7 @@ TEST_F(BenchPlanTest, TakesOpenMpInDoublePrecisionWithThreadsAndInstructionSets)
 TEST_F(BenchPlanTest, TakesABackendThatStepsEachBodyForItself) {
   options_.scenes = {"bodies3858"};
   options_.backends = {"openmp:each:2"};
-  EXPECT_THAT(names_in(plan_of(options_).settings.backends), testing::ElementsAre("openmp:each:2"));
+  EXPECT_THAT(names_in(plan_of(options_).settings.backends), ElementsAre("openmp:each:2"));
   options_.backends = {"openmp:each:2", "serial", "serial:each", "openmp:each"};
   options_.threads = {1, 2};
   options_.execution.threads = 2;
@@ -220,11 +206,8 @@ TEST_F(BenchPlanTest, TakesABackendThatStepsEachBodyForItself) {
     EXPECT_EQ(backend->role == BackendRole::baseline, backend->name == "serial") << backend->name;
     EXPECT_EQ(execution_of(*backend, plan.settings.execution).threads, backend->name.ends_with(":1") ? 1 : 2);
   }
-  for (const char* wrong :
-       {"serial:each:2", "openmp:2:each", "openmp:each:each", "openmp:each:0", "mpi:each", "openmp:eac"}) {
-    options_.backends = {wrong};
-    EXPECT_THROW(plan_of(options_), UsageError) << wrong;
-  }
+  expect_refused(
+      {"serial:each:2", "openmp:2:each", "openmp:each:each", "openmp:each:0", "mpi:each", "openmp:eac"});
 }
 
 /// The plan of a suite, where no user names backends or threads.
@@ -237,11 +220,11 @@ BenchPlan plan_of_suite(std::string suite, const std::vector<std::string>& scene
 }
 
 TEST(Suites, HaveTheirVariantsOnTheirOwnScenesWhereNobodyNamesBackendsOrThreads) {
-  EXPECT_THAT(variants_of_suite("table1"), testing::ElementsAre("threads-mutex:10"));
-  EXPECT_THAT(variants_of_suite("table3"),
+  EXPECT_THAT(variants_of_suite("table1", "cloth2500"), ElementsAre("threads-mutex:10"));
+  EXPECT_THAT(variants_of_suite("table3", "bodies3858"),
               testing::IsSupersetOf({"serial:each", "threads-mutex:10", "threads-mutex:each",
                                      "threads-mutex:each:10", "hybrid:each"}));
-  EXPECT_TRUE(variants_of_suite("").empty());
+  EXPECT_TRUE(variants_of_suite("", "cloth2500").empty());
   for (const Suite& suite : suites()) {
     if (!suite.timed || suite.name == guide_suite || suite.comparison.described_too) continue;
     const BenchPlan plan = plan_of_suite(std::string(suite.name));  // which holds its rows
@@ -267,11 +250,11 @@ TEST(Suites, HaveTheirVariantsOnTheirOwnScenesWhereNobodyNamesBackendsOrThreads)
   options.dry_run = true;
   options.execution.threads = 1;
   const BenchPlan on_one = plan_of(options);
-  EXPECT_THAT(names_in(on_one.settings.backends), testing::Not(testing::Contains("threads-mutex:10")));
+  EXPECT_THAT(names_in(on_one.timed.front().backends), Not(Contains("threads-mutex:10")));
   options.execution.threads = 0;
   options.backends = {"hybrid:each"};
   const BenchPlan named = plan_of(options);
-  EXPECT_THAT(names_in(named.timed.front().backends), testing::ElementsAre("hybrid:each"));
+  EXPECT_THAT(names_in(named.timed.front().backends), ElementsAre("hybrid:each"));
 }
 
 TEST(Suites, HaveVariantsOfBackendsThatThePaperHas) {
@@ -300,8 +283,7 @@ TEST(Suites, NameScenesAndIntegratorsThatExist) {
   for (const Suite& suite : suites()) {
     for (const std::string_view scene : suite.scenes)
       EXPECT_TRUE(is_scene(scene)) << suite.name << ": " << scene;
-    for (const std::string_view integrator : suite.comparison.integrators)
-      EXPECT_NE(find_integrator(integrator), nullptr) << suite.name << ": " << integrator;
+    EXPECT_NO_THROW(chosen_integrators({}, suite.comparison.integrators)) << suite.name;
     EXPECT_FALSE(suite.comparison.integrators.empty() || suite.comparison.backends().empty()) << suite.name;
   }
 }
@@ -324,11 +306,11 @@ TEST(Suites, CalledTablesAreThoseOfThePaperAlone) {
 
 TEST(Suites, OfClustersMeasureRanksInPowersOfTwoAndWideClothsWithOneNumberOfThem) {
   const Comparison& cluster = comparison_of_suite("cluster");
-  EXPECT_THAT(backends_of("cluster"), testing::ElementsAre("serial", "openmp"));
-  EXPECT_THAT(cluster.programs({.threads = 1, .ranks = 6}),
-              testing::ElementsAre("mpi:1", "mpi:2", "mpi:4", "mpi:6", "mpi-copies:2", "mpi-copies:4",
-                                   "mpi-copies:6"));
-  EXPECT_THAT(cluster.programs({.threads = 1, .ranks = 1}), testing::ElementsAre("mpi:1"));
+  EXPECT_THAT(backends_of("cluster"), ElementsAre("serial", "openmp"));
+  EXPECT_THAT(
+      cluster.programs({.threads = 1, .ranks = 6}),
+      ElementsAre("mpi:1", "mpi:2", "mpi:4", "mpi:6", "mpi-copies:2", "mpi-copies:4", "mpi-copies:6"));
+  EXPECT_THAT(cluster.programs({.threads = 1, .ranks = 1}), ElementsAre("mpi:1"));
   EXPECT_GE(cluster.programs({.threads = 1}).size(), 5U) << "one, two and four at least";
   for (const std::string_view backend : {"serial", "mpi:1", "mpi:4", "mpi-copies:2"})
     EXPECT_TRUE(cluster.is_compared("cloth350k", backend)) << backend;

@@ -1,8 +1,5 @@
 #include "application/bench/bench_run.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <thread>
 
 #include "backends/backends.h"
@@ -12,9 +9,6 @@
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 ResultRow row(const std::string& scene, const std::string& backend, int rounds = 3) {
   ResultRow row;
@@ -32,15 +26,15 @@ std::string listed(const std::vector<ResultRow>& rows) {
 }
 
 TEST(BenchRows, ReplaceAScenesRowsWhereTheyStand) {
-  BenchRows rows({row("a", "1"), row("a", "2"), row("b", "1"), row("c", "1")});
-  EXPECT_EQ(listed(rows.of_scene("a")), "a1 a2 ");
-  EXPECT_EQ(listed(rows.of_scene("d")), "");
-  rows.replace("b", {row("b", "8"), row("b", "9")});
-  EXPECT_EQ(listed(rows.all()), "a1 a2 b8 b9 c1 ");
-  rows.replace("a", {row("a", "3")});
-  EXPECT_EQ(listed(rows.all()), "a3 b8 b9 c1 ");
-  rows.replace("d", {row("d", "1"), row("d", "2")});
-  EXPECT_EQ(listed(rows.all()), "a3 b8 b9 c1 d1 d2 ");
+  std::vector<ResultRow> rows{row("a", "1"), row("a", "2"), row("b", "1"), row("c", "1")};
+  EXPECT_EQ(listed(rows_of_scene(rows, "a")), "a1 a2 ");
+  EXPECT_EQ(listed(rows_of_scene(rows, "d")), "");
+  replace_rows(rows, "b", {row("b", "8"), row("b", "9")});
+  EXPECT_EQ(listed(rows), "a1 a2 b8 b9 c1 ");
+  replace_rows(rows, "a", {row("a", "3")});
+  EXPECT_EQ(listed(rows), "a3 b8 b9 c1 ");
+  replace_rows(rows, "d", {row("d", "1"), row("d", "2")});
+  EXPECT_EQ(listed(rows), "a3 b8 b9 c1 d1 d2 ");
 }
 
 TEST(BenchRows, AreFinishedWhenEachHasItsRoundsOrCannotRun) {
