@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -59,9 +58,7 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   words.insert(words.end(), program.environment.begin(), program.environment.end());
   words.push_back(program.program.string());
   words.insert(words.end(), program.arguments.begin(), program.arguments.end());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = argv_of(words);
 
   sigset_t none, all;
   ::sigemptyset(&none);
@@ -88,23 +85,10 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   return process;
 }
 
-/// False after `patience`; true also if the other end is closed.
-bool readable(int descriptor, std::chrono::milliseconds patience) {
-  using std::chrono::steady_clock;
-  const steady_clock::time_point limit = steady_clock::now() + patience;
-  while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - steady_clock::now());
-    pollfd event{descriptor, POLLIN, 0};
-    if (::poll(&event, 1, static_cast<int>(std::clamp<long>(left.count(), 0, 1'000'000'000))) > 0)
-      return true;
-    if (steady_clock::now() >= limit) return false;
-  }
-}
-
 bool receive(int descriptor, void* bytes, std::size_t count) {
   auto* next = static_cast<char*>(bytes);
   while (count > 0) {
-    if (!readable(descriptor, supervisor_patience)) return false;
+    if (!is_readable(descriptor, supervisor_patience)) return false;
     const ssize_t taken = ::recv(descriptor, next, count, 0);
     if (taken < 0 && errno == EINTR) continue;
     if (taken <= 0) return false;
@@ -166,7 +150,7 @@ std::optional<std::uint64_t> SupervisedProcess::peak_bytes() const {
 const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
   if (ended_) return end_;
   if (paused_ && patience.count() > 0) resume();
-  if (!ended_ && !readable(channel_.get(), patience)) ::shutdown(channel_.get(), SHUT_WR);
+  if (!ended_ && !is_readable(channel_.get(), patience)) ::shutdown(channel_.get(), SHUT_WR);
   SupervisorAnswer answer;
   while (!ended_) hear(answer);
   return end_;
@@ -190,7 +174,7 @@ bool SupervisedProcess::ask(SupervisorRequest request, SupervisorAnswer& answer)
 bool SupervisedProcess::says_something() const {
   constexpr std::chrono::milliseconds look{500};
   for (std::chrono::milliseconds waited{0}; waited < supervisor_patience; waited += look) {
-    if (readable(channel_.get(), look)) return true;
+    if (is_readable(channel_.get(), look)) return true;
     int status = 0;
     if (::waitpid(supervisor_, &status, WUNTRACED | WNOHANG) == supervisor_ && WIFSTOPPED(status))
       ::kill(supervisor_, SIGCONT);

@@ -26,11 +26,7 @@ constexpr int slice_ms = 100;
 constexpr const char* folder_of_short_name = "/tmp";
 
 using Cause = ConversationFailure::Cause;
-
-bool is_readable(int descriptor) {
-  pollfd waiting{descriptor, POLLIN, 0};
-  return descriptor >= 0 && ::poll(&waiting, 1, 0) > 0;
-}
+using namespace std::chrono_literals;
 
 /// The printable form of a line for a sentence.
 std::string in_quotes(std::string_view line) { return '"' + printable(line) + '"'; }
@@ -105,7 +101,7 @@ void Conversation::accept() {
     if (errno == EMFILE || errno == ENFILE)
       throw std::runtime_error(std::string("cannot accept the program's connection (") +
                                std::strerror(errno) + "); raise the limit of open files (ulimit -n)");
-    if (is_readable(end_descriptor_))
+    if (is_readable(end_descriptor_, 0ms))
       throw ConversationFailure(Cause::closed, "before it connected to MSSIM_SOCKET");
     if (Clock::now() > deadline_)
       throw ConversationFailure(
@@ -164,8 +160,9 @@ std::string Conversation::answer() {
 void Conversation::look_around() const {
   throw_if_ending_signal_noted();
   // Everything that it sent before its end has been read.
-  if (is_readable(end_descriptor_)) throw ConversationFailure(Cause::closed, "before it answered " + asked_);
-  if (is_readable(listener_.get()))
+  if (is_readable(end_descriptor_, 0ms))
+    throw ConversationFailure(Cause::closed, "before it answered " + asked_);
+  if (is_readable(listener_.get(), 0ms))
     throw ConversationFailure(Cause::answer, "connected a second time before it answered " + asked_);
   if (Clock::now() > deadline_)
     throw ConversationFailure(Cause::silence,
