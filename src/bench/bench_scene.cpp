@@ -297,9 +297,7 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
     if (counts(row)) most = std::max(most, row.samples_ms.size());
   for (Combination& combination : combinations) {
     if (!combination.backend) continue;
-    const auto row = std::ranges::find_if(
-        earlier, [&](const ResultRow& other) { return same_combination(other, combination.row); });
-    if (row != earlier.end()) {
+    if (const ResultRow* row = find_combination(earlier, combination.row)) {
       if (is_wrong(*row) && row->samples_ms.size() >= most) {
         if (most > 0) fail(combination, row->status);
         continue;

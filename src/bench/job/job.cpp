@@ -234,9 +234,8 @@ void take_verification(Combination& combination, const Verification& verificatio
 
 void take_verification(Combination& combination, const std::vector<ResultRow>& verified) {
   ResultRow& row = combination.row;
-  const auto found =
-      std::ranges::find_if(verified, [&](const ResultRow& other) { return same_combination(other, row); });
-  if (found == verified.end()) return fail(combination, "failed: no earlier process has verified it");
+  const ResultRow* found = find_combination(verified, row);
+  if (!found) return fail(combination, "failed: no earlier process has verified it");
   if (!found->verified) return fail(combination, status_of(*found));
   if (found->device != row.device || found->threads != row.threads || found->nodes != row.nodes ||
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)

@@ -30,19 +30,10 @@ std::string size_of(const ResultRow& row) {
 /// With fewer samples per side, even times that do not overlap are not significantly different.
 constexpr std::size_t fewest_samples = 5;
 
-const ResultRow* find(std::span<const ResultRow> rows, const ResultRow& row) {
-  const auto same = std::ranges::find_if(
-      rows, [&](const ResultRow& candidate) { return same_combination(candidate, row); });
-  return same == rows.end() ? nullptr : &*same;
-}
-
 /// A combination and its time in BASE.
-template <class Combination>
-ComparedRow row_of(const Combination& combination, const std::vector<double>& base_ms) {
+ComparedRow row_of(const CombinationNames& combination, const std::vector<double>& base_ms) {
   ComparedRow row;
-  row.scene = combination.scene;
-  row.backend = combination.backend;
-  row.integrator = combination.integrator;
+  static_cast<CombinationNames&>(row) = combination;
   row.base_ms = median(base_ms);
   row.base_samples_ms = base_ms;
   return row;
@@ -97,7 +88,7 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
 std::vector<std::string> differences(std::span<const ResultRow> before, std::span<const ResultRow> now) {
   std::vector<std::string> sentences;
   for (const ResultRow& row : before) {
-    const ResultRow* same = find(now, row);
+    const ResultRow* same = find_combination(now, row);
     if (!same || !row.ms_per_step || !same->ms_per_step) continue;
     add(sentences, "the device of " + row.backend, row.device, same->device);
     add(sentences, "the number of threads of " + row.backend, std::to_string(row.threads),
@@ -142,7 +133,7 @@ RunComparison compare(std::span<const ResultRow> base, std::span<const ResultRow
   RunComparison comparison;
   comparison.threshold = threshold;
   for (const ResultRow& row : base) {
-    const ResultRow* same = find(next, row);
+    const ResultRow* same = find_combination(next, row);
     if (!same)
       comparison.only_base.push_back(combination_name(row));
     else if (!counts(row))
@@ -151,7 +142,7 @@ RunComparison compare(std::span<const ResultRow> base, std::span<const ResultRow
       comparison.rows.push_back(compare_rows(row, *same, threshold));
   }
   for (const ResultRow& row : next)
-    if (!find(base, row)) comparison.only_new.push_back(combination_name(row));
+    if (!find_combination(base, row)) comparison.only_new.push_back(combination_name(row));
   add_means(comparison);
   return comparison;
 }
