@@ -118,18 +118,20 @@ SupervisedProcess::SupervisedProcess(const SupervisedProgram& program) {
   Descriptor other(ends[1]);
   supervisor_ = start_supervisor(program, other.get());
   other.close();
-  SupervisorAnswer answer;
-  if (!hear(answer)) fail(program, "mssim's own program supervise did not start it");
-  if (answer.word != SupervisorWord::started) {
+  const std::optional<SupervisorAnswer> answer = hear();
+  if (!answer) fail(program, "mssim's own program supervise did not start it");
+  if (answer->word != SupervisorWord::started) {
     ::waitpid(supervisor_, nullptr, 0);
-    fail(program, why_not_started(program, answer));
+    fail(program, why_not_started(program, *answer));
   }
-  program_ = answer.value;
+  program_ = answer->value;
 }
 
 SupervisedProcess::~SupervisedProcess() { end(std::chrono::milliseconds{0}); }
 
-void SupervisedProcess::pause() { paused_ = ask(SupervisorRequest::pause) || paused_; }
+void SupervisedProcess::pause() {
+  if (ask(SupervisorRequest::pause)) paused_ = true;
+}
 
 void SupervisedProcess::resume() {
   ask(SupervisorRequest::resume);
@@ -142,31 +144,24 @@ double SupervisedProcess::processor_seconds() const {
 }
 
 std::optional<std::uint64_t> SupervisedProcess::peak_bytes() const {
-  SupervisorAnswer answer;
-  if (!ask(SupervisorRequest::peak_memory, answer) || answer.peak_bytes == 0) return std::nullopt;
-  return answer.peak_bytes;
+  const std::optional<SupervisorAnswer> answer = ask(SupervisorRequest::peak_memory);
+  return answer && answer->peak_bytes > 0 ? std::optional(answer->peak_bytes) : std::nullopt;
 }
 
 const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
   if (ended_) return end_;
   if (paused_ && patience.count() > 0) resume();
   if (!ended_ && !is_readable(channel_.get(), patience)) ::shutdown(channel_.get(), SHUT_WR);
-  SupervisorAnswer answer;
-  while (!ended_) hear(answer);
+  while (!ended_) hear();
   return end_;
 }
 
-bool SupervisedProcess::ask(SupervisorRequest request) const {
-  SupervisorAnswer answer;
-  return ask(request, answer);
-}
-
-/// Sends a request and receives its answer. False if the program has ended.
-bool SupervisedProcess::ask(SupervisorRequest request, SupervisorAnswer& answer) const {
-  if (ended_) return false;
+/// Sends a request and receives its answer. Nothing if the program has ended.
+std::optional<SupervisorAnswer> SupervisedProcess::ask(SupervisorRequest request) const {
+  if (ended_) return std::nullopt;
   // If the supervisor is gone, hear() detects it.
   ::send(channel_.get(), &request, sizeof request, MSG_NOSIGNAL);
-  return hear(answer);
+  return hear();
 }
 
 /// Waits for data from the supervisor, and continues it if it was stopped: the program could send signals to
@@ -182,21 +177,23 @@ bool SupervisedProcess::says_something() const {
   return false;
 }
 
-/// Receives an answer. False if the program has ended or there is no answer.
-bool SupervisedProcess::hear(SupervisorAnswer& answer) const {
+/// Receives an answer. Nothing if the program has ended or there is no answer.
+std::optional<SupervisorAnswer> SupervisedProcess::hear() const {
   if (!says_something()) {
     lose(
         "was given up, because mssim's program supervise did not answer (a process that SIGKILL does not "
         "end?)");
-    return false;
+    return std::nullopt;
   }
+  SupervisorAnswer answer;
   if (!receive(channel_.get(), &answer, sizeof answer)) {
     lose("was ended because mssim's program supervise, which monitors it, was ended");
-    return false;
+    return std::nullopt;
   }
   processor_seconds_ = std::max(processor_seconds_, answer.processor_seconds);
-  if (answer.word == SupervisorWord::ended) take_end(answer);
-  return answer.word != SupervisorWord::ended;
+  if (answer.word != SupervisorWord::ended) return answer;
+  take_end(answer);
+  return std::nullopt;
 }
 
 void SupervisedProcess::take_end(const SupervisorAnswer& answer) const {

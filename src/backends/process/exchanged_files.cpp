@@ -32,15 +32,17 @@ bool is_unwritten(const Vec3d& vector) {
                              [](double number) { return std::bit_cast<std::uint64_t>(number) == unwritten; });
 }
 
-std::size_t bytes_of(std::size_t nodes) { return 2 * sizeof(Vec3d) * nodes; }
+std::size_t size_of(std::size_t nodes) { return 2 * sizeof(Vec3d) * nodes; }
 
-/// Reads `bytes` bytes from offset `byte` into `data`; false if the file ends before.
-bool read_at(const Descriptor& file, std::size_t byte, void* data, std::size_t bytes) {
+/// Moves all bytes between `data` and the file from offset `byte` on; `move` is pread or pwrite. False if it
+/// fails, or if the file ends before.
+template <class Move, class Byte>
+bool move_all(const Move& move, const Descriptor& file, std::size_t byte, Byte* data, std::size_t bytes) {
   while (bytes > 0) {
-    const ssize_t count = ::pread(file.get(), data, bytes, static_cast<off_t>(byte));
+    const ssize_t count = move(file.get(), data, bytes, static_cast<off_t>(byte));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;
-    data = static_cast<char*>(data) + count;
+    data += count;
     byte += static_cast<std::size_t>(count);
     bytes -= static_cast<std::size_t>(count);
   }
@@ -163,11 +165,11 @@ StateFile::StateFile(std::size_t nodes, const std::filesystem::path& elsewhere) 
   }
   if (make(elsewhere)) return;
   const int error = errno;
-  throw std::runtime_error(fmt::format(
-      "cannot make {} of {} bytes ({}); {}", path_.string(), bytes_of(nodes), std::strerror(error),
-      error == EFBIG                       ? "raise the limit on file sizes (ulimit -f)"
-      : error == EMFILE || error == ENFILE ? "raise the limit of open files (ulimit -n)"
-                                           : "set TMPDIR to a folder with more room"));
+  throw std::runtime_error(
+      fmt::format("cannot make {} of {} bytes ({}); {}", path_.string(), size_of(nodes), std::strerror(error),
+                  error == EFBIG                       ? "raise the limit on file sizes (ulimit -f)"
+                  : error == EMFILE || error == ENFILE ? "raise the limit of open files (ulimit -n)"
+                                                       : "set TMPDIR to a folder with more room"));
 }
 
 bool StateFile::make(const std::filesystem::path& folder) {
@@ -175,49 +177,43 @@ bool StateFile::make(const std::filesystem::path& folder) {
   file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   if (!file_.is_open()) return false;
   // Reserve the space now, so that it is not missing during a run.
-  const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes_of(nodes_)));
+  const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(size_of(nodes_)));
   errno = error;
   return error == 0;
 }
 
-void StateFile::write_at(std::size_t byte, const void* data, std::size_t bytes) const {
-  while (bytes > 0) {
-    const ssize_t count = ::pwrite(file_.get(), data, bytes, static_cast<off_t>(byte));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0)
-      throw std::runtime_error(
-          fmt::format("cannot write {} ({}); make room there", path_.string(), std::strerror(errno)));
-    data = static_cast<const char*>(data) + count;
-    byte += static_cast<std::size_t>(count);
-    bytes -= static_cast<std::size_t>(count);
-  }
+void StateFile::write_at(std::size_t byte, std::string_view bytes) const {
+  if (!move_all(::pwrite, file_, byte, bytes.data(), bytes.size()))
+    throw std::runtime_error(
+        fmt::format("cannot write {} ({}); make room there", path_.string(), std::strerror(errno)));
 }
 
 void StateFile::write(const State& state) const {
-  const std::size_t half = sizeof(Vec3d) * nodes_;
-  write_at(0, state.position.data(), half);
-  write_at(half, state.velocity.data(), half);
+  write_at(0, bytes_of(state.position));
+  write_at(sizeof(Vec3d) * nodes_, bytes_of(state.velocity));
 }
 
 void StateFile::clear() const {
   constexpr std::size_t numbers = 8192;
   const std::vector<double> block(numbers, std::bit_cast<double>(unwritten));
-  const std::size_t bytes = bytes_of(nodes_);
+  const std::size_t bytes = size_of(nodes_);
   for (std::size_t byte = 0; byte < bytes; byte += numbers * sizeof(double))
-    write_at(byte, block.data(), std::min(numbers * sizeof(double), bytes - byte));
+    write_at(byte, bytes_of(block).substr(0, bytes - byte));
 }
 
 State StateFile::read() const {
   State state;
-  state.position.resize(nodes_);
-  state.velocity.resize(nodes_);
   const std::size_t half = sizeof(Vec3d) * nodes_;
-  if (!read_at(file_, 0, state.position.data(), half) || !read_at(file_, half, state.velocity.data(), half)) {
+  const auto read = [&](std::vector<Vec3d>& vectors, std::size_t byte) {
+    vectors.resize(nodes_);
+    return move_all(::pread, file_, byte, reinterpret_cast<char*>(vectors.data()), half);
+  };
+  if (!read(state.position, 0) || !read(state.velocity, half)) {
     struct stat status {};
     ::fstat(file_.get(), &status);
     throw StateFileFailure(fmt::format("left a state file of {} instead of {}",
                                        pluralize(static_cast<std::uint64_t>(status.st_size), "byte"),
-                                       bytes_of(nodes_)));
+                                       size_of(nodes_)));
   }
   const auto missing = static_cast<std::size_t>(std::ranges::count_if(state.position, is_unwritten) +
                                                 std::ranges::count_if(state.velocity, is_unwritten));

@@ -162,11 +162,11 @@ std::string kernel_name() {
 std::string read_generation(const fs::path& file) {
   const std::string vendor = value_of(file, "vendor_id", ':');
   if (!vendor.empty())
-    return std::string(cpu_generation({vendor, leading_number<int>(value_of(file, "cpu family", ':')),
-                                       leading_number<int>(value_of(file, "model", ':'))}));
+    return std::string(cpu_generation(vendor, leading_number<int>(value_of(file, "cpu family", ':')),
+                                      leading_number<int>(value_of(file, "model", ':'))));
   const std::string implementer = value_of(file, "CPU implementer", ':');
   const std::string part = value_of(file, "CPU part", ':');  // "0xd0c"
-  return std::string(cpu_generation({implementer, 0, hexadecimal_number(part)}));
+  return std::string(cpu_generation(implementer, 0, hexadecimal_number(part)));
 }
 
 std::vector<std::pair<std::string, std::string>> thread_environment() {
@@ -253,10 +253,10 @@ bool binds_threads(const Provenance& provenance) {
 
 }  // namespace
 
-std::string_view cpu_generation(const CpuIdentification& cpu) {
+std::string_view cpu_generation(std::string_view maker, int family, int model) {
   const auto found = std::ranges::find_if(generations, [&](const Generation& generation) {
-    return generation.maker == cpu.maker && generation.family == cpu.family &&
-           cpu.model >= generation.first_model && cpu.model <= generation.last_model;
+    return generation.maker == maker && generation.family == family && model >= generation.first_model &&
+           model <= generation.last_model;
   });
   return found == std::end(generations) ? std::string_view() : found->name;
 }
