@@ -32,10 +32,10 @@ std::string host_name() {
   return {name.data(), static_cast<std::size_t>(length)};
 }
 
-bool all_complete(std::span<MPI_Request> requests) {
+bool all_complete(std::span<MPI_Request> requests, const char* action = "waiting for messages") {
   int complete = 0;
   check_mpi(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &complete, MPI_STATUSES_IGNORE),
-            "waiting for messages");
+            action);
   return complete != 0;
 }
 
@@ -258,13 +258,7 @@ void StandingMessages::begin() {
 void StandingMessages::advance() {
   if (!under_way_) return;
   const SecondsAdded timed(costs_.packed_s);
-  int complete = 0;
-  attempt([&] {
-    check_mpi(
-        MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &complete, MPI_STATUSES_IGNORE),
-        "advancing messages");
-  });
-  under_way_ = complete == 0;
+  attempt([&] { under_way_ = !all_complete(requests_, "advancing messages"); });
 }
 
 void StandingMessages::finish() {
