@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -16,6 +17,12 @@
 #include <vector>
 
 namespace mssim {
+
+/// An environment variable, or `otherwise` if it is unset or empty.
+inline std::string variable(const char* name, const char* otherwise = "") {
+  const char* value = std::getenv(name);
+  return value && *value ? value : otherwise;
+}
 
 /// An open file descriptor, closed with its owner.
 class Descriptor {

@@ -27,8 +27,7 @@ namespace {
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
                                         const std::filesystem::path& memory, const Integrator& integrator,
                                         const ExecutionOptions& options) {
-  const char* inherited = std::getenv("PYTHONPATH");
-  std::string path = inherited == nullptr ? "" : inherited;
+  std::string path = variable("PYTHONPATH");
   constexpr std::string_view python_path = "PYTHONPATH=";
   for (const std::string& given : program.environment)
     if (given.starts_with(python_path)) path = given.substr(python_path.size());

@@ -15,6 +15,7 @@
 #include <tuple>
 
 #include "platform/machine.h"
+#include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -183,8 +184,7 @@ std::vector<std::pair<std::string, std::string>> thread_environment() {
 
 /// The name of the home folder is usually the user's name.
 std::string without_home(std::string_view argument) {
-  const char* home = std::getenv("HOME");
-  const std::string_view folder = home ? home : "";
+  const std::string folder = variable("HOME");
   if (folder.size() < 2) return std::string(argument);
   std::string result;
   for (std::size_t at = 0; at < argument.size();) {

@@ -181,11 +181,7 @@ std::optional<BlowUp> find_blow_up(WindowBackend& backend, const WindowedCloth& 
 
 Verification verify_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
                             const WindowReferences& reference, double dt_s) {
-  if (reference.failure) {
-    Verification result;
-    result.failure = reference.failure;
-    return result;
-  }
+  if (reference.failure) return {.failure = reference.failure};
   backend.restart();
   backend.step(reference.steps);
   return compare_windows(backend, cloth, integrator, reference, reference.steps, dt_s);
