@@ -73,7 +73,8 @@ class ClothPiece final : public Piece {
     bands_.emplace(system, std::get<GridPatch>(system.topology), *job_.integrator, job_.dt_s, kernel_.lanes,
                    static_cast<std::size_t>(job_.threads),
                    BandCut{.steps_per_pass = steps, .piece = ColumnRange{own.first - all.first, own.count}});
-    messages_.emplace(session_, *bands_);
+    messages_.emplace(session_);
+    add_edge_columns(*messages_, session_.rank(), *bands_);
     if (ranks_ > 1) bands_->messages = &*messages_;
     bands_->set_state(system.start);
   }
@@ -179,7 +180,7 @@ class ClothPiece final : public Piece {
   std::size_t ghosts_ = 0;
   StepKernel<BandGrid> kernel_;
   std::optional<BandGrid> bands_;
-  std::optional<NeighbourMessages> messages_;
+  std::optional<StandingMessages> messages_;
 };
 
 }  // namespace

@@ -267,7 +267,7 @@ void StandingMessages::finish() {
   attempt([&] { session_.wait(requests_, peers_); });
 }
 
-NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : StandingMessages(session) {
+void add_edge_columns(StandingMessages& messages, int rank, BandGrid& bands) {
   const std::size_t ghosts = ghost_columns(*bands.integrator, bands.steps_per_pass);
   const std::size_t floats = ghosts * bands.layout.column_floats();
   const ColumnRange own = bands.own;
@@ -275,9 +275,9 @@ NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : 
     return std::span(partition.column(bands.layout, Pair::state, first), floats);
   };
   BandPartition &first = bands.partitions.front(), &last = bands.partitions.back();
-  if (own.first > 0) add(session.rank() - 1, columns(first, own.first), columns(first, own.first - ghosts));
+  if (own.first > 0) messages.add(rank - 1, columns(first, own.first), columns(first, own.first - ghosts));
   if (own.end() < bands.layout.columns)
-    add(session.rank() + 1, columns(last, own.end() - ghosts), columns(last, own.end()));
+    messages.add(rank + 1, columns(last, own.end() - ghosts), columns(last, own.end()));
 }
 
 GhostMessages::GhostMessages(const Session& session, const BodiesPart& part, const SlicedBodies& bodies)

@@ -12,9 +12,7 @@ namespace {
 /// Adds "WHAT was BEFORE and is NOW" if they differ, each sentence once.
 void add(std::vector<std::string>& sentences, const std::string& what, const std::string& before,
          const std::string& now) {
-  if (before == now) return;
-  std::string sentence = fmt::format("{} was {} and is {}", what, before, now);
-  if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
+  if (before != now) add_once(sentences, fmt::format("{} was {} and is {}", what, before, now));
 }
 
 /// Results of an mssim that did not know generations can be compared without them.
@@ -75,8 +73,7 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
   add(sentences, "the list of compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
   add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
   for (const SceneHash& scene : before.scenes)
-    if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);
-        same != now.scenes.end()) {
+    if (const SceneHash* same = found_in(now.scenes, scene.name, &SceneHash::name)) {
       add(sentences, "the hash of scene " + scene.name, to_hex(scene.fnv1a_64), to_hex(same->fnv1a_64));
       if (scene.files_fnv1a_64 && same->files_fnv1a_64)  // earlier programs did not record it
         add(sentences, "the hash of the files of scene " + scene.name, to_hex(*scene.files_fnv1a_64),
@@ -149,8 +146,7 @@ RunComparison compare(std::span<const ResultRow> base, std::span<const ResultRow
 
 void add_means(RunComparison& comparison) {
   std::vector<std::string> names{""};
-  for (const ComparedRow& row : comparison.rows)
-    if (std::ranges::find(names, row.backend) == names.end()) names.push_back(row.backend);
+  for (const ComparedRow& row : comparison.rows) add_once(names, row.backend);
   for (const std::string& name : names) {
     std::vector<double> ratios;
     for (const ComparedRow& row : comparison.rows)
