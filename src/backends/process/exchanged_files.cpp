@@ -10,7 +10,9 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -75,20 +77,22 @@ void write_number(hid_t file, const std::string& path, const std::string& unit, 
   dataset.close("writing " + path);
 }
 
-/// A list of `rows` rows of `width` numbers; `row_of(i)` is row i as an array. Written in parts, because all
-/// springs of a large scene at once would need as much memory as the scene.
-template <class Number, std::size_t width, class RowOf>
-void write_list(hid_t file, const std::string& path, const std::string& unit, std::size_t rows,
-                const RowOf& row_of) {
-  constexpr std::size_t rows_at_once = 65536;
+/// A list of what `of` makes of each row: a number, or several. Written in parts, because all springs of a
+/// large scene at once would need as much memory as the scene.
+template <class Number, class Row, class Of = std::identity>
+void write_list(hid_t file, const std::string& path, const std::string& unit, const std::vector<Row>& rows,
+                const Of& of = {}) {
+  using Value = std::remove_cvref_t<std::invoke_result_t<Of, const Row&>>;
+  constexpr std::size_t rows_at_once = 65536, width = sizeof(Value) / sizeof(Number);
   const std::string action = "writing " + path;
   Hdf5Dataset dataset = create<Number>(
-      file, path, unit, width == 1 ? std::vector<hsize_t>{rows} : std::vector<hsize_t>{rows, width});
-  std::vector<std::array<Number, width>> block;
+      file, path, unit,
+      width == 1 ? std::vector<hsize_t>{rows.size()} : std::vector<hsize_t>{rows.size(), width});
+  std::vector<Value> block;
   const Hdf5Space space(H5Dget_space(dataset.get()), action);
-  for (std::size_t first = 0; first < rows; first += block.size()) {
-    block.resize(std::min(rows_at_once, rows - first));
-    for (std::size_t i = 0; i < block.size(); ++i) block[i] = row_of(first + i);
+  for (std::size_t first = 0; first < rows.size(); first += block.size()) {
+    block.resize(std::min(rows_at_once, rows.size() - first));
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = std::invoke(of, rows[first + i]);
     const std::array<hsize_t, 2> start{first, 0}, count{block.size(), width};
     checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
             action);
@@ -101,41 +105,28 @@ void write_list(hid_t file, const std::string& path, const std::string& unit, st
   dataset.close(action);
 }
 
-void write_vectors(hid_t file, const std::string& path, const std::string& unit,
-                   const std::vector<Vec3d>& vectors) {
-  write_list<double, 3>(file, path, unit, vectors.size(), [&](std::size_t i) {
-    return std::array{vectors[i].x, vectors[i].y, vectors[i].z};
-  });
-}
-
 void write_nodes(hid_t file, const System& system) {
-  write_vectors(file, "/position", "m", system.start.position);
-  write_vectors(file, "/velocity", "m/s", system.start.velocity);
-  write_list<double, 1>(file, "/mass", "kg", system.nodes(),
-                        [&](std::size_t i) { return std::array{system.node_mass[i]}; });
-  write_list<std::uint32_t, 1>(file, "/pins", "", system.pins.size(),
-                               [&](std::size_t i) { return std::array{system.pins[i]}; });
+  write_list<double>(file, "/position", "m", system.start.position);
+  write_list<double>(file, "/velocity", "m/s", system.start.velocity);
+  write_list<double>(file, "/mass", "kg", system.node_mass);
+  write_list<std::uint32_t>(file, "/pins", "", system.pins);
 }
 
 void write_springs(hid_t file, const System& system) {
   const std::vector<Spring>& springs = system.springs;
-  write_list<std::uint32_t, 2>(file, "/springs", "", springs.size(), [&](std::size_t i) {
-    return std::array{springs[i].first, springs[i].second};
+  write_list<std::uint32_t>(file, "/springs", "", springs, [](const Spring& spring) {
+    return std::array{spring.first, spring.second};
   });
-  write_list<double, 1>(file, "/rest_length", "m", springs.size(),
-                        [&](std::size_t i) { return std::array<double, 1>{springs[i].rest_length}; });
+  write_list<double>(file, "/rest_length", "m", springs,
+                     [](const Spring& spring) { return double{spring.rest_length}; });
   for (const SpringConstantInfo& constant : spring_constants)
-    write_list<double, 1>(
-        file, "/" + std::string(constant.name), std::string(constant.unit), springs.size(),
-        [&](std::size_t i) { return std::array{system.materials[springs[i].kind].*constant.number}; });
-  write_list<std::uint32_t, 1>(file, "/kind", "", springs.size(),
-                               [&](std::size_t i) { return std::array{springs[i].kind}; });
+    write_list<double>(file, "/" + std::string(constant.name), std::string(constant.unit), springs,
+                       [&](const Spring& spring) { return system.materials[spring.kind].*constant.number; });
+  write_list<std::uint32_t>(file, "/kind", "", springs, &Spring::kind);
 }
 
 void write_surroundings(hid_t file, const System& system) {
-  const std::vector<double> gravity{0, -system.gravity, 0};
-  write_list<double, 1>(file, "/gravity", "m/s^2", gravity.size(),
-                        [&](std::size_t i) { return std::array{gravity[i]}; });
+  write_list<double>(file, "/gravity", "m/s^2", std::vector{0., -system.gravity, 0.});
   write_number(file, "/viscous_damping", "1/s", system.viscous_damping);
   create_group(file, "/floor");
   write_number(file, "/floor/height", "m", system.floor.height);
@@ -151,8 +142,7 @@ void write_topology(hid_t file, const Topology& topology) {
     write_number(file, "/grid/spacing", "m", grid->spacing);
   }
   if (const auto* mesh = std::get_if<TetrahedralMesh>(&topology))
-    write_list<std::uint32_t, 4>(file, "/tetrahedra", "", mesh->tetrahedra.size(),
-                                 [&](std::size_t i) { return mesh->tetrahedra[i]; });
+    write_list<std::uint32_t>(file, "/tetrahedra", "", mesh->tetrahedra);
 }
 
 }  // namespace
