@@ -10,6 +10,7 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <tuple>
@@ -113,7 +114,7 @@ std::uint64_t bytes_of(const std::string& size) {
 }
 
 std::vector<Cache> read_caches(const fs::path& cpus) {
-  std::vector<Cache> caches;
+  std::map<std::tuple<int, std::string, std::uint64_t, int>, int> counts;  // of level, type, bytes, sharing
   std::set<std::tuple<std::string, std::string, std::string>> seen;  // level, type, the CPUs that share it
   std::error_code ignored;
   for (const auto& cpu : fs::directory_iterator(cpus, ignored)) {
@@ -121,21 +122,15 @@ std::vector<Cache> read_caches(const fs::path& cpus) {
       const std::string level = first_line(entry.path() / "level"), type = first_line(entry.path() / "type");
       const std::string shared = first_line(entry.path() / "shared_cpu_list");
       if (level.empty() || !seen.emplace(level, type, shared).second) continue;
-      const Cache cache{leading_number<int>(level), type, bytes_of(first_line(entry.path() / "size")), 1,
-                        count_cpus(shared)};
-      const auto same = std::find_if(caches.begin(), caches.end(), [&](const Cache& other) {
-        return std::tie(other.level, other.type, other.bytes, other.sharing) ==
-               std::tie(cache.level, cache.type, cache.bytes, cache.sharing);
-      });
-      if (same == caches.end())
-        caches.push_back(cache);
-      else
-        ++same->count;
+      ++counts[{leading_number<int>(level), type, bytes_of(first_line(entry.path() / "size")),
+                count_cpus(shared)}];
     }
   }
-  std::sort(caches.begin(), caches.end(), [](const Cache& a, const Cache& b) {
-    return std::tie(a.level, a.type, a.bytes) < std::tie(b.level, b.type, b.bytes);
-  });
+  std::vector<Cache> caches;
+  for (const auto& [kind, count] : counts) {
+    const auto& [level, type, bytes, sharing] = kind;
+    caches.push_back({level, type, bytes, count, sharing});
+  }
   return caches;
 }
 
