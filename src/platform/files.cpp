@@ -325,12 +325,13 @@ const fs::path& make_folder(const fs::path& folder) {
   return folder;
 }
 
-FolderLock::FolderLock(const fs::path& folder)
-    : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (!folder_.is_open()) throw WriteError(write_failure(folder, "opening the folder", errno));
-  if (!folder_.lock())
+Descriptor lock_folder(const fs::path& folder) {
+  Descriptor open(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!open.is_open()) throw WriteError(write_failure(folder, "opening the folder", errno));
+  if (!open.lock())
     throw WriteError("another mssim is writing into {}; wait until it has ended, or choose another folder",
                      folder.string());
+  return open;
 }
 
 TemporaryFolder::TemporaryFolder() : TemporaryFolder(variable("TMPDIR", "/tmp")) {}

@@ -1,7 +1,6 @@
 #include "bench/verification/verification.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -292,11 +291,10 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
     const int most =
         std::min(steps_between_looks, (steps < comparable ? comparable : verification_steps) - steps);
     const int next = steps + (in_the_air ? watch.steps_to_look(before, steps, most) : most);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch_of_steps;
     backend->step(next - steps);
     State state = backend->state();
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    step_seconds.push_back(taken.count() / (next - steps));
+    step_seconds.push_back(watch_of_steps.seconds() / (next - steps));
     if (const auto node = first_bad_node(state)) {
       const BlowUp blow_up =
           find_blow_up(*backend, before, next - steps).value_or(BlowUp{next - steps, *node});
