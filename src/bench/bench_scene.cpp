@@ -500,7 +500,6 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, *info, watch.stop)) return {};
       }
-      if (combination.backend) leave_untimed(combination);
       if (combination.backend) calibrate(combination, job);
     }
   }
@@ -546,7 +545,6 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       time_frames(combination, job, watch.stop);
     }
     end(combination);
-    combination.backend.reset();
   }
   watch.progress("check of the samples", 1);
   secrets.compare(all);

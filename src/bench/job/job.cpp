@@ -71,9 +71,6 @@ std::string subject_of(const ResultRow& row) {
 void drop(Combination& combination, const std::string& status) {
   combination.row.status = status;
   end(combination);
-  combination.backend.reset();
-  combination.dressing = nullptr;
-  combination.windows = nullptr;
 }
 
 void find_sample_steps(Combination& combination, const SceneJob& job) {
@@ -147,17 +144,14 @@ void end(Combination& combination) {
   const std::string note = combination.backend->note();
   if (row.note.find(note) == std::string::npos) append_sentence(row.note, note);
   row.program_output = combination.backend->end();
+  combination.backend.reset();
+  combination.dressing = nullptr;
+  combination.windows = nullptr;
 }
 
 void fail(Combination& combination, const std::string& status) {
   combination.row.verified = false;
   drop(combination, status);
-}
-
-void leave_untimed(Combination& combination) {
-  const std::string reason = combination.backend->reason_not_to_time();
-  if (reason.empty()) return;
-  drop(combination, "not timed: " + reason);
 }
 
 void attempt(Combination& combination, const std::function<void()>& work) {
@@ -249,6 +243,8 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
 }
 
 void calibrate(Combination& combination, const SceneJob& job) {
+  if (const std::string reason = combination.backend->reason_not_to_time(); !reason.empty())
+    return drop(combination, "not timed: " + reason);
   attempt(combination, [&] {
     find_sample_steps(combination, job);
     if (!combination.backend) return;
