@@ -215,10 +215,8 @@ void judge(Combination& combination, const SceneJob& job, const BackendInfo& inf
 /// `parts` independent parts. Runs as many at the same time as the backends have threads, longest first.
 void for_each_integrator(const SceneJob& job, std::size_t parts,
                          const std::function<void(std::size_t i, std::size_t part)>& work) {
-  std::vector<std::size_t> order(job.integrators.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(),
-                           [&](std::size_t i) { return expected_evaluations(*job.integrators[i]); });
+  const std::vector<std::size_t> order = ordered_places<std::greater<>>(
+      job.integrators, [](const Integrator* integrator) { return expected_evaluations(*integrator); });
   for_each_at_once(parts * order.size(), job.windowed ? 1 : static_cast<std::size_t>(job.execution.threads),
                    [&](std::size_t task) { work(order[task / parts], task % parts); });
 }
@@ -470,7 +468,7 @@ bool take_round(std::vector<Combination>& combinations, const std::vector<std::s
 }  // namespace
 
 std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch) {
-  const auto total = static_cast<double>(combinations(job));
+  const auto total = static_cast<double>(job.integrators.size() * job.backends.size());
   std::vector<Combination> all;
   const auto done = [&] { return job.preparation * static_cast<double>(all.size()) / total; };
   std::optional<State> draped;

@@ -73,6 +73,19 @@ void drop(Combination& combination, const std::string& status) {
   end(combination);
 }
 
+/// Smallest observable step of the steady clock among a thousand in a row, s.
+double clock_resolution_s() {
+  using Clock = std::chrono::steady_clock;
+  Clock::duration smallest = Clock::duration::max();
+  for (int i = 0; i < 1000; ++i) {
+    const auto before = Clock::now();
+    auto after = Clock::now();
+    while (after == before) after = Clock::now();
+    smallest = std::min(smallest, after - before);
+  }
+  return std::chrono::duration<double>(smallest).count();
+}
+
 void find_sample_steps(Combination& combination, const SceneJob& job) {
   static const double resolution_s = clock_resolution_s();
   const auto time_steps = [&](int steps) { return time_sample(combination, steps).wall_s; };
@@ -110,18 +123,6 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
 }
 
 }  // namespace
-
-double clock_resolution_s() {
-  using Clock = std::chrono::steady_clock;
-  Clock::duration smallest = Clock::duration::max();
-  for (int i = 0; i < 1000; ++i) {
-    const auto before = Clock::now();
-    auto after = Clock::now();
-    while (after == before) after = Clock::now();
-    smallest = std::min(smallest, after - before);
-  }
-  return std::chrono::duration<double>(smallest).count();
-}
 
 int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds, int most) {
   const double seconds = std::max(step_seconds, 1e-12);

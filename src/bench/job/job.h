@@ -33,9 +33,6 @@ inline constexpr int max_sample_steps = 2000;
 /// Least length of a sample, in smallest steps of the clock.
 inline constexpr double least_clock_steps = 1000;
 
-/// Smallest observable step of the steady clock among a thousand in a row, s.
-double clock_resolution_s();
-
 /// Number of steps of a sample of about `sample_seconds` if one step takes `step_seconds`: at least 1, and at
 /// most `most` unless that is too short for the clock.
 int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds,
@@ -83,11 +80,6 @@ inline int steps_of_frame(double fps, double dt_s) {
 /// Begins the note of a row whose samples are too short for a frame of `steps`.
 inline std::string untimed_frames(int steps) {
   return fmt::format("frames of {} are not timed", pluralize(steps, "step"));
-}
-
-/// Number of combinations of a scene.
-inline std::size_t combinations(const BenchSettings& settings) {
-  return settings.integrators.size() * settings.backends.size();
 }
 
 /// What to measure on one scene.

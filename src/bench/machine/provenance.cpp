@@ -309,8 +309,7 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
   for (std::string& word : record.command) {
     const bool is_program = &word == &record.command.front();
     const std::filesystem::path file = is_program ? program : folder / word;
-    const std::optional<std::uint64_t> hash =
-        is_program ? file_hash(file) : file_hash(file, largest_argument);
+    const std::optional<std::uint64_t> hash = file_hash(file, is_program ? UINTMAX_MAX : largest_argument);
     word = escaped(without_home(word));
     if (hash) record.files.push_back({word, *hash});
   }

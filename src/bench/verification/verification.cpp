@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include "backends/backends.h"
@@ -435,12 +434,9 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
                                        std::span<const SampleEnd> ends) {
   std::vector<std::string> reasons(ends.size());
   if (ends.empty()) return reasons;
-  std::vector<std::size_t> order(ends.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return ends[i].steps; });
   CheckedWay way(system, integrator, dt_s, start);
   const double unit = mean_rest_length(system);
-  for (const std::size_t i : order) {
+  for (const std::size_t i : ordered_places(ends, &SampleEnd::steps)) {
     const SampleEnd& end = ends[i];
     way.go_to(end.steps);
     const std::string after = fmt::format(" after the {} of a sample", pluralize(end.steps, "step"));

@@ -223,9 +223,9 @@ Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth,
 }
 
 std::string share_seen(const WindowedCloth& cloth) {
-  return fmt::format(
-      "verified in {}, {:.2g} % of the nodes", pluralize(cloth.windows.size(), "window"),
-      100 * static_cast<double>(cloth.nodes_in_windows()) / static_cast<double>(cloth.nodes()));
+  return fmt::format("verified in {}, {:.2g} % of the nodes", pluralize(cloth.windows.size(), "window"),
+                     100 * static_cast<double>(cloth.windows.size() * cloth.windows.front().nodes()) /
+                         static_cast<double>(cloth.nodes()));
 }
 
 }  // namespace mssim

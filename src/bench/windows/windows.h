@@ -25,9 +25,6 @@ struct WindowedCloth {
   std::function<System(const GridWindow& window)> build;
 
   std::uint64_t nodes() const { return std::uint64_t{grid.rows} * grid.columns; }
-  std::uint64_t nodes_in_windows() const {
-    return windows.empty() ? 0 : windows.size() * windows.front().nodes();
-  }
 };
 
 /// Number, in the whole cloth, of a node of a window.
