@@ -215,10 +215,8 @@ void judge(Combination& combination, const SceneJob& job, const BackendInfo& inf
 /// `parts` independent parts. Runs as many at the same time as the backends have threads, longest first.
 void for_each_integrator(const SceneJob& job, std::size_t parts,
                          const std::function<void(std::size_t i, std::size_t part)>& work) {
-  std::vector<std::size_t> order(job.integrators.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(),
-                           [&](std::size_t i) { return expected_evaluations(*job.integrators[i]); });
+  const std::vector<std::size_t> order = ordered_places<std::greater<>>(
+      job.integrators, [](const Integrator* integrator) { return expected_evaluations(*integrator); });
   for_each_at_once(parts * order.size(), job.windowed ? 1 : static_cast<std::size_t>(job.execution.threads),
                    [&](std::size_t task) { work(order[task / parts], task % parts); });
 }
@@ -297,9 +295,7 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
     if (counts(row)) most = std::max(most, row.samples_ms.size());
   for (Combination& combination : combinations) {
     if (!combination.backend) continue;
-    const auto row = std::ranges::find_if(
-        earlier, [&](const ResultRow& other) { return same_combination(other, combination.row); });
-    if (row != earlier.end()) {
+    if (const ResultRow* row = find_combination(earlier, combination.row)) {
       if (is_wrong(*row) && row->samples_ms.size() >= most) {
         if (most > 0) fail(combination, row->status);
         continue;
@@ -472,7 +468,7 @@ bool take_round(std::vector<Combination>& combinations, const std::vector<std::s
 }  // namespace
 
 std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch) {
-  const auto total = static_cast<double>(combinations(job));
+  const auto total = static_cast<double>(job.integrators.size() * job.backends.size());
   std::vector<Combination> all;
   const auto done = [&] { return job.preparation * static_cast<double>(all.size()) / total; };
   std::optional<State> draped;
@@ -502,7 +498,6 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, *info, watch.stop)) return {};
       }
-      if (combination.backend) leave_untimed(combination);
       if (combination.backend) calibrate(combination, job);
     }
   }
@@ -548,7 +543,6 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       time_frames(combination, job, watch.stop);
     }
     end(combination);
-    combination.backend.reset();
   }
   watch.progress("check of the samples", 1);
   secrets.compare(all);

@@ -130,12 +130,6 @@ std::optional<TemporaryFolder>& folder_of_process() {
   return folder;
 }
 
-/// The system's folder for temporary files.
-fs::path system_folder() {
-  const char* chosen = std::getenv("TMPDIR");
-  return chosen && *chosen ? chosen : "/tmp";
-}
-
 fs::path own_program() {
   std::error_code error;
   fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -331,15 +325,16 @@ const fs::path& make_folder(const fs::path& folder) {
   return folder;
 }
 
-FolderLock::FolderLock(const fs::path& folder)
-    : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (!folder_.is_open()) throw WriteError(write_failure(folder, "opening the folder", errno));
-  if (!folder_.lock())
+Descriptor lock_folder(const fs::path& folder) {
+  Descriptor open(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!open.is_open()) throw WriteError(write_failure(folder, "opening the folder", errno));
+  if (!open.lock())
     throw WriteError("another mssim is writing into {}; wait until it has ended, or choose another folder",
                      folder.string());
+  return open;
 }
 
-TemporaryFolder::TemporaryFolder() : TemporaryFolder(system_folder()) {}
+TemporaryFolder::TemporaryFolder() : TemporaryFolder(variable("TMPDIR", "/tmp")) {}
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent) {
   std::error_code none;  // if this process's folder is gone, keep the name; nothing is created
@@ -398,8 +393,7 @@ fs::path mssim_program() {
 std::optional<fs::path> find_program(const std::string& name) {
   if (name.find('/') != std::string::npos)
     return may_be_executed(name) ? std::optional(fs::absolute(name)) : std::nullopt;
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
+  std::istringstream folders(variable("PATH"));
   for (std::string folder; std::getline(folders, folder, ':');) {
     const fs::path candidate = fs::path(folder.empty() ? "." : folder) / name;
     if (may_be_executed(candidate)) return fs::absolute(candidate);

@@ -117,16 +117,10 @@ void release_reserved_space(const std::filesystem::path& file);
 /// Creates a folder and its parents if missing, and returns its name. Throws WriteError.
 const std::filesystem::path& make_folder(const std::filesystem::path& folder);
 
-/// Locks a folder for one writer: a second lock on it fails, in any process, while this object lives. Leaves
-/// no file, however the process ends. No effect on a file system without locks.
-class FolderLock {
- public:
-  /// Throws WriteError if the folder is already locked or cannot be opened.
-  explicit FolderLock(const std::filesystem::path& folder);
-
- private:
-  Descriptor folder_;
-};
+/// Locks a folder for one writer: a second lock on it fails, in any process, while the descriptor is open.
+/// Leaves no file, however the process ends. No effect on a file system without locks. Throws WriteError if
+/// the folder is already locked or cannot be opened.
+Descriptor lock_folder(const std::filesystem::path& folder);
 
 /// A new, empty folder in the system's folder for temporary files; the destructor removes it with its
 /// contents. Throws std::runtime_error with one sentence if it cannot be made.

@@ -20,6 +20,7 @@
 #include <thread>
 #include <utility>
 
+#include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -284,11 +285,6 @@ Trial try_threads(int wanted, ThreadStack stack) {
   const Trial trial = make_threads(wanted, stack);
   if (stack == ThreadStack::openmp) openmp_has_made = std::max(openmp_has_made, trial.made);
   return trial;
-}
-
-std::string_view variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? std::string_view() : value;
 }
 
 /// The locale by the C library's rule: the first of the three that is not empty.

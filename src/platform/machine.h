@@ -115,7 +115,7 @@ class Stopwatch {
 struct StreamFacts {
   bool is_terminal = false;
   int columns = 0;  ///< of the terminal; 0 if unknown
-  std::string_view term = {}, no_color = {}, lc_all = {}, lc_ctype = {}, lang = {};
+  std::string term = {}, no_color = {}, lc_all = {}, lc_ctype = {}, lang = {};
 };
 
 /// Capabilities of an output stream.

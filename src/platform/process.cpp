@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstring>
 #include <deque>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -40,13 +41,6 @@ struct Pipe {
   }
   Descriptor reader, writer;
 };
-
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
 
 std::vector<std::string> environment_with(const std::vector<std::string>& added) {
   std::vector<std::string> all = added;
@@ -98,18 +92,10 @@ StartError become(const ChildProcess& child, char* const* arguments, char* const
 
 using Clock = std::chrono::steady_clock;
 
-/// Waits until data or the end can be read; false after the deadline. No deadline: waits for ever.
-bool wait_to_read(int descriptor, const std::optional<Clock::time_point>& deadline) {
-  while (true) {
-    constexpr std::chrono::milliseconds longest{60'000};
-    std::chrono::milliseconds left = longest;
-    if (deadline)
-      left = std::min(left, std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now()));
-    if (left.count() <= 0) return false;
-    pollfd waited{descriptor, POLLIN, 0};
-    const int ready = ::poll(&waited, 1, static_cast<int>(left.count()));
-    if (ready > 0 || (ready < 0 && errno != EINTR)) return true;
-  }
+/// Time until the deadline; without one, a year.
+std::chrono::milliseconds time_until(const std::optional<Clock::time_point>& deadline) {
+  return deadline ? std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now())
+                  : std::chrono::hours(24 * 365);
 }
 
 /// Reads to the end, at most until the deadline, and keeps the last bytes.
@@ -117,7 +103,8 @@ std::string read_tail(int descriptor, const std::optional<Clock::time_point>& de
   constexpr std::size_t kept = 64 * 1024;
   std::string tail;
   std::array<char, 4096> buffer;
-  while (wait_to_read(descriptor, deadline)) {
+  for (auto left = time_until(deadline); left.count() > 0 && is_readable(descriptor, left);
+       left = time_until(deadline)) {
     const ssize_t bytes = ::read(descriptor, buffer.data(), buffer.size());
     if (bytes < 0 && errno == EINTR) continue;
     if (bytes <= 0) break;
@@ -132,17 +119,15 @@ std::string read_tail(int descriptor, const std::optional<Clock::time_point>& de
 class Running {
  public:
   /// Starts it in process group `group`; 0: in a new group, whose number is its process id.
-  Running(const ChildProcess& child, pid_t group, const InterruptionGuard& interruption)
-      : child_(child), output_(child), start_error_(child) {
+  Running(const ChildProcess& child, pid_t group) : child_(child), output_(child), start_error_(child) {
     std::vector<std::string> arguments{child.program.filename().string()};
     arguments.insert(arguments.end(), child.arguments.begin(), child.arguments.end());
     std::vector<std::string> environment = environment_with(child.environment);
-    const std::vector<char*> argument_pointers = pointers_to(arguments);
-    const std::vector<char*> environment_pointers = pointers_to(environment);
+    const std::vector<char*> argument_pointers = argv_of(arguments);
+    const std::vector<char*> environment_pointers = argv_of(environment);
     process_ = ::fork();
     if (process_ < 0) fail(child, "fork", errno);
     if (process_ == 0) {
-      interruption.release_child();
       const StartError error =
           become(child, argument_pointers.data(), environment_pointers.data(), output_.writer.get(), group);
       [[maybe_unused]] const ssize_t written = ::write(start_error_.writer.get(), &error, sizeof error);
@@ -259,7 +244,56 @@ void end_group(int signal) {
   if (const pid_t group = watched_group; group > 0) ::kill(-group, SIGKILL);
 }
 
+/// While it lives, the ending signals end the processes of one group instead of this one, and are kept for
+/// throw_if_interrupted(). Ignored signals (nohup) stay ignored. Only one object at a time.
+class InterruptionGuard {
+ public:
+  InterruptionGuard() {
+    watched_group = 0;
+    received_signal = 0;
+    signals_.emplace(end_group, SA_RESTART);
+  }
+  InterruptionGuard(const InterruptionGuard&) = delete;
+  InterruptionGuard& operator=(const InterruptionGuard&) = delete;
+  ~InterruptionGuard() {
+    watched_group = 0;
+    signals_.reset();
+    if (received_signal != 0) std::raise(received_signal);  // arrived after the last check
+  }
+
+  /// From now on, the signals end this process group; so does one that has arrived.
+  static void watch(pid_t group) {
+    watched_group = group;
+    if (received_signal != 0) ::kill(-group, SIGKILL);
+  }
+  /// Throws Interrupted if a signal has arrived. A later one takes effect when the guard is destroyed.
+  static void throw_if_interrupted() {
+    if (const int signal = received_signal.exchange(0); signal != 0) throw Interrupted{signal};
+  }
+
+ private:
+  std::optional<EndingSignals> signals_;
+};
+
 }  // namespace
+
+bool is_readable(int descriptor, std::chrono::milliseconds patience) {
+  const Clock::time_point limit = Clock::now() + patience;
+  while (true) {
+    const std::chrono::milliseconds left = std::max(time_until(limit), std::chrono::milliseconds{0});
+    constexpr std::chrono::milliseconds longest = std::chrono::hours(24);
+    pollfd event{descriptor, POLLIN, 0};
+    if (::poll(&event, 1, static_cast<int>(std::min(left, longest).count())) > 0) return true;
+    if (Clock::now() >= limit) return false;
+  }
+}
+
+std::vector<char*> argv_of(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
 
 std::string failed_end(const ChildResult& result, const std::string& doing) {
   if (result.signal == 0 && result.exit_code == 0) return "";
@@ -283,7 +317,7 @@ std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
   {
     const OnAllProcessCpus inherited;  // set before the fork, restored only in this process
     for (const ChildProcess& child : children)
-      all.emplace_back(child, all.empty() ? 0 : all.front().process(), interruption);
+      all.emplace_back(child, all.empty() ? 0 : all.front().process());
   }
   if (!all.empty()) interruption.watch(all.front().process());
   for (Running& one : all) one.end();
@@ -336,37 +370,6 @@ void EndingSignals::restore() const {
 
 void throw_if_ending_signal_noted() {
   if (const int signal = take_ending_signal(); signal != 0) throw Interrupted{signal};
-}
-
-InterruptionGuard::InterruptionGuard() {
-  sigset_t held;
-  ::sigemptyset(&held);
-  for (const int signal : ending_signals) ::sigaddset(&held, signal);
-  ::pthread_sigmask(SIG_BLOCK, &held, &before_);
-  watched_group = 0;
-  received_signal = 0;
-  signals_.emplace(end_group, SA_RESTART);
-}
-
-InterruptionGuard::~InterruptionGuard() {
-  watched_group = 0;
-  signals_.reset();
-  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  if (received_signal != 0) std::raise(received_signal);  // arrived after the last check
-}
-
-void InterruptionGuard::release_child() const {
-  signals_->restore();
-  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-}
-
-void InterruptionGuard::watch(pid_t group) {
-  watched_group = group;
-  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-}
-
-void InterruptionGuard::throw_if_interrupted() {
-  if (const int signal = received_signal.exchange(0); signal != 0) throw Interrupted{signal};
 }
 
 }  // namespace mssim

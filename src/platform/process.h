@@ -1,22 +1,28 @@
 #pragma once
 
 #include <sys/file.h>
-#include <sys/types.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace mssim {
+
+/// An environment variable, or `otherwise` if it is unset or empty.
+inline std::string variable(const char* name, const char* otherwise = "") {
+  const char* value = std::getenv(name);
+  return value && *value ? value : otherwise;
+}
 
 /// An open file descriptor, closed with its owner.
 class Descriptor {
@@ -42,6 +48,12 @@ class Descriptor {
  private:
   int descriptor_;
 };
+
+/// Whether data, or the end, can be read from a descriptor within `patience`.
+bool is_readable(int descriptor, std::chrono::milliseconds patience);
+
+/// The texts as execve() takes them, with a null pointer at the end. They must outlive it.
+std::vector<char*> argv_of(std::vector<std::string>& texts);
 
 /// How a program ended.
 struct ChildResult {
@@ -123,25 +135,5 @@ struct Interrupted {
 
 /// If a signal is noted, takes it and throws Interrupted with it.
 void throw_if_ending_signal_noted();
-
-/// While it lives, the ending signals end the processes of one group instead of this one, and are kept for
-/// throw_if_interrupted(). Ignored signals (nohup) stay ignored. Only one object at a time.
-class InterruptionGuard {
- public:
-  /// Blocks the signals until watch(), so that none arrives between a fork and its watch.
-  InterruptionGuard();
-  ~InterruptionGuard();
-
-  /// Call in a forked child: restores its signals to their state before the guard. Async-signal-safe.
-  void release_child() const;
-  /// From now on, the signals end this process group.
-  void watch(pid_t group);
-  /// Throws Interrupted if a signal has arrived. A later one takes effect when the guard is destroyed.
-  void throw_if_interrupted();
-
- private:
-  sigset_t before_{};
-  std::optional<EndingSignals> signals_;
-};
 
 }  // namespace mssim

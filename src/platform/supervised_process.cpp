@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -59,9 +58,7 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   words.insert(words.end(), program.environment.begin(), program.environment.end());
   words.push_back(program.program.string());
   words.insert(words.end(), program.arguments.begin(), program.arguments.end());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = argv_of(words);
 
   sigset_t none, all;
   ::sigemptyset(&none);
@@ -88,23 +85,10 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   return process;
 }
 
-/// False after `patience`; true also if the other end is closed.
-bool readable(int descriptor, std::chrono::milliseconds patience) {
-  using std::chrono::steady_clock;
-  const steady_clock::time_point limit = steady_clock::now() + patience;
-  while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - steady_clock::now());
-    pollfd event{descriptor, POLLIN, 0};
-    if (::poll(&event, 1, static_cast<int>(std::clamp<long>(left.count(), 0, 1'000'000'000))) > 0)
-      return true;
-    if (steady_clock::now() >= limit) return false;
-  }
-}
-
 bool receive(int descriptor, void* bytes, std::size_t count) {
   auto* next = static_cast<char*>(bytes);
   while (count > 0) {
-    if (!readable(descriptor, supervisor_patience)) return false;
+    if (!is_readable(descriptor, supervisor_patience)) return false;
     const ssize_t taken = ::recv(descriptor, next, count, 0);
     if (taken < 0 && errno == EINTR) continue;
     if (taken <= 0) return false;
@@ -134,18 +118,20 @@ SupervisedProcess::SupervisedProcess(const SupervisedProgram& program) {
   Descriptor other(ends[1]);
   supervisor_ = start_supervisor(program, other.get());
   other.close();
-  SupervisorAnswer answer;
-  if (!hear(answer)) fail(program, "mssim's own program supervise did not start it");
-  if (answer.word != SupervisorWord::started) {
+  const std::optional<SupervisorAnswer> answer = hear();
+  if (!answer) fail(program, "mssim's own program supervise did not start it");
+  if (answer->word != SupervisorWord::started) {
     ::waitpid(supervisor_, nullptr, 0);
-    fail(program, why_not_started(program, answer));
+    fail(program, why_not_started(program, *answer));
   }
-  program_ = answer.value;
+  program_ = answer->value;
 }
 
 SupervisedProcess::~SupervisedProcess() { end(std::chrono::milliseconds{0}); }
 
-void SupervisedProcess::pause() { paused_ = ask(SupervisorRequest::pause) || paused_; }
+void SupervisedProcess::pause() {
+  if (ask(SupervisorRequest::pause)) paused_ = true;
+}
 
 void SupervisedProcess::resume() {
   ask(SupervisorRequest::resume);
@@ -158,31 +144,24 @@ double SupervisedProcess::processor_seconds() const {
 }
 
 std::optional<std::uint64_t> SupervisedProcess::peak_bytes() const {
-  SupervisorAnswer answer;
-  if (!ask(SupervisorRequest::peak_memory, answer) || answer.peak_bytes == 0) return std::nullopt;
-  return answer.peak_bytes;
+  const std::optional<SupervisorAnswer> answer = ask(SupervisorRequest::peak_memory);
+  return answer && answer->peak_bytes > 0 ? std::optional(answer->peak_bytes) : std::nullopt;
 }
 
 const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
   if (ended_) return end_;
   if (paused_ && patience.count() > 0) resume();
-  if (!ended_ && !readable(channel_.get(), patience)) ::shutdown(channel_.get(), SHUT_WR);
-  SupervisorAnswer answer;
-  while (!ended_) hear(answer);
+  if (!ended_ && !is_readable(channel_.get(), patience)) ::shutdown(channel_.get(), SHUT_WR);
+  while (!ended_) hear();
   return end_;
 }
 
-bool SupervisedProcess::ask(SupervisorRequest request) const {
-  SupervisorAnswer answer;
-  return ask(request, answer);
-}
-
-/// Sends a request and receives its answer. False if the program has ended.
-bool SupervisedProcess::ask(SupervisorRequest request, SupervisorAnswer& answer) const {
-  if (ended_) return false;
+/// Sends a request and receives its answer. Nothing if the program has ended.
+std::optional<SupervisorAnswer> SupervisedProcess::ask(SupervisorRequest request) const {
+  if (ended_) return std::nullopt;
   // If the supervisor is gone, hear() detects it.
   ::send(channel_.get(), &request, sizeof request, MSG_NOSIGNAL);
-  return hear(answer);
+  return hear();
 }
 
 /// Waits for data from the supervisor, and continues it if it was stopped: the program could send signals to
@@ -190,7 +169,7 @@ bool SupervisedProcess::ask(SupervisorRequest request, SupervisorAnswer& answer)
 bool SupervisedProcess::says_something() const {
   constexpr std::chrono::milliseconds look{500};
   for (std::chrono::milliseconds waited{0}; waited < supervisor_patience; waited += look) {
-    if (readable(channel_.get(), look)) return true;
+    if (is_readable(channel_.get(), look)) return true;
     int status = 0;
     if (::waitpid(supervisor_, &status, WUNTRACED | WNOHANG) == supervisor_ && WIFSTOPPED(status))
       ::kill(supervisor_, SIGCONT);
@@ -198,21 +177,23 @@ bool SupervisedProcess::says_something() const {
   return false;
 }
 
-/// Receives an answer. False if the program has ended or there is no answer.
-bool SupervisedProcess::hear(SupervisorAnswer& answer) const {
+/// Receives an answer. Nothing if the program has ended or there is no answer.
+std::optional<SupervisorAnswer> SupervisedProcess::hear() const {
   if (!says_something()) {
     lose(
         "was given up, because mssim's program supervise did not answer (a process that SIGKILL does not "
         "end?)");
-    return false;
+    return std::nullopt;
   }
+  SupervisorAnswer answer;
   if (!receive(channel_.get(), &answer, sizeof answer)) {
     lose("was ended because mssim's program supervise, which monitors it, was ended");
-    return false;
+    return std::nullopt;
   }
   processor_seconds_ = std::max(processor_seconds_, answer.processor_seconds);
-  if (answer.word == SupervisorWord::ended) take_end(answer);
-  return answer.word != SupervisorWord::ended;
+  if (answer.word != SupervisorWord::ended) return answer;
+  take_end(answer);
+  return std::nullopt;
 }
 
 void SupervisedProcess::take_end(const SupervisorAnswer& answer) const {

@@ -101,10 +101,9 @@ class SupervisedProcess {
   std::optional<std::uint64_t> peak_bytes() const;
 
  private:
-  bool ask(SupervisorRequest request) const;
-  bool ask(SupervisorRequest request, SupervisorAnswer& answer) const;
+  std::optional<SupervisorAnswer> ask(SupervisorRequest request) const;
   bool says_something() const;
-  bool hear(SupervisorAnswer& answer) const;
+  std::optional<SupervisorAnswer> hear() const;
   void take_end(const SupervisorAnswer& answer) const;
   void lose(const std::string& trouble) const;
 

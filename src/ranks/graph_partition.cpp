@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "backends/layouts/spring_graph.h"

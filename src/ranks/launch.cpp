@@ -1,5 +1,4 @@
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -50,9 +49,7 @@ class Launcher {
       throw std::runtime_error(fmt::format("cannot make a pipe ({})", std::strerror(errno)));
     output_ = Descriptor(ends[0]);
     const Descriptor written(ends[1]);
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
+    const std::vector<char*> arguments = argv_of(words);
     const OnAllProcessCpus inherited;  // OpenMP may have bound this thread, which computes nothing
     process_ = ::fork();
     if (process_ == 0) {
@@ -73,10 +70,8 @@ class Launcher {
     Clock::time_point limit = Clock::now() + start_limit;
     bool failed = false;
     for (;;) {
-      pollfd readable{output_.get(), POLLIN, 0};
-      ::poll(&readable, 1, 100);
-      std::array<char, 4096> bytes;
-      if (readable.revents != 0) {
+      if (is_readable(output_.get(), 100ms)) {
+        std::array<char, 4096> bytes;
         const ssize_t count = ::read(output_.get(), bytes.data(), bytes.size());
         if (count > 0) printed.take({bytes.data(), static_cast<std::size_t>(count)});
         if (count == 0) break;

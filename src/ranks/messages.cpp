@@ -32,10 +32,10 @@ std::string host_name() {
   return {name.data(), static_cast<std::size_t>(length)};
 }
 
-bool all_complete(std::span<MPI_Request> requests) {
+bool all_complete(std::span<MPI_Request> requests, const char* action = "waiting for messages") {
   int complete = 0;
   check_mpi(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &complete, MPI_STATUSES_IGNORE),
-            "waiting for messages");
+            action);
   return complete != 0;
 }
 
@@ -258,13 +258,7 @@ void StandingMessages::begin() {
 void StandingMessages::advance() {
   if (!under_way_) return;
   const SecondsAdded timed(costs_.packed_s);
-  int complete = 0;
-  attempt([&] {
-    check_mpi(
-        MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &complete, MPI_STATUSES_IGNORE),
-        "advancing messages");
-  });
-  under_way_ = complete == 0;
+  attempt([&] { under_way_ = !all_complete(requests_, "advancing messages"); });
 }
 
 void StandingMessages::finish() {
@@ -273,7 +267,7 @@ void StandingMessages::finish() {
   attempt([&] { session_.wait(requests_, peers_); });
 }
 
-NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : StandingMessages(session) {
+void add_edge_columns(StandingMessages& messages, int rank, BandGrid& bands) {
   const std::size_t ghosts = ghost_columns(*bands.integrator, bands.steps_per_pass);
   const std::size_t floats = ghosts * bands.layout.column_floats();
   const ColumnRange own = bands.own;
@@ -281,9 +275,9 @@ NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : 
     return std::span(partition.column(bands.layout, Pair::state, first), floats);
   };
   BandPartition &first = bands.partitions.front(), &last = bands.partitions.back();
-  if (own.first > 0) add(session.rank() - 1, columns(first, own.first), columns(first, own.first - ghosts));
+  if (own.first > 0) messages.add(rank - 1, columns(first, own.first), columns(first, own.first - ghosts));
   if (own.end() < bands.layout.columns)
-    add(session.rank() + 1, columns(last, own.end() - ghosts), columns(last, own.end()));
+    messages.add(rank + 1, columns(last, own.end() - ghosts), columns(last, own.end()));
 }
 
 GhostMessages::GhostMessages(const Session& session, const BodiesPart& part, const SlicedBodies& bodies)

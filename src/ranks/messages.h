@@ -96,7 +96,7 @@ void check_mpi(int result, const char* action);
 /// Repeated messages between the same buffers of this and other ranks: MPI learns them once (persistent
 /// requests). Threads of a step call these functions, one at a time; an exception must not leave them, so on
 /// failure all ranks end.
-class StandingMessages : public ColumnMessages {
+class StandingMessages final : public ColumnMessages {
  public:
   explicit StandingMessages(const Session& session) : session_(session) {}
   ~StandingMessages() override;
@@ -127,14 +127,10 @@ class StandingMessages : public ColumnMessages {
   bool under_way_ = false;
 };
 
-/// The edge columns of a rank's piece of a cloth as messages to its neighbours, directly from and to the
-/// arrays of the state: nothing is packed.
-class NeighbourMessages final : public StandingMessages {
- public:
-  /// The arrays of `bands` must stay at their address; both arguments must outlive this object. Rank r has
-  /// the columns to the right of those of rank r - 1.
-  NeighbourMessages(const Session& session, BandGrid& bands);
-};
+/// Adds messages of the edge columns of a rank's piece of a cloth to its neighbours, directly from and to the
+/// arrays of the state: nothing is packed. The arrays of `bands` must stay at their address. Rank r has the
+/// columns to the right of those of rank r - 1.
+void add_edge_columns(StandingMessages& messages, int rank, BandGrid& bands);
 
 /// The edge nodes of a rank's part of bodies as messages to the ranks that have them as ghosts: positions and
 /// velocities, packed, because edge nodes are not contiguous.

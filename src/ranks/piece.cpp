@@ -96,32 +96,23 @@ class MappedState {
   Vec3d* vectors_ = nullptr;
 };
 
-/// Iterates over the nodes of some runs.
-class NodeWalk {
- public:
-  explicit NodeWalk(std::vector<NodeRun> runs) : runs_(std::move(runs)) {}
-  /// The next nodes, as many as fit in a message; none at the end.
-  std::vector<NodeRun> next() {
-    std::vector<NodeRun> some;
-    std::size_t room = nodes_at_once;
-    while (room > 0 && run_ < runs_.size()) {
-      const NodeRun run = runs_[run_];
-      const std::size_t count = std::min(room, run.count - taken_);
-      some.push_back({run.first + taken_, count});
-      room -= count;
-      taken_ += count;
-      if (taken_ == run.count) {
-        ++run_;
-        taken_ = 0;
+/// The nodes of some runs, as many at a time as fit in a message.
+std::vector<std::vector<NodeRun>> in_messages(const std::vector<NodeRun>& runs) {
+  std::vector<std::vector<NodeRun>> messages;
+  std::size_t room = 0;
+  for (NodeRun rest : runs)
+    while (rest.count > 0) {
+      if (room == 0) {
+        messages.emplace_back();
+        room = nodes_at_once;
       }
+      const std::size_t count = std::min(room, rest.count);
+      messages.back().push_back({rest.first, count});
+      rest = {rest.first + count, rest.count - count};
+      room -= count;
     }
-    return some;
-  }
-
- private:
-  std::vector<NodeRun> runs_;
-  std::size_t run_ = 0, taken_ = 0;
-};
+  return messages;
+}
 
 /// Buffer for the states of some nodes: first all positions, then all velocities.
 struct Message {
@@ -142,8 +133,7 @@ template <class RunsOf, class Pass>
 void for_each_message(const Session& session, const RunsOf& runs_of, const Pass& pass) {
   for (int rank = 0; rank < session.ranks(); ++rank) {
     if (session.rank() != 0 && session.rank() != rank) continue;
-    NodeWalk walk(runs_of(rank));
-    for (std::vector<NodeRun> runs = walk.next(); !runs.empty(); runs = walk.next()) {
+    for (const std::vector<NodeRun>& runs : in_messages(runs_of(rank))) {
       Message message(runs);
       pass(rank, runs, message);
     }

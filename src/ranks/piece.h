@@ -72,8 +72,8 @@ class Piece {
   virtual std::string note() const = 0;
 };
 
-/// This rank's part, at the scene's start state. Throws Unsupported, on all ranks, if the scene cannot be cut
-/// for this many.
+/// This rank's part, at the scene's start state. Both arguments must outlive it. Throws Unsupported, on all
+/// ranks, if the scene cannot be cut for this many.
 std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job);
 
 /// Throws Unsupported if the scene cannot be cut for `ranks` ranks, like make_piece on each of them: call it

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdlib>
 #include <map>
 #include <ostream>
 #include <string>
@@ -9,12 +8,6 @@
 #include "platform/process.h"
 
 namespace mssim {
-
-/// An environment variable, or `otherwise` if it is unset or empty.
-inline std::string variable(const char* name, const char* otherwise = "") {
-  const char* value = std::getenv(name);
-  return value && *value ? value : otherwise;
-}
 
 // Texts by which the ranks, within their output, report to the process that started the launcher
 // (launch_ranks).

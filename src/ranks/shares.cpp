@@ -2,9 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
-
-#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -44,9 +43,7 @@ class Filling {
     std::size_t together = 0;
     for (const std::size_t body : bodies) together += nodes[body];
     const double level = level_of(loads, together);
-    std::vector<std::size_t> order(loads.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t rank) { return loads[rank]; });
+    const std::vector<std::size_t> order = ordered_places(loads);
     auto rank = order.begin();
     double missing = 0;  // nodes by which earlier ranks are below the level, mostly because of rounding
     const auto room = [&] { return level - static_cast<double>(loads[*rank]); };
@@ -100,9 +97,7 @@ std::vector<RankAndNode> in_order(std::vector<RankAndNode> nodes) {
 }  // namespace
 
 std::optional<Shares> body_shares(const std::vector<std::size_t>& nodes, int ranks) {
-  std::vector<std::size_t> order(nodes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(), [&](std::size_t body) { return nodes[body]; });
+  const std::vector<std::size_t> order = ordered_places<std::greater<>>(nodes);
   const auto all = static_cast<double>(std::reduce(nodes.begin(), nodes.end()));
   const double most_allowed = (1 + most_excess) * all / ranks;
   std::optional<Filling> best;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 
 #include "backends/layouts/sliced_graph.h"
 #include "model/system.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -24,11 +24,9 @@ struct RankFailure : std::runtime_error {
 /// Assigns items to ranks by weight: the heaviest first, each to the rank with the lowest load (Graham 1969,
 /// LPT), which gives the most loaded rank at most 4/3 of the optimum. Returns [items] the rank of each.
 inline std::vector<int> ranks_by_weight(const std::vector<std::size_t>& weights, int ranks) {
-  std::vector<std::size_t> order(weights.size()), load(static_cast<std::size_t>(ranks), 0);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return weights[i]; });
+  std::vector<std::size_t> load(static_cast<std::size_t>(ranks), 0);
   std::vector<int> rank_of(weights.size());
-  for (const std::size_t i : order) {
+  for (const std::size_t i : ordered_places<std::greater<>>(weights)) {
     const auto least = std::ranges::min_element(load);
     *least += weights[i];
     rank_of[i] = static_cast<int>(least - load.begin());

@@ -138,7 +138,7 @@ Series roof_line(int threads, std::vector<RoofDot> dots) {
 
 /// The backend and, if its combination has several series, what they differ in.
 std::string name_in_chart(const HistorySeries& row, const MachineHistory& machine) {
-  const auto differs = [&](auto HistorySeries::*member) {
+  const auto differs = [&](auto member) {
     return std::ranges::any_of(machine.series, [&](const HistorySeries& other) {
       return same_combination(other, row) && other.*member != row.*member;
     });

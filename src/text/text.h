@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,6 +76,15 @@ template <class Range, class Value, class Of>
 auto found_in(Range& range, const Value& value, Of of) {
   const auto found = std::ranges::find(range, value, of);
   return found == std::ranges::end(range) ? nullptr : &*found;
+}
+
+/// The places of a range's elements in the order of the values of `of`; equal ones stay in theirs.
+template <class Compare = std::ranges::less, class Range, class Of = std::identity>
+std::vector<std::size_t> ordered_places(const Range& range, Of of = {}) {
+  std::vector<std::size_t> places(std::size(range));
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::ranges::stable_sort(places, Compare(), [&](std::size_t i) { return std::invoke(of, range[i]); });
+  return places;
 }
 
 /// Adds the value unless it is there.

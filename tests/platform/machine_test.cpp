@@ -106,7 +106,7 @@ TEST_F(MadeUpGroups, MayHaveNoLimitOrBeMissing) {
 }
 
 TEST(Terminal, IsWhatItsStreamAndTheEnvironmentSay) {
-  constexpr StreamFacts usual{.is_terminal = true, .columns = 120, .term = "xterm", .lang = "en_GB.UTF-8"};
+  const StreamFacts usual{.is_terminal = true, .columns = 120, .term = "xterm", .lang = "en_GB.UTF-8"};
   StreamFacts of_unknown_width = usual, pipe = usual, plain = usual, dumb = usual, unknown = usual;
   of_unknown_width.columns = 0;
   pipe.is_terminal = false;

@@ -168,35 +168,25 @@ class AbProgram {
   bool verified_ = false;
 };
 
-const CombinationTime* find(const std::vector<CombinationTime>& times, const PairedTimes& pairs) {
-  const auto found =
-      std::ranges::find_if(times, [&](const CombinationTime& time) { return same_combination(time, pairs); });
-  return found == times.end() ? nullptr : &*found;
-}
-
 /// The combinations that both programs have. Those that only one has, or that have no time in BASE, are
 /// reported and left out.
 std::vector<PairedTimes> combinations_of(const std::vector<CombinationTime>& base,
                                          const std::vector<CombinationTime>& next, const AbOptions& options) {
   std::vector<PairedTimes> series;
-  const auto pairs_of = [](const CombinationTime& time) {
-    return PairedTimes{time.scene, time.backend, time.integrator, {}, {}, {}};
-  };
   const auto tell_only = [](const std::string& program, const CombinationTime& time) {
     std::cerr << "mssim: only " << program << " has " << combination_name(time) << '\n';
   };
   for (const CombinationTime& time : base) {
-    const PairedTimes pairs = pairs_of(time);
-    if (!find(next, pairs))
+    if (!find_combination(next, time))
       tell_only(options.base, time);
     else if (!time.least_ms)
       std::cerr << "mssim: " << options.base << " has no time for " << combination_name(time) << ": "
                 << time.status << '\n';
     else
-      series.push_back(pairs);
+      series.push_back({time, {}, {}, {}});
   }
   for (const CombinationTime& time : next)
-    if (!find(base, pairs_of(time))) tell_only(options.next, time);
+    if (!find_combination(base, time)) tell_only(options.next, time);
   if (series.empty())
     throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
                      " have no measured combination in common; choose other backends or integrators");
@@ -213,7 +203,7 @@ void lose(PairedTimes& pairs, const CombinationTime& base, const std::string& wh
 /// reports that and returns false.
 bool add_round(PairedTimes& pairs, const std::vector<CombinationTime>& base,
                const std::vector<CombinationTime>& next, const AbOptions& options) {
-  const CombinationTime *a = find(base, pairs), *b = find(next, pairs);
+  const CombinationTime *a = find_combination(base, pairs), *b = find_combination(next, pairs);
   if (!a || !a->least_ms) {
     std::cerr << fmt::format(
         "mssim: {} had a time for {} but has none in a later round ({}); run it alone to see why\n",
@@ -283,8 +273,8 @@ std::vector<PairedTimes> verify(std::array<AbProgram, 2>& programs, const AbOpti
   for (AbProgram& program : programs) program.allow(watch.seconds());
   std::vector<PairedTimes> series = combinations_of(rows[0], rows[1], options);
   for (PairedTimes& one : series)
-    if (const CombinationTime& next = *find(rows[1], one); !next.least_ms)
-      lose(one, *find(rows[0], one), next.status);
+    if (const CombinationTime& next = *find_combination(rows[1], one); !next.least_ms)
+      lose(one, *find_combination(rows[0], one), next.status);
   return series;
 }
 

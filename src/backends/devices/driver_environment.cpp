@@ -13,6 +13,7 @@
 
 #include "platform/files.h"
 #include "platform/machine.h"
+#include "platform/process.h"
 
 namespace mssim {
 namespace {
@@ -20,12 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* usual_folder = "/etc/OpenCL/vendors";
-
-/// Empty if it is unset.
-std::string value_of(const char* variable) {
-  const char* value = std::getenv(variable);
-  return value == nullptr ? "" : value;
-}
 
 RegisteredDriver registered_by(const fs::path& icd_file) {
   std::string library;
@@ -59,7 +54,7 @@ std::string obstacle_to_writing(const fs::path& folder) {
 
 /// PoCL's default cache (lib/CL/pocl_cache.c).
 fs::path default_cache() {
-  if (const std::string caches = value_of("XDG_CACHE_HOME"); !caches.empty())
+  if (const std::string caches = variable("XDG_CACHE_HOME"); !caches.empty())
     return fs::path(caches) / "pocl" / "kcache";
   if (const char* home = std::getenv("HOME"); home != nullptr)
     return fs::path(home) / ".cache" / "pocl" / "kcache";
@@ -70,9 +65,9 @@ fs::path default_cache() {
 
 std::vector<RegisteredDriver> registered_drivers() {
   std::error_code error;
-  const fs::path chosen = value_of("OCL_ICD_VENDORS");
+  const fs::path chosen = variable("OCL_ICD_VENDORS");
   if (chosen.empty()) {
-    const fs::path folder = value_of("OPENCL_VENDOR_PATH");
+    const fs::path folder = variable("OPENCL_VENDOR_PATH");
     return registered_in(folder.empty() ? usual_folder : folder);
   }
   if (fs::is_directory(chosen, error)) return registered_in(chosen);
@@ -90,7 +85,7 @@ void bind_pocl_threads() {
 
 PoclCache provide_pocl_cache() {
   PoclCache cache;
-  if (const std::string chosen = value_of(cache_variable); !chosen.empty()) {
+  if (const std::string chosen = variable(cache_variable); !chosen.empty()) {
     if (const std::string obstacle = obstacle_to_writing(chosen); !obstacle.empty())
       cache.failure = "its cache " + chosen + " cannot be written (" + obstacle +
                       "); set POCL_CACHE_DIR to a folder that can be, or unset it";

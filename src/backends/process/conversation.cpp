@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "text/text.h"
@@ -26,11 +27,7 @@ constexpr int slice_ms = 100;
 constexpr const char* folder_of_short_name = "/tmp";
 
 using Cause = ConversationFailure::Cause;
-
-bool is_readable(int descriptor) {
-  pollfd waiting{descriptor, POLLIN, 0};
-  return descriptor >= 0 && ::poll(&waiting, 1, 0) > 0;
-}
+using namespace std::chrono_literals;
 
 /// The printable form of a line for a sentence.
 std::string in_quotes(std::string_view line) { return '"' + printable(line) + '"'; }
@@ -44,14 +41,15 @@ std::pair<std::string_view, std::string_view> split(std::string_view line) {
 }
 
 [[noreturn]] void refuse(const std::string& line, const std::string& asked, std::string_view expected) {
-  throw AnswerFailure(
-      fmt::format("answered \"{}\" to \"{}\", where {} is expected", printable(line), asked, expected));
+  throw ConversationFailure(Cause::answer, fmt::format("answered \"{}\" to \"{}\", where {} is expected",
+                                                       printable(line), asked, expected));
 }
 
 void refuse_failed(const std::string& line, const std::string& asked) {
   const auto [word, text] = split(line);
   if (word == "failed" && !text.empty())
-    throw AnswerFailure("failed at \"" + asked + "\": " + printable(text, longest_shown));
+    throw ConversationFailure(Cause::answer,
+                              "failed at \"" + asked + "\": " + printable(text, longest_shown));
 }
 
 /// The number in an answer to `prepare`, from 1 to `most`; `what` names the things that it counts.
@@ -65,6 +63,17 @@ int count_of(std::string_view what, int most, const std::string& line, std::stri
 bool is_at_least_zero(const std::optional<double>& number) {
   return number && *number >= 0 && std::isfinite(*number);
 }
+
+/// A cost of `costs`.
+struct Cost {
+  std::string_view name;
+  std::optional<double> Communication::*value;
+  double most = std::numeric_limits<double>::max();
+};
+constexpr Cost known_costs[]{
+    {"waiting", &Communication::waiting, 1}, {"packing", &Communication::packing, 1},
+    {"bytes", &Communication::bytes},        {"messages", &Communication::messages},
+    {"latency", &Communication::latency_s},  {"bandwidth", &Communication::bytes_per_second}};
 
 }  // namespace
 
@@ -105,7 +114,7 @@ void Conversation::accept() {
     if (errno == EMFILE || errno == ENFILE)
       throw std::runtime_error(std::string("cannot accept the program's connection (") +
                                std::strerror(errno) + "); raise the limit of open files (ulimit -n)");
-    if (is_readable(end_descriptor_))
+    if (is_readable(end_descriptor_, 0ms))
       throw ConversationFailure(Cause::closed, "before it connected to MSSIM_SOCKET");
     if (Clock::now() > deadline_)
       throw ConversationFailure(
@@ -164,8 +173,9 @@ std::string Conversation::answer() {
 void Conversation::look_around() const {
   throw_if_ending_signal_noted();
   // Everything that it sent before its end has been read.
-  if (is_readable(end_descriptor_)) throw ConversationFailure(Cause::closed, "before it answered " + asked_);
-  if (is_readable(listener_.get()))
+  if (is_readable(end_descriptor_, 0ms))
+    throw ConversationFailure(Cause::closed, "before it answered " + asked_);
+  if (is_readable(listener_.get(), 0ms))
     throw ConversationFailure(Cause::answer, "connected a second time before it answered " + asked_);
   if (Clock::now() > deadline_)
     throw ConversationFailure(Cause::silence,
@@ -212,23 +222,12 @@ bool take_cost(Communication& costs, const std::string& line) {
   const auto [word, text] = split(line);
   const auto [name, value] = split(text);
   const std::optional<double> number = number_in<double>(value);
-  const bool is_cost = word == "cost" && is_at_least_zero(number);
-  if (is_cost && name == "waiting" && *number <= 1)
-    costs.waiting = *number;
-  else if (is_cost && name == "packing" && *number <= 1)
-    costs.packing = *number;
-  else if (is_cost && name == "bytes")
-    costs.bytes = *number;
-  else if (is_cost && name == "messages")
-    costs.messages = *number;
-  else if (is_cost && name == "latency")
-    costs.latency_s = *number;
-  else if (is_cost && name == "bandwidth")
-    costs.bytes_per_second = *number;
-  else
+  const Cost* cost = found_in(known_costs, name, &Cost::name);
+  if (word != "cost" || !cost || !is_at_least_zero(number) || *number > cost->most)
     refuse(line, "costs",
            "cost waiting or cost packing and a share, cost bytes, cost messages, cost latency or cost "
            "bandwidth and a number, done, or failed and a reason");
+  costs.*cost->value = *number;
   return false;
 }
 

@@ -19,7 +19,7 @@ struct ConversationFailure : std::runtime_error {
   enum class Cause {
     silence,  ///< no answer in time
     closed,   ///< connection lost: the program has ended, or has closed its socket
-    answer    ///< an invalid answer
+    answer    ///< an invalid answer, or one that reports a failure
   };
   Cause cause;
 
@@ -68,12 +68,6 @@ class Conversation {
   std::string received_;  ///< received part of the next line, possibly more
 };
 
-/// An answer that reports a failure, or an invalid answer. what() is the predicate of a sentence, without the
-/// program's name: "failed at ...".
-struct AnswerFailure : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 /// Maximum number of characters of a program's text that are shown.
 inline constexpr std::size_t longest_shown = 300;
 
@@ -88,7 +82,7 @@ struct Introduction {
   bool tells_costs = false;  ///< it supports the request `costs`
 };
 
-// Parsers of a program's answers; each throws AnswerFailure for an unexpected line.
+// Parsers of a program's answers; each throws ConversationFailure for an unexpected line.
 
 /// One of the answers to `prepare`; returns true for the last. Throws the Unsupported and Unavailable that
 /// the program reports.

@@ -10,7 +10,9 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -32,15 +34,17 @@ bool is_unwritten(const Vec3d& vector) {
                              [](double number) { return std::bit_cast<std::uint64_t>(number) == unwritten; });
 }
 
-std::size_t bytes_of(std::size_t nodes) { return 2 * sizeof(Vec3d) * nodes; }
+std::size_t size_of(std::size_t nodes) { return 2 * sizeof(Vec3d) * nodes; }
 
-/// Reads `bytes` bytes from offset `byte` into `data`; false if the file ends before.
-bool read_at(const Descriptor& file, std::size_t byte, void* data, std::size_t bytes) {
+/// Moves all bytes between `data` and the file from offset `byte` on; `move` is pread or pwrite. False if it
+/// fails, or if the file ends before.
+template <class Move, class Byte>
+bool move_all(const Move& move, const Descriptor& file, std::size_t byte, Byte* data, std::size_t bytes) {
   while (bytes > 0) {
-    const ssize_t count = ::pread(file.get(), data, bytes, static_cast<off_t>(byte));
+    const ssize_t count = move(file.get(), data, bytes, static_cast<off_t>(byte));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;
-    data = static_cast<char*>(data) + count;
+    data += count;
     byte += static_cast<std::size_t>(count);
     bytes -= static_cast<std::size_t>(count);
   }
@@ -73,20 +77,22 @@ void write_number(hid_t file, const std::string& path, const std::string& unit, 
   dataset.close("writing " + path);
 }
 
-/// A list of `rows` rows of `width` numbers; `row_of(i)` is row i as an array. Written in parts, because all
-/// springs of a large scene at once would need as much memory as the scene.
-template <class Number, std::size_t width, class RowOf>
-void write_list(hid_t file, const std::string& path, const std::string& unit, std::size_t rows,
-                const RowOf& row_of) {
-  constexpr std::size_t rows_at_once = 65536;
+/// A list of what `of` makes of each row: a number, or several. Written in parts, because all springs of a
+/// large scene at once would need as much memory as the scene.
+template <class Number, class Row, class Of = std::identity>
+void write_list(hid_t file, const std::string& path, const std::string& unit, const std::vector<Row>& rows,
+                const Of& of = {}) {
+  using Value = std::remove_cvref_t<std::invoke_result_t<Of, const Row&>>;
+  constexpr std::size_t rows_at_once = 65536, width = sizeof(Value) / sizeof(Number);
   const std::string action = "writing " + path;
   Hdf5Dataset dataset = create<Number>(
-      file, path, unit, width == 1 ? std::vector<hsize_t>{rows} : std::vector<hsize_t>{rows, width});
-  std::vector<std::array<Number, width>> block;
+      file, path, unit,
+      width == 1 ? std::vector<hsize_t>{rows.size()} : std::vector<hsize_t>{rows.size(), width});
+  std::vector<Value> block;
   const Hdf5Space space(H5Dget_space(dataset.get()), action);
-  for (std::size_t first = 0; first < rows; first += block.size()) {
-    block.resize(std::min(rows_at_once, rows - first));
-    for (std::size_t i = 0; i < block.size(); ++i) block[i] = row_of(first + i);
+  for (std::size_t first = 0; first < rows.size(); first += block.size()) {
+    block.resize(std::min(rows_at_once, rows.size() - first));
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = std::invoke(of, rows[first + i]);
     const std::array<hsize_t, 2> start{first, 0}, count{block.size(), width};
     checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
             action);
@@ -99,41 +105,28 @@ void write_list(hid_t file, const std::string& path, const std::string& unit, st
   dataset.close(action);
 }
 
-void write_vectors(hid_t file, const std::string& path, const std::string& unit,
-                   const std::vector<Vec3d>& vectors) {
-  write_list<double, 3>(file, path, unit, vectors.size(), [&](std::size_t i) {
-    return std::array{vectors[i].x, vectors[i].y, vectors[i].z};
-  });
-}
-
 void write_nodes(hid_t file, const System& system) {
-  write_vectors(file, "/position", "m", system.start.position);
-  write_vectors(file, "/velocity", "m/s", system.start.velocity);
-  write_list<double, 1>(file, "/mass", "kg", system.nodes(),
-                        [&](std::size_t i) { return std::array{system.node_mass[i]}; });
-  write_list<std::uint32_t, 1>(file, "/pins", "", system.pins.size(),
-                               [&](std::size_t i) { return std::array{system.pins[i]}; });
+  write_list<double>(file, "/position", "m", system.start.position);
+  write_list<double>(file, "/velocity", "m/s", system.start.velocity);
+  write_list<double>(file, "/mass", "kg", system.node_mass);
+  write_list<std::uint32_t>(file, "/pins", "", system.pins);
 }
 
 void write_springs(hid_t file, const System& system) {
   const std::vector<Spring>& springs = system.springs;
-  write_list<std::uint32_t, 2>(file, "/springs", "", springs.size(), [&](std::size_t i) {
-    return std::array{springs[i].first, springs[i].second};
+  write_list<std::uint32_t>(file, "/springs", "", springs, [](const Spring& spring) {
+    return std::array{spring.first, spring.second};
   });
-  write_list<double, 1>(file, "/rest_length", "m", springs.size(),
-                        [&](std::size_t i) { return std::array<double, 1>{springs[i].rest_length}; });
+  write_list<double>(file, "/rest_length", "m", springs,
+                     [](const Spring& spring) { return double{spring.rest_length}; });
   for (const SpringConstantInfo& constant : spring_constants)
-    write_list<double, 1>(
-        file, "/" + std::string(constant.name), std::string(constant.unit), springs.size(),
-        [&](std::size_t i) { return std::array{system.materials[springs[i].kind].*constant.number}; });
-  write_list<std::uint32_t, 1>(file, "/kind", "", springs.size(),
-                               [&](std::size_t i) { return std::array{springs[i].kind}; });
+    write_list<double>(file, "/" + std::string(constant.name), std::string(constant.unit), springs,
+                       [&](const Spring& spring) { return system.materials[spring.kind].*constant.number; });
+  write_list<std::uint32_t>(file, "/kind", "", springs, &Spring::kind);
 }
 
 void write_surroundings(hid_t file, const System& system) {
-  const std::vector<double> gravity{0, -system.gravity, 0};
-  write_list<double, 1>(file, "/gravity", "m/s^2", gravity.size(),
-                        [&](std::size_t i) { return std::array{gravity[i]}; });
+  write_list<double>(file, "/gravity", "m/s^2", std::vector{0., -system.gravity, 0.});
   write_number(file, "/viscous_damping", "1/s", system.viscous_damping);
   create_group(file, "/floor");
   write_number(file, "/floor/height", "m", system.floor.height);
@@ -149,8 +142,7 @@ void write_topology(hid_t file, const Topology& topology) {
     write_number(file, "/grid/spacing", "m", grid->spacing);
   }
   if (const auto* mesh = std::get_if<TetrahedralMesh>(&topology))
-    write_list<std::uint32_t, 4>(file, "/tetrahedra", "", mesh->tetrahedra.size(),
-                                 [&](std::size_t i) { return mesh->tetrahedra[i]; });
+    write_list<std::uint32_t>(file, "/tetrahedra", "", mesh->tetrahedra);
 }
 
 }  // namespace
@@ -163,11 +155,11 @@ StateFile::StateFile(std::size_t nodes, const std::filesystem::path& elsewhere) 
   }
   if (make(elsewhere)) return;
   const int error = errno;
-  throw std::runtime_error(fmt::format(
-      "cannot make {} of {} bytes ({}); {}", path_.string(), bytes_of(nodes), std::strerror(error),
-      error == EFBIG                       ? "raise the limit on file sizes (ulimit -f)"
-      : error == EMFILE || error == ENFILE ? "raise the limit of open files (ulimit -n)"
-                                           : "set TMPDIR to a folder with more room"));
+  throw std::runtime_error(
+      fmt::format("cannot make {} of {} bytes ({}); {}", path_.string(), size_of(nodes), std::strerror(error),
+                  error == EFBIG                       ? "raise the limit on file sizes (ulimit -f)"
+                  : error == EMFILE || error == ENFILE ? "raise the limit of open files (ulimit -n)"
+                                                       : "set TMPDIR to a folder with more room"));
 }
 
 bool StateFile::make(const std::filesystem::path& folder) {
@@ -175,49 +167,43 @@ bool StateFile::make(const std::filesystem::path& folder) {
   file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   if (!file_.is_open()) return false;
   // Reserve the space now, so that it is not missing during a run.
-  const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes_of(nodes_)));
+  const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(size_of(nodes_)));
   errno = error;
   return error == 0;
 }
 
-void StateFile::write_at(std::size_t byte, const void* data, std::size_t bytes) const {
-  while (bytes > 0) {
-    const ssize_t count = ::pwrite(file_.get(), data, bytes, static_cast<off_t>(byte));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0)
-      throw std::runtime_error(
-          fmt::format("cannot write {} ({}); make room there", path_.string(), std::strerror(errno)));
-    data = static_cast<const char*>(data) + count;
-    byte += static_cast<std::size_t>(count);
-    bytes -= static_cast<std::size_t>(count);
-  }
+void StateFile::write_at(std::size_t byte, std::string_view bytes) const {
+  if (!move_all(::pwrite, file_, byte, bytes.data(), bytes.size()))
+    throw std::runtime_error(
+        fmt::format("cannot write {} ({}); make room there", path_.string(), std::strerror(errno)));
 }
 
 void StateFile::write(const State& state) const {
-  const std::size_t half = sizeof(Vec3d) * nodes_;
-  write_at(0, state.position.data(), half);
-  write_at(half, state.velocity.data(), half);
+  write_at(0, bytes_of(state.position));
+  write_at(sizeof(Vec3d) * nodes_, bytes_of(state.velocity));
 }
 
 void StateFile::clear() const {
   constexpr std::size_t numbers = 8192;
   const std::vector<double> block(numbers, std::bit_cast<double>(unwritten));
-  const std::size_t bytes = bytes_of(nodes_);
+  const std::size_t bytes = size_of(nodes_);
   for (std::size_t byte = 0; byte < bytes; byte += numbers * sizeof(double))
-    write_at(byte, block.data(), std::min(numbers * sizeof(double), bytes - byte));
+    write_at(byte, bytes_of(block).substr(0, bytes - byte));
 }
 
 State StateFile::read() const {
   State state;
-  state.position.resize(nodes_);
-  state.velocity.resize(nodes_);
   const std::size_t half = sizeof(Vec3d) * nodes_;
-  if (!read_at(file_, 0, state.position.data(), half) || !read_at(file_, half, state.velocity.data(), half)) {
+  const auto read = [&](std::vector<Vec3d>& vectors, std::size_t byte) {
+    vectors.resize(nodes_);
+    return move_all(::pread, file_, byte, reinterpret_cast<char*>(vectors.data()), half);
+  };
+  if (!read(state.position, 0) || !read(state.velocity, half)) {
     struct stat status {};
     ::fstat(file_.get(), &status);
     throw StateFileFailure(fmt::format("left a state file of {} instead of {}",
                                        pluralize(static_cast<std::uint64_t>(status.st_size), "byte"),
-                                       bytes_of(nodes_)));
+                                       size_of(nodes_)));
   }
   const auto missing = static_cast<std::size_t>(std::ranges::count_if(state.position, is_unwritten) +
                                                 std::ranges::count_if(state.velocity, is_unwritten));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "model/system.h"
 #include "platform/files.h"
@@ -36,7 +37,7 @@ class StateFile {
 
  private:
   bool make(const std::filesystem::path& folder);
-  void write_at(std::size_t byte, const void* data, std::size_t bytes) const;
+  void write_at(std::size_t byte, std::string_view bytes) const;
 
   std::size_t nodes_;
   std::optional<TemporaryFolder> shared_;

@@ -27,8 +27,7 @@ namespace {
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
                                         const std::filesystem::path& memory, const Integrator& integrator,
                                         const ExecutionOptions& options) {
-  const char* inherited = std::getenv("PYTHONPATH");
-  std::string path = inherited == nullptr ? "" : inherited;
+  std::string path = variable("PYTHONPATH");
   constexpr std::string_view python_path = "PYTHONPATH=";
   for (const std::string& given : program.environment)
     if (given.starts_with(python_path)) path = given.substr(python_path.size());
@@ -216,8 +215,6 @@ class ProcessBackend final : public WindowBackend {
       if (::poll(&ended, 1, static_cast<int>(patience_for_reasons.count())) > 0)
         fail(describe(process_->end(patience)) + ' ' + failure.what(), true);
       fail(std::string("closed its connection ") + failure.what(), true);
-    } catch (const AnswerFailure& failure) {
-      fail(failure.what());
     }
   }
 
@@ -236,7 +233,8 @@ class ProcessBackend final : public WindowBackend {
   void take_answers(const std::string& asked, const Take& take) const {
     for (int lines = 0; lines < most_lines; ++lines)
       if (take(conversation_.answer())) return;
-    throw AnswerFailure(fmt::format("answered \"{}\" with more than {} lines", asked, most_lines));
+    throw ConversationFailure(ConversationFailure::Cause::answer,
+                              fmt::format("answered \"{}\" with more than {} lines", asked, most_lines));
   }
 
   /// Takes the answers to `prepare`. Throws Unsupported and Unavailable.

@@ -71,9 +71,19 @@ std::string subject_of(const ResultRow& row) {
 void drop(Combination& combination, const std::string& status) {
   combination.row.status = status;
   end(combination);
-  combination.backend.reset();
-  combination.dressing = nullptr;
-  combination.windows = nullptr;
+}
+
+/// Smallest observable step of the steady clock among a thousand in a row, s.
+double clock_resolution_s() {
+  using Clock = std::chrono::steady_clock;
+  Clock::duration smallest = Clock::duration::max();
+  for (int i = 0; i < 1000; ++i) {
+    const auto before = Clock::now();
+    auto after = Clock::now();
+    while (after == before) after = Clock::now();
+    smallest = std::min(smallest, after - before);
+  }
+  return std::chrono::duration<double>(smallest).count();
 }
 
 void find_sample_steps(Combination& combination, const SceneJob& job) {
@@ -114,18 +124,6 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
 
 }  // namespace
 
-double clock_resolution_s() {
-  using Clock = std::chrono::steady_clock;
-  Clock::duration smallest = Clock::duration::max();
-  for (int i = 0; i < 1000; ++i) {
-    const auto before = Clock::now();
-    auto after = Clock::now();
-    while (after == before) after = Clock::now();
-    smallest = std::min(smallest, after - before);
-  }
-  return std::chrono::duration<double>(smallest).count();
-}
-
 int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds, int most) {
   const double seconds = std::max(step_seconds, 1e-12);
   const double enough_for_clock = std::ceil(least_clock_steps * clock_resolution_seconds / seconds);
@@ -147,17 +145,14 @@ void end(Combination& combination) {
   const std::string note = combination.backend->note();
   if (row.note.find(note) == std::string::npos) append_sentence(row.note, note);
   row.program_output = combination.backend->end();
+  combination.backend.reset();
+  combination.dressing = nullptr;
+  combination.windows = nullptr;
 }
 
 void fail(Combination& combination, const std::string& status) {
   combination.row.verified = false;
   drop(combination, status);
-}
-
-void leave_untimed(Combination& combination) {
-  const std::string reason = combination.backend->reason_not_to_time();
-  if (reason.empty()) return;
-  drop(combination, "not timed: " + reason);
 }
 
 void attempt(Combination& combination, const std::function<void()>& work) {
@@ -234,9 +229,8 @@ void take_verification(Combination& combination, const Verification& verificatio
 
 void take_verification(Combination& combination, const std::vector<ResultRow>& verified) {
   ResultRow& row = combination.row;
-  const auto found =
-      std::ranges::find_if(verified, [&](const ResultRow& other) { return same_combination(other, row); });
-  if (found == verified.end()) return fail(combination, "failed: no earlier process has verified it");
+  const ResultRow* found = find_combination(verified, row);
+  if (!found) return fail(combination, "failed: no earlier process has verified it");
   if (!found->verified) return fail(combination, status_of(*found));
   if (found->device != row.device || found->threads != row.threads || found->nodes != row.nodes ||
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
@@ -250,6 +244,8 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
 }
 
 void calibrate(Combination& combination, const SceneJob& job) {
+  if (const std::string reason = combination.backend->reason_not_to_time(); !reason.empty())
+    return drop(combination, "not timed: " + reason);
   attempt(combination, [&] {
     find_sample_steps(combination, job);
     if (!combination.backend) return;

@@ -33,9 +33,6 @@ inline constexpr int max_sample_steps = 2000;
 /// Least length of a sample, in smallest steps of the clock.
 inline constexpr double least_clock_steps = 1000;
 
-/// Smallest observable step of the steady clock among a thousand in a row, s.
-double clock_resolution_s();
-
 /// Number of steps of a sample of about `sample_seconds` if one step takes `step_seconds`: at least 1, and at
 /// most `most` unless that is too short for the clock.
 int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds,
@@ -83,11 +80,6 @@ inline int steps_of_frame(double fps, double dt_s) {
 /// Begins the note of a row whose samples are too short for a frame of `steps`.
 inline std::string untimed_frames(int steps) {
   return fmt::format("frames of {} are not timed", pluralize(steps, "step"));
-}
-
-/// Number of combinations of a scene.
-inline std::size_t combinations(const BenchSettings& settings) {
-  return settings.integrators.size() * settings.backends.size();
 }
 
 /// What to measure on one scene.
@@ -148,12 +140,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
 /// Ends the combination as failed, with a reason, and keeps the last output of its program.
 void fail(Combination& combination, const std::string& status);
 
-/// Ends the backend of a combination that was measured, and keeps its final note and the output of its
-/// program.
+/// Ends the backend of a combination, if it has one, and keeps its final note and the output of its program.
 void end(Combination& combination);
-
-/// Ends the backend if its times would be meaningless; the row has the reason and stays verified.
-void leave_untimed(Combination& combination);
 
 /// Calls `work` on the combination's backend; the row fails if the backend's program fails.
 void attempt(Combination& combination, const std::function<void()>& work);
@@ -168,7 +156,8 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
 /// Finds the number of steps per sample from trials of growing length, then continues until the backend is
 /// warm. With job.verified the first trial of a tenth of a sample decides, and the first samples warm the
 /// backend up: processes that only take samples are many and short, and only the least sample of each counts.
-/// The backend rests afterwards.
+/// The backend rests afterwards. It is ended if its times would be meaningless; the row then has the reason
+/// and stays verified.
 void calibrate(Combination& combination, const SceneJob& job);
 
 /// Takes a sample of combination.steps steps from the start of samples and returns ms per step. Sets the

@@ -10,11 +10,13 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <tuple>
 
 #include "platform/machine.h"
+#include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -112,7 +114,7 @@ std::uint64_t bytes_of(const std::string& size) {
 }
 
 std::vector<Cache> read_caches(const fs::path& cpus) {
-  std::vector<Cache> caches;
+  std::map<std::tuple<int, std::string, std::uint64_t, int>, int> counts;  // of level, type, bytes, sharing
   std::set<std::tuple<std::string, std::string, std::string>> seen;  // level, type, the CPUs that share it
   std::error_code ignored;
   for (const auto& cpu : fs::directory_iterator(cpus, ignored)) {
@@ -120,21 +122,15 @@ std::vector<Cache> read_caches(const fs::path& cpus) {
       const std::string level = first_line(entry.path() / "level"), type = first_line(entry.path() / "type");
       const std::string shared = first_line(entry.path() / "shared_cpu_list");
       if (level.empty() || !seen.emplace(level, type, shared).second) continue;
-      const Cache cache{leading_number<int>(level), type, bytes_of(first_line(entry.path() / "size")), 1,
-                        count_cpus(shared)};
-      const auto same = std::find_if(caches.begin(), caches.end(), [&](const Cache& other) {
-        return std::tie(other.level, other.type, other.bytes, other.sharing) ==
-               std::tie(cache.level, cache.type, cache.bytes, cache.sharing);
-      });
-      if (same == caches.end())
-        caches.push_back(cache);
-      else
-        ++same->count;
+      ++counts[{leading_number<int>(level), type, bytes_of(first_line(entry.path() / "size")),
+                count_cpus(shared)}];
     }
   }
-  std::sort(caches.begin(), caches.end(), [](const Cache& a, const Cache& b) {
-    return std::tie(a.level, a.type, a.bytes) < std::tie(b.level, b.type, b.bytes);
-  });
+  std::vector<Cache> caches;
+  for (const auto& [kind, count] : counts) {
+    const auto& [level, type, bytes, sharing] = kind;
+    caches.push_back({level, type, bytes, count, sharing});
+  }
   return caches;
 }
 
@@ -162,11 +158,11 @@ std::string kernel_name() {
 std::string read_generation(const fs::path& file) {
   const std::string vendor = value_of(file, "vendor_id", ':');
   if (!vendor.empty())
-    return std::string(cpu_generation({vendor, leading_number<int>(value_of(file, "cpu family", ':')),
-                                       leading_number<int>(value_of(file, "model", ':'))}));
+    return std::string(cpu_generation(vendor, leading_number<int>(value_of(file, "cpu family", ':')),
+                                      leading_number<int>(value_of(file, "model", ':'))));
   const std::string implementer = value_of(file, "CPU implementer", ':');
   const std::string part = value_of(file, "CPU part", ':');  // "0xd0c"
-  return std::string(cpu_generation({implementer, 0, hexadecimal_number(part)}));
+  return std::string(cpu_generation(implementer, 0, hexadecimal_number(part)));
 }
 
 std::vector<std::pair<std::string, std::string>> thread_environment() {
@@ -183,8 +179,7 @@ std::vector<std::pair<std::string, std::string>> thread_environment() {
 
 /// The name of the home folder is usually the user's name.
 std::string without_home(std::string_view argument) {
-  const char* home = std::getenv("HOME");
-  const std::string_view folder = home ? home : "";
+  const std::string folder = variable("HOME");
   if (folder.size() < 2) return std::string(argument);
   std::string result;
   for (std::size_t at = 0; at < argument.size();) {
@@ -253,10 +248,10 @@ bool binds_threads(const Provenance& provenance) {
 
 }  // namespace
 
-std::string_view cpu_generation(const CpuIdentification& cpu) {
+std::string_view cpu_generation(std::string_view maker, int family, int model) {
   const auto found = std::ranges::find_if(generations, [&](const Generation& generation) {
-    return generation.maker == cpu.maker && generation.family == cpu.family &&
-           cpu.model >= generation.first_model && cpu.model <= generation.last_model;
+    return generation.maker == maker && generation.family == family && model >= generation.first_model &&
+           model <= generation.last_model;
   });
   return found == std::end(generations) ? std::string_view() : found->name;
 }
@@ -314,8 +309,7 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
   for (std::string& word : record.command) {
     const bool is_program = &word == &record.command.front();
     const std::filesystem::path file = is_program ? program : folder / word;
-    const std::optional<std::uint64_t> hash =
-        is_program ? file_hash(file) : file_hash(file, largest_argument);
+    const std::optional<std::uint64_t> hash = file_hash(file, is_program ? UINTMAX_MAX : largest_argument);
     word = escaped(without_home(word));
     if (hash) record.files.push_back({word, *hash});
   }

@@ -29,18 +29,12 @@ inline bool knows_commit(const BuildInfo& build) { return build.commit != "unkno
 /// BuildInfo of the running program.
 const BuildInfo& build_info();
 
-/// Identification of a processor in /proc/cpuinfo. On x86-64 `maker` is the vendor's identification. On Arm
-/// it is the implementer's number as the kernel writes it ("0x41"), `model` is the part's number, and
-/// `family` is zero.
-struct CpuIdentification {
-  std::string_view maker;
-  int family = 0;
-  int model = 0;
-};
-
-/// Name of the processor's design, for example "Zen 4" or "Sapphire Rapids". Names such as "AMD EPYC", which
-/// virtual machines often report, do not show how fast a processor is. Empty if the table has no entry.
-std::string_view cpu_generation(const CpuIdentification& cpu);
+/// Name of the processor's design, for example "Zen 4" or "Sapphire Rapids", from its numbers in
+/// /proc/cpuinfo. On x86-64 `maker` is the vendor's identification. On Arm it is the implementer's number as
+/// the kernel writes it ("0x41"), `model` is the part's number, and `family` is zero. Names such as "AMD
+/// EPYC", which virtual machines often report, do not show how fast a processor is. Empty if the table has no
+/// entry.
+std::string_view cpu_generation(std::string_view maker, int family, int model);
 
 /// A kind of cache, by level and type; the machine may have several of it.
 struct Cache {

@@ -12,9 +12,7 @@ namespace {
 /// Adds "WHAT was BEFORE and is NOW" if they differ, each sentence once.
 void add(std::vector<std::string>& sentences, const std::string& what, const std::string& before,
          const std::string& now) {
-  if (before == now) return;
-  std::string sentence = fmt::format("{} was {} and is {}", what, before, now);
-  if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
+  if (before != now) add_once(sentences, fmt::format("{} was {} and is {}", what, before, now));
 }
 
 /// Results of an mssim that did not know generations can be compared without them.
@@ -30,19 +28,10 @@ std::string size_of(const ResultRow& row) {
 /// With fewer samples per side, even times that do not overlap are not significantly different.
 constexpr std::size_t fewest_samples = 5;
 
-const ResultRow* find(std::span<const ResultRow> rows, const ResultRow& row) {
-  const auto same = std::ranges::find_if(
-      rows, [&](const ResultRow& candidate) { return same_combination(candidate, row); });
-  return same == rows.end() ? nullptr : &*same;
-}
-
 /// A combination and its time in BASE.
-template <class Combination>
-ComparedRow row_of(const Combination& combination, const std::vector<double>& base_ms) {
+ComparedRow row_of(const CombinationNames& combination, const std::vector<double>& base_ms) {
   ComparedRow row;
-  row.scene = combination.scene;
-  row.backend = combination.backend;
-  row.integrator = combination.integrator;
+  static_cast<CombinationNames&>(row) = combination;
   row.base_ms = median(base_ms);
   row.base_samples_ms = base_ms;
   return row;
@@ -84,8 +73,7 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
   add(sentences, "the list of compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
   add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
   for (const SceneHash& scene : before.scenes)
-    if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);
-        same != now.scenes.end()) {
+    if (const SceneHash* same = found_in(now.scenes, scene.name, &SceneHash::name)) {
       add(sentences, "the hash of scene " + scene.name, to_hex(scene.fnv1a_64), to_hex(same->fnv1a_64));
       if (scene.files_fnv1a_64 && same->files_fnv1a_64)  // earlier programs did not record it
         add(sentences, "the hash of the files of scene " + scene.name, to_hex(*scene.files_fnv1a_64),
@@ -97,7 +85,7 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
 std::vector<std::string> differences(std::span<const ResultRow> before, std::span<const ResultRow> now) {
   std::vector<std::string> sentences;
   for (const ResultRow& row : before) {
-    const ResultRow* same = find(now, row);
+    const ResultRow* same = find_combination(now, row);
     if (!same || !row.ms_per_step || !same->ms_per_step) continue;
     add(sentences, "the device of " + row.backend, row.device, same->device);
     add(sentences, "the number of threads of " + row.backend, std::to_string(row.threads),
@@ -142,7 +130,7 @@ RunComparison compare(std::span<const ResultRow> base, std::span<const ResultRow
   RunComparison comparison;
   comparison.threshold = threshold;
   for (const ResultRow& row : base) {
-    const ResultRow* same = find(next, row);
+    const ResultRow* same = find_combination(next, row);
     if (!same)
       comparison.only_base.push_back(combination_name(row));
     else if (!counts(row))
@@ -151,15 +139,14 @@ RunComparison compare(std::span<const ResultRow> base, std::span<const ResultRow
       comparison.rows.push_back(compare_rows(row, *same, threshold));
   }
   for (const ResultRow& row : next)
-    if (!find(base, row)) comparison.only_new.push_back(combination_name(row));
+    if (!find_combination(base, row)) comparison.only_new.push_back(combination_name(row));
   add_means(comparison);
   return comparison;
 }
 
 void add_means(RunComparison& comparison) {
   std::vector<std::string> names{""};
-  for (const ComparedRow& row : comparison.rows)
-    if (std::ranges::find(names, row.backend) == names.end()) names.push_back(row.backend);
+  for (const ComparedRow& row : comparison.rows) add_once(names, row.backend);
   for (const std::string& name : names) {
     std::vector<double> ratios;
     for (const ComparedRow& row : comparison.rows)

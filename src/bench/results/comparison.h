@@ -33,8 +33,7 @@ std::string_view name_of(Verdict verdict);
 inline constexpr double significance = 0.01;
 
 /// Two measurements of one combination of scene, backend and integrator.
-struct ComparedRow {
-  std::string scene, backend, integrator;
+struct ComparedRow : CombinationNames {
   double base_ms = 0;                  ///< median
   std::optional<double> new_ms;        ///< median; none if the row is lost
   std::optional<RatioEstimate> ratio;  ///< NEW / BASE; none if the row is lost
@@ -92,8 +91,7 @@ bool has_regression(const RunComparison& comparison);
 /// Times of one combination by two programs that took turns, one pair per round. If the programs are alike,
 /// either time of a pair is equally likely to be the longer, whatever the machine did in that round. The
 /// looks and their tests assume nothing else.
-struct PairedTimes {
-  std::string scene, backend, integrator;
+struct PairedTimes : CombinationNames {
   std::vector<double> base_ms, new_ms;  ///< [rounds]
   std::string lost;  ///< why NEW has no verified time although BASE has; it is then not measured further
 };

@@ -14,25 +14,15 @@ std::string machine_of(const HistoryEntry& entry) {
 
 namespace {
 
-bool is_of(const HistorySeries& series, const HistoryRow& row) {
-  return same_combination(series, row) && series.device == row.device && series.nodes == row.nodes;
-}
-
 /// Adds the rows of the machine's last entry to its series.
 void add_rows(MachineHistory& machine) {
   for (const HistoryRow& row : machine.entries.back()->rows) {
     if (!row.verified || !row.ms_per_step) continue;
-    auto series =
-        std::ranges::find_if(machine.series, [&](const HistorySeries& known) { return is_of(known, row); });
-    if (series == machine.series.end()) {
-      machine.series.emplace_back();
-      series = machine.series.end() - 1;
-      series->scene = row.scene;
-      series->backend = row.backend;
-      series->integrator = row.integrator;
-      series->device = row.device;
-      series->nodes = row.nodes;
-    }
+    auto series = std::ranges::find_if(machine.series, [&](const HistorySeries& known) {
+      return same_combination(known, row) && known.device == row.device && known.nodes == row.nodes;
+    });
+    if (series == machine.series.end())
+      series = machine.series.insert(series, HistorySeries{{row}, {}, {}, {}, {}, {}, {}});
     series->at.push_back(machine.entries.size() - 1);
     series->ms.push_back(*row.ms_per_step);
     const bool covers = has_interval(row.samples);
@@ -60,9 +50,7 @@ HistoryEntry entry_of(const Provenance& provenance, std::span<const ResultRow> r
                      {}};
   for (const ResultRow& row : rows) {
     HistoryRow& kept = entry.rows.emplace_back();
-    kept.scene = row.scene;
-    kept.backend = row.backend;
-    kept.integrator = row.integrator;
+    static_cast<CombinationNames&>(kept) = row;
     kept.device = row.device;
     kept.nodes = static_cast<std::uint32_t>(row.nodes);
     kept.verified = row.verified;

@@ -16,10 +16,14 @@ namespace mssim {
 /// Times of many commits, measured one after the other, and the changes in them. A file keeps the entries
 /// (output/folders/history_file.h); a machine's times are never compared with another machine's.
 
-/// What an entry keeps of a row: a combination, which its device and its scene's size belong to.
-struct HistoryRow {
-  std::string scene, backend, integrator, device;
+/// Times are compared only if they are of the same combination, device and size of the scene.
+struct HistoryCombination : CombinationNames {
+  std::string device;
   std::uint32_t nodes = 0;
+};
+
+/// What an entry keeps of a row.
+struct HistoryRow : HistoryCombination {
   /// The median of the samples with its interval; none unless the row counts().
   std::optional<double> ms_per_step, ms_per_step_low, ms_per_step_high;
   std::uint32_t samples = 0;
@@ -49,9 +53,7 @@ HistoryEntry entry_of(const Provenance& provenance, std::span<const ResultRow> r
 void add_entry(std::vector<HistoryEntry>& history, HistoryEntry entry, bool replace);
 
 /// Times of a combination on a machine, in the order of its entries.
-struct HistorySeries {
-  std::string scene, backend, integrator, device;
-  std::uint32_t nodes = 0;
+struct HistorySeries : HistoryCombination {
   std::vector<std::size_t> at;    ///< [times] the machine's entry
   std::vector<double> ms;         ///< [times]
   std::vector<double> low, high;  ///< [times] its 95 % interval; the time itself if it has none

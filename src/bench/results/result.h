@@ -71,6 +71,28 @@ inline std::vector<std::string> out_of_bounds(const DressingRecord& dressing) {
   return sentences;
 }
 
+/// What is measured: a scene, a backend and an integrator, by their names.
+struct CombinationNames {
+  std::string scene, backend, integrator;
+};
+
+inline bool same_combination(const CombinationNames& a, const CombinationNames& b) {
+  return a.scene == b.scene && a.backend == b.backend && a.integrator == b.integrator;
+}
+
+/// The first row of this combination; null if there is none.
+template <class Rows>
+auto find_combination(Rows& rows, const CombinationNames& names) {
+  const auto found = std::ranges::find_if(
+      rows, [&](const CombinationNames& other) { return same_combination(other, names); });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+/// "scene, backend, integrator", for messages; names from a file may hold any characters.
+inline std::string combination_name(const CombinationNames& names) {
+  return printable(names.scene + ", " + names.backend + ", " + names.integrator, 300);
+}
+
 /// Difference between a row's state and the reference's after the verification's steps.
 struct Agreement {
   std::optional<double> position_error, energy_drift;
@@ -116,16 +138,20 @@ struct SampleStatistics {
 /// One combination of scene, backend and integrator, measured and verified: a row of timings.csv, whose
 /// columns are described by result_columns. Missing values (a failed row's times, a time that was never
 /// published) are empty.
-struct ResultRow : Agreement, MeasuredCosts, PreparationCosts, FrameTimes, Samples, SampleStatistics {
-  std::string scene;
+struct ResultRow : CombinationNames,
+                   Agreement,
+                   MeasuredCosts,
+                   PreparationCosts,
+                   FrameTimes,
+                   Samples,
+                   SampleStatistics {
   /// Whether the scene is, to the byte, the one that mssim ships under its name; only such a scene can be a
   /// paper's. Not a column.
   bool scene_as_shipped = true;
   std::uint64_t nodes = 0, springs_unique = 0;
   std::optional<std::uint64_t> springs_published;
-  std::string backend, device;
+  std::string device;
   int threads = 0;
-  std::string integrator;
   double dt_s = 0;
   int rounds = 0;
   std::optional<double> paper_ms;
@@ -244,18 +270,6 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
     {"cache_misses_per_step", "", "cache misses there; which cache it is depends on the processor",
      &ResultRow::cache_misses_per_step},
 });
-
-/// Whether both are of the same scene, backend and integrator.
-template <class A, class B>
-bool same_combination(const A& a, const B& b) {
-  return a.scene == b.scene && a.backend == b.backend && a.integrator == b.integrator;
-}
-
-/// "scene, backend, integrator", for messages; names from a file may hold any characters.
-template <class A>
-std::string combination_name(const A& a) {
-  return printable(a.scene + ", " + a.backend + ", " + a.integrator, 300);
-}
 
 /// Bounds of a time, ms. Within them, statistics of times, their ratios and rates are finite.
 inline constexpr double shortest_ms = 1e-12, longest_ms = 1e12;

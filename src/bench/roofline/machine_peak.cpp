@@ -87,10 +87,6 @@ HWY_EXPORT(multiply_adds);
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_between(Clock::time_point start, Clock::time_point end) {
-  return std::chrono::duration<double>(end - start).count();
-}
-
 /// Wall seconds from the first thread's start until `work(part)` has finished for every part. Each thread
 /// takes one part. All threads exist before the first starts; waiting for them is not counted. If the runtime
 /// grants fewer threads, some take more parts, and the time includes that.
@@ -111,7 +107,7 @@ double timed_on(int threads, const Work& work) {
       last_end = std::max(last_end, end);
     }
   }
-  return seconds_between(first_start, last_end);
+  return std::chrono::duration<double>(last_end - first_start).count();
 }
 
 /// The best rate (amount per second, all threads together) of `work(part, repeats)`, which processes `amount`
@@ -123,9 +119,9 @@ double best_rate(int threads, double amount, const Work& work) {
   constexpr int least_samples = 3;
   std::size_t repeats = 1;
   for (int long_enough = 0; long_enough < 2;) {
-    const Clock::time_point start = Clock::now();
+    const Stopwatch watch;
     work(0, repeats);
-    if (seconds_between(start, Clock::now()) >= sample_seconds) {
+    if (watch.seconds() >= sample_seconds) {
       ++long_enough;  // twice, because one may be an interruption
     } else {
       repeats *= 2;
@@ -133,9 +129,8 @@ double best_rate(int threads, double amount, const Work& work) {
     }
   }
   double best = std::numeric_limits<double>::infinity();
-  const Clock::time_point start = Clock::now();
-  for (int sample = 0; sample < least_samples || seconds_between(start, Clock::now()) < total_seconds;
-       ++sample)
+  const Stopwatch all;
+  for (int sample = 0; sample < least_samples || all.seconds() < total_seconds; ++sample)
     best = std::min(best, timed_on(threads, [&](std::size_t part) { work(part, repeats); }));
   return amount * static_cast<double>(repeats) * threads / best;
 }

@@ -1,11 +1,9 @@
 #include "bench/verification/verification.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include "backends/backends.h"
@@ -261,12 +259,15 @@ std::string touches_at_once(int steps) {
 
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s) {
   Reference reference;
+  const auto failed = [&](const std::string& why) {
+    reference.failure = why;
+    return reference;
+  };
   std::unique_ptr<Backend> backend;
   try {
     backend = make_reference(system, integrator, dt_s);
   } catch (const Unsupported& reason) {
-    reference.failure = std::string("there is no double-precision reference: ") + reason.what();
-    return reference;
+    return failed(std::string("there is no double-precision reference: ") + reason.what());
   }
   reference.integrator = &integrator;
   reference.state = system.start;
@@ -282,16 +283,14 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
     const int most =
         std::min(steps_between_looks, (steps < comparable ? comparable : verification_steps) - steps);
     const int next = steps + (in_the_air ? watch.steps_to_look(before, steps, most) : most);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch_of_steps;
     backend->step(next - steps);
     State state = backend->state();
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    step_seconds.push_back(taken.count() / (next - steps));
+    step_seconds.push_back(watch_of_steps.seconds() / (next - steps));
     if (const auto node = first_bad_node(state)) {
       const BlowUp blow_up =
           find_blow_up(*backend, before, next - steps).value_or(BlowUp{next - steps, *node});
-      reference.failure = "the double-precision reference " + describe(blow_up, dt_s, steps);
-      return reference;
+      return failed("the double-precision reference " + describe(blow_up, dt_s, steps));
     }
     steps = next;
     in_the_air = in_the_air && is_in_the_air(state, system.floor);
@@ -302,18 +301,14 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
     before = std::move(state);
   }
   // Fewer steps would not show much.
-  if (const int least = std::min(steps_between_looks, comparable); reference.steps < least) {
-    reference.failure = touches_at_once(least);
-    return reference;
-  }
+  if (const int least = std::min(steps_between_looks, comparable); reference.steps < least)
+    return failed(touches_at_once(least));
   reference.tolerance = position_tolerance(system, integrator, reference.steps);
-  if (reference.tolerance > largest_tolerance) {
-    reference.failure = fmt::format(
+  if (reference.tolerance > largest_tolerance)
+    return failed(fmt::format(
         "nothing can be verified: roundings to single precision may move a node by {:.3g} rest lengths in "
         "{}, more than {}; move the scene nearer to the origin",
-        reference.tolerance, pluralize(reference.steps, "step"), largest_tolerance);
-    return reference;
-  }
+        reference.tolerance, pluralize(reference.steps, "step"), largest_tolerance));
   reference.energy = energy_of(system, reference.state);
   reference.step_seconds = median(step_seconds);
   return reference;
@@ -332,11 +327,7 @@ State step_rounded(Backend& reference, int steps) {
 
 Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s,
                     int steps_taken) {
-  Verification result;
-  if (reference.failure) {
-    result.failure = reference.failure;
-    return result;
-  }
+  if (reference.failure) return {.failure = reference.failure};
   if (steps_taken != reference.steps) {
     backend.set_state(system.start);
     backend.step(reference.steps);
@@ -344,14 +335,11 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   const State state = backend.state();
   if (first_bad_node(state)) {
     const auto blow_up = find_blow_up(backend, system.start, reference.steps);
-    result.failure =
-        blow_up ? describe(*blow_up, dt_s) + std::string(unless_alone) : std::string(finite_in_the_next);
-    return result;
+    return {.failure = blow_up ? describe(*blow_up, dt_s) + std::string(unless_alone)
+                               : std::string(finite_in_the_next)};
   }
-  result.state_hash = state_hash(state);
   const Deviation deviation = deviation_from(system, reference.state, reference.energy, state);
-  result.position_error = deviation.position;
-  result.energy_drift = deviation.energy;
+  Verification result{deviation.position, deviation.energy, state_hash(state)};
 
   double tolerance = reference.tolerance, energy_allowed = energy_tolerance;
   const auto is_near = [&] { return deviation.position <= tolerance; };
@@ -439,12 +427,9 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
                                        std::span<const SampleEnd> ends) {
   std::vector<std::string> reasons(ends.size());
   if (ends.empty()) return reasons;
-  std::vector<std::size_t> order(ends.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return ends[i].steps; });
   CheckedWay way(system, integrator, dt_s, start);
   const double unit = mean_rest_length(system);
-  for (const std::size_t i : order) {
+  for (const std::size_t i : ordered_places(ends, &SampleEnd::steps)) {
     const SampleEnd& end = ends[i];
     way.go_to(end.steps);
     const std::string after = fmt::format(" after the {} of a sample", pluralize(end.steps, "step"));

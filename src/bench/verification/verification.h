@@ -128,11 +128,11 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
 /// Comparison of a backend with the reference.
 struct Verification {
   /// Largest distance between the same node's positions, in mean rest lengths; none if nothing was compared.
-  std::optional<double> position_error;
+  std::optional<double> position_error = {};
   /// Total energy less the reference's, divided by the reference's energy in motion; none as above.
-  std::optional<double> energy_drift;
-  std::optional<std::uint64_t> state_hash;  ///< of the state after the last step (model/system.h)
-  std::optional<std::string> failure;       ///< empty: verified
+  std::optional<double> energy_drift = {};
+  std::optional<std::uint64_t> state_hash = {};  ///< of the state after the last step (model/system.h)
+  std::optional<std::string> failure = {};       ///< empty: verified
 };
 
 /// Compares the backend with the reference. If it is further away than independent roundings explain, a

@@ -25,9 +25,6 @@ struct WindowedCloth {
   std::function<System(const GridWindow& window)> build;
 
   std::uint64_t nodes() const { return std::uint64_t{grid.rows} * grid.columns; }
-  std::uint64_t nodes_in_windows() const {
-    return windows.empty() ? 0 : windows.size() * windows.front().nodes();
-  }
 };
 
 /// Number, in the whole cloth, of a node of a window.
@@ -49,9 +46,6 @@ inline std::size_t fewest_windows(std::size_t parts) { return parts + 1; }
 std::vector<GridWindow> choose_windows(const GridPatch& grid, std::size_t parts,
                                        std::optional<std::uint32_t> pinned_row, std::size_t count);
 
-/// The window extended by `reach` rows and columns on each side, within the cloth.
-GridWindow domain_of(const GridWindow& window, std::size_t reach, const GridPatch& grid);
-
 /// Numbers of steps after which the reference of a window has a state; a sample has one of these lengths.
 inline constexpr std::array<int, 13> window_looks{1, 2, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 100};
 static_assert(window_looks.back() == verification_steps);
@@ -69,18 +63,6 @@ struct WindowReference {
   }
 };
 
-/// Runs the reference of a window for verification_steps, on the window's domain of dependence only.
-///
-/// A spring is at most two rows or columns long. So a node's acceleration depends on nodes at most two away,
-/// and a stage's result on the previous stage's result there. At a cut edge of the domain, the outermost two
-/// rows miss springs: after k stages the outermost 2 k rows are wrong. All other rows have seen the same
-/// neighbours as in the whole cloth, summed in the same order, so they are bitwise identical (with an
-/// integrator that is ahead, equal to rounding in double precision). ghost_columns (layouts/band_grid.h)
-/// gives the width for any number of steps. Edges of the cloth itself cause no error. Rows that have become
-/// wrong are dropped every few steps.
-WindowReference run_window_reference(const WindowedCloth& cloth, const GridWindow& window,
-                                     const Integrator& integrator, double dt_s);
-
 /// Upper bound of the bytes of the reference of such a window.
 double window_reference_bytes(const Integrator& integrator, const GridWindow& window, const GridPatch& grid);
 
@@ -91,7 +73,16 @@ struct WindowReferences {
   std::optional<std::string> failure;
 };
 
-/// Runs the references of all windows, `at_once` at the same time.
+/// Runs the references of all windows for verification_steps, `at_once` at the same time, each on the
+/// window's domain of dependence only.
+///
+/// A spring is at most two rows or columns long. So a node's acceleration depends on nodes at most two away,
+/// and a stage's result on the previous stage's result there. At a cut edge of the domain, the outermost two
+/// rows miss springs: after k stages the outermost 2 k rows are wrong. All other rows have seen the same
+/// neighbours as in the whole cloth, summed in the same order, so they are bitwise identical (with an
+/// integrator that is ahead, equal to rounding in double precision). ghost_columns (layouts/band_grid.h)
+/// gives the width for any number of steps. Edges of the cloth itself cause no error. Rows that have become
+/// wrong are dropped every few steps.
 WindowReferences run_window_references(const WindowedCloth& cloth, const Integrator& integrator, double dt_s,
                                        std::size_t at_once);
 

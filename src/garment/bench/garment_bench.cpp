@@ -106,9 +106,8 @@ class StretchErrors {
 
 /// Takes the record of an earlier row of the same combination; returns whether there was one.
 bool keep_earlier(ResultRow& row, const std::vector<ResultRow>& earlier) {
-  const auto same =
-      std::ranges::find_if(earlier, [&](const ResultRow& other) { return same_combination(other, row); });
-  if (same == earlier.end() || !same->dressing || same->status != "ok") return false;
+  const ResultRow* same = find_combination(earlier, row);
+  if (!same || !same->dressing || same->status != "ok") return false;
   row.dressing = same->dressing;
   return true;
 }

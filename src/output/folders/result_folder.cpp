@@ -88,7 +88,7 @@ std::vector<std::string> file_stems(std::span<const ResultRow> rows) {
 
 ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker tables)
     : folder_(std::move(folder)),
-      lock_(make_folder(folder_)),
+      lock_(lock_folder(make_folder(folder_))),
       provenance_(std::move(provenance)),
       tables_(std::move(tables)) {}
 

@@ -67,7 +67,7 @@ class ResultFolder {
   void clear() const;
 
   std::filesystem::path folder_;
-  FolderLock lock_;
+  Descriptor lock_;  ///< of the folder
   Provenance provenance_;
   TableMaker tables_;
   bool replaces_ = false, goes_on_ = false;  ///< until the first write

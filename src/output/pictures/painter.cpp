@@ -204,7 +204,7 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions, bool with_legen
 PictureFolder::PictureFolder(std::filesystem::path folder, TraceContent content,
                              const PictureOptions& options)
     : folder_(std::move(folder)),
-      lock_(make_folder(folder_)),
+      lock_(lock_folder(make_folder(folder_))),
       content_(std::move(content)),
       options_(options) {
   if (!std::filesystem::is_empty(folder_))

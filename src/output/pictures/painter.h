@@ -92,7 +92,7 @@ class PictureFolder {
 
  private:
   std::filesystem::path folder_;
-  FolderLock lock_;
+  Descriptor lock_;  ///< of the folder
   TraceContent content_;
   PictureOptions options_;
   std::optional<Painter> painter_;  ///< of content_; none before the first moment

@@ -76,8 +76,7 @@ std::vector<ResultRow> read_timings(const CsvTable& table);
 void read_samples(const CsvTable& table, std::span<ResultRow> rows);
 
 /// The part of a result that every version of mssim has written.
-struct CombinationTime {
-  std::string scene, backend, integrator;
+struct CombinationTime : CombinationNames {
   /// Time per step of the least sample, if verified. Disturbances only make a sample longer, and seldom
   /// affect all.
   std::optional<double> least_ms;

@@ -283,9 +283,7 @@ std::vector<CombinationTime> read_combination_times(const std::filesystem::path&
                     verified = table.column("verified"), status = table.column("status");
   std::vector<CombinationTime> times;
   for (std::size_t row = 0; row < table.size(); ++row) {
-    CombinationTime time{table.text(row, scene),
-                         table.text(row, backend),
-                         table.text(row, integrator),
+    CombinationTime time{{table.text(row, scene), table.text(row, backend), table.text(row, integrator)},
                          {},
                          table.text(row, status)};
     if (time.status == "ok" && table.text(row, verified) != "true") time.status = "failed: not verified";

@@ -220,7 +220,7 @@ TEST_F(ConversationTest, EndsAWaitWhenTheUserEndsMssim) {
 /// What taking this answer to `costs` fails with.
 std::string complaint_about_cost(const std::string& line) {
   Communication costs;
-  return sentence_of<AnswerFailure>([&] { take_cost(costs, line); });
+  return sentence_of<ConversationFailure>([&] { take_cost(costs, line); });
 }
 
 TEST(Answers, SayWhatAProgramIs) {
@@ -244,13 +244,13 @@ TEST(Answers, RefuseAProgramOrItsScene) {
   Introduction introduction;
   EXPECT_THROW(take_introduction(introduction, "unsupported red springs"), Unsupported);
   EXPECT_THROW(take_introduction(introduction, "unavailable no chip"), Unavailable);
-  EXPECT_THROW(take_introduction(introduction, "failed no licence"), AnswerFailure);
+  EXPECT_THROW(take_introduction(introduction, "failed no licence"), ConversationFailure);
   for (const char* line :
        {"", "ready 2", "threads 0", "threads 5000", "pass 0", "pass 1001", "tells", "tells jokes", "device"})
-    EXPECT_THROW(take_introduction(introduction, line), AnswerFailure) << line;
+    EXPECT_THROW(take_introduction(introduction, line), ConversationFailure) << line;
   for (const char* word : {"unsupported", "unavailable", "failed"})
     for (const std::string& line : {std::string(word), word + std::string(" ")})
-      EXPECT_THAT(sentence_of<AnswerFailure>([&] { take_introduction(introduction, line); }),
+      EXPECT_THAT(sentence_of<ConversationFailure>([&] { take_introduction(introduction, line); }),
                   AllOf(StartsWith("answered \"" + line), HasSubstr("reason")))
           << line;
 }
@@ -282,11 +282,11 @@ TEST(Answers, SayThatARequestIsDone) {
   EXPECT_NO_THROW(take_done("get", "done", false));
   EXPECT_NO_THROW(take_done("step 3", "done 0.25", true));
   for (const char* line : {"done 0.25", "ready 1", "", "failed"})
-    EXPECT_THROW(take_done("get", line, false), AnswerFailure) << line;
-  EXPECT_THROW(take_done("step 3", "done -1", true), AnswerFailure);
+    EXPECT_THROW(take_done("get", line, false), ConversationFailure) << line;
+  EXPECT_THROW(take_done("step 3", "done -1", true), ConversationFailure);
   try {
     take_done("step 3", "hello", true);
-  } catch (const AnswerFailure& failure) {
+  } catch (const ConversationFailure& failure) {
     EXPECT_THAT(failure.what(), StartsWith("answered \"hello\" to \"step 3\""));
   }
 }

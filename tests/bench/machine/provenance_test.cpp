@@ -87,13 +87,13 @@ TEST_F(MadeUpMachine, OfArmIsNamedByItsNumbers) {
 }
 
 TEST(CpuGeneration, IsToldByMakerFamilyAndModel) {
-  EXPECT_EQ(cpu_generation({"AuthenticAMD", 0x19, 0x11}), "Zen 4");
-  EXPECT_EQ(cpu_generation({"AuthenticAMD", 0x19, 0x21}), "Zen 3");
-  EXPECT_EQ(cpu_generation({"AuthenticAMD", 0x1a, 0x02}), "Zen 5");
-  EXPECT_EQ(cpu_generation({"GenuineIntel", 6, 0x8f}), "Sapphire Rapids");
-  EXPECT_EQ(cpu_generation({"GenuineIntel", 6, 0xff}), "");
-  EXPECT_EQ(cpu_generation({"0x41", 0, 0xd40}), "Neoverse V1");
-  EXPECT_EQ(cpu_generation({"", 0, 0}), "");
+  EXPECT_EQ(cpu_generation("AuthenticAMD", 0x19, 0x11), "Zen 4");
+  EXPECT_EQ(cpu_generation("AuthenticAMD", 0x19, 0x21), "Zen 3");
+  EXPECT_EQ(cpu_generation("AuthenticAMD", 0x1a, 0x02), "Zen 5");
+  EXPECT_EQ(cpu_generation("GenuineIntel", 6, 0x8f), "Sapphire Rapids");
+  EXPECT_EQ(cpu_generation("GenuineIntel", 6, 0xff), "");
+  EXPECT_EQ(cpu_generation("0x41", 0, 0xd40), "Neoverse V1");
+  EXPECT_EQ(cpu_generation("", 0, 0), "");
 }
 
 TEST(Provenance, TellsWhatRanWhereAndHow) {
