@@ -41,7 +41,7 @@ std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, c
 /// Algorithm 1 in vectors along the rows of the panels, on `threads` threads; bitwise identical for every
 /// number of threads. `instruction_set` is one of openmp_instruction_sets(); empty: the best. Throws
 /// Unsupported for an integrator other than semi-euler and for springs of one row and direction that differ
-/// in stiffness, and std::invalid_argument for another instruction set.
+/// in stiffness, and Unavailable for another instruction set.
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, int threads,
                                                       std::string_view instruction_set = "");

@@ -97,10 +97,9 @@ std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, cons
                                                       double dt_s, int threads,
                                                       std::string_view instruction_set) {
   require_semi_euler(integrator);
-  const std::vector<StepKernel<PanelDressing>> kernels = compiled_kernels<PanelDressing>();
   return std::make_unique<OpenMpDressing>(
       system, dt_s, static_cast<std::size_t>(std::max(1, threads)),
-      instruction_set.empty() ? kernels.front() : kernel_named(kernels, instruction_set));
+      best_kernel(compiled_kernels<PanelDressing>(), Roots::fast, instruction_set));
 }
 
 }  // namespace mssim

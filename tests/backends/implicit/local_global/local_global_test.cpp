@@ -146,8 +146,8 @@ TEST(FastSprings, DoesTheSameWithEachInstructionSet) {
     reference->step(10);
     const State expected = reference->state();
     for (const std::string_view set : instruction_sets_of(compiled_kernels<LocalGlobalNodes<NodeRows>>())) {
-      const auto vectors =
-          make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(system, dt_s, 2, set);
+      const auto vectors = make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(
+          system, dt_s, {.threads = 2, .instruction_set = std::string(set)});
       vectors->step(10);
       EXPECT_EQ(vectors->device(), "cpu " + std::string(set));
       EXPECT_LT(largest_distance(vectors->state().position, expected.position),
