@@ -379,11 +379,13 @@ TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interio
   return mesh;
 }
 
-std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior) {
-  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape) + interior.count;
+std::uint64_t point_count(const GeneratedShape& shape) {
+  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape.solid) +
+         shape.interior.count;
 }
 
-ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
+ShapePoints points_of(const GeneratedShape& shape) {
+  const InteriorPoints& interior = shape.interior;
   return std::visit(
       [&](const auto& kind) {
         ShapePoints points;
@@ -407,12 +409,12 @@ ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
         points.interior = place_interior_points(interior, {volume, half_size(kind), depth});
         return points;
       },
-      shape);
+      shape.solid);
 }
 
-TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
-  require_meshable(point_count(shape, interior));
-  ShapePoints points = points_of(shape, interior);
+TetMesh shape_mesh(const GeneratedShape& shape) {
+  require_meshable(point_count(shape));
+  ShapePoints points = points_of(shape);
   TetMesh mesh = tetrahedralise(points.surface, points.interior, keep_surface);
   std::vector<Vec3d> wanted = std::move(points.surface.points);
   wanted.insert(wanted.end(), points.interior.begin(), points.interior.end());
@@ -423,32 +425,34 @@ TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
   return mesh;
 }
 
-TetMesh surface_mesh(const SurfaceShape& body) {
-  const std::string name = body.file.string();
+TetMesh surface_mesh(const SurfaceFile& body) {
+  const std::string& name = body.file;
   if (!(body.unit_m > 0) || !std::isfinite(body.unit_m))
     throw InputError("{}: a unit of the file is {} m; give a positive number", name, decimal(body.unit_m));
-  if (!(body.largest_volume_m3 >= 0) || !std::isfinite(body.largest_volume_m3))
-    throw InputError(name + ": the largest volume of a tetrahedron is " + decimal(body.largest_volume_m3) +
+  if (!(body.largest_tetrahedron_m3 >= 0) || !std::isfinite(body.largest_tetrahedron_m3))
+    throw InputError(name + ": the largest volume of a tetrahedron is " +
+                     decimal(body.largest_tetrahedron_m3) +
                      " m^3; give a positive number, or 0 for no limit");
 
   auto [surface, note] = read_surface(body.file);
   for (Vec3d& point : surface.points) point = body.unit_m * point;
   validate_surface(surface, name);
   const double volume = volume_of(surface);
-  const double tetrahedra = body.largest_volume_m3 > 0 ? volume / body.largest_volume_m3 : 0;  // lower bound
+  const double tetrahedra =
+      body.largest_tetrahedron_m3 > 0 ? volume / body.largest_tetrahedron_m3 : 0;  // lower bound
   constexpr double tetrahedra_a_node = 7;  // slightly less than in a fine mesh
   // A limit far below the body's volume would fill the memory.
   if (tetrahedra > 1e7)
     throw InputError(
         "{}: tetrahedra of at most {} m^3 in a body of {} m^3 would be more than ten million; give a larger "
         "volume",
-        name, decimal(body.largest_volume_m3), shown(volume));
+        name, decimal(body.largest_tetrahedron_m3), shown(volume));
   const auto nodes = std::max(std::uint64_t{surface.points.size()},
                               static_cast<std::uint64_t>(tetrahedra / tetrahedra_a_node));
   try {
     require_meshable(nodes);
     require_thick(surface);
-    TetMesh mesh = tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3),
+    TetMesh mesh = tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_tetrahedron_m3),
                                   nodes - surface.points.size());
     mesh.note = std::move(note);
     return mesh;

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -160,8 +159,16 @@ struct MeshSize {
 /// The shapes that mssim can make by itself.
 using Shape = std::variant<BoxShape, SphereShape, TorusShape>;
 
+/// A body of such a shape.
+struct GeneratedShape {
+  Shape solid;
+  InteriorPoints interior;
+
+  bool operator==(const GeneratedShape&) const = default;
+};
+
 /// Number of points that TetGen gets for a shape, without making them.
-std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior);
+std::uint64_t point_count(const GeneratedShape& shape);
 
 /// TetGen's input for a shape: its surface and the points inside.
 struct ShapePoints {
@@ -170,25 +177,27 @@ struct ShapePoints {
 };
 /// Makes these points; those inside lie within the triangles of the surface. Throws InputError for parameters
 /// out of range, and for points less than 10 micrometres apart.
-ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
+ShapePoints points_of(const GeneratedShape& shape);
 
 /// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add
 /// (none for the bodies of the committed scenes). Made by TetGen or taken from the cache (tetrahedralise).
 /// Throws InputError for parameters out of range, for more points than can be meshed (tetgen.h) and if TetGen
 /// leaves a point out; MissingProgram if TetGen is needed and not installed.
-TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior);
+TetMesh shape_mesh(const GeneratedShape& shape);
 
-/// A body whose surface comes from a user's file.
-struct SurfaceShape {
-  std::filesystem::path file;    ///< .obj or .stl
-  double unit_m = 1;             ///< metres in one unit of the file; 0.001 for a drawing in millimetres
-  double largest_volume_m3 = 0;  ///< upper limit for each tetrahedron; 0: none
+/// A body whose closed surface comes from a user's file, to be filled with tetrahedra.
+struct SurfaceFile {
+  std::string file;                   ///< .obj or .stl
+  double unit_m = 1;                  ///< metres in one unit of the file; 0.001 for a drawing in millimetres
+  double largest_tetrahedron_m3 = 0;  ///< maximum volume; 0: no limit
+
+  bool operator==(const SurfaceFile&) const = default;
 };
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
 /// shaped and small enough; the shape stays. Uses the cache. Throws InputError, which names the file, if it
 /// cannot be read, encloses no body or is too thin to be filled, and for numbers out of range; MissingProgram
 /// if TetGen is needed and not installed.
-TetMesh surface_mesh(const SurfaceShape& body);
+TetMesh surface_mesh(const SurfaceFile& body);
 
 }  // namespace mssim
