@@ -427,13 +427,6 @@ TetMesh shape_mesh(const GeneratedShape& shape) {
 
 TetMesh surface_mesh(const SurfaceFile& body) {
   const std::string& name = body.file;
-  if (!(body.unit_m > 0) || !std::isfinite(body.unit_m))
-    throw InputError("{}: a unit of the file is {} m; give a positive number", name, decimal(body.unit_m));
-  if (!(body.largest_tetrahedron_m3 >= 0) || !std::isfinite(body.largest_tetrahedron_m3))
-    throw InputError(name + ": the largest volume of a tetrahedron is " +
-                     decimal(body.largest_tetrahedron_m3) +
-                     " m^3; give a positive number, or 0 for no limit");
-
   auto [surface, note] = read_surface(body.file);
   for (Vec3d& point : surface.points) point = body.unit_m * point;
   validate_surface(surface, name);

@@ -64,8 +64,8 @@ struct BoxShape {
 /// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
 std::uint64_t surface_point_count(const BoxShape& box);
 
-/// The surface with surface_point_count points. Throws InputError for a size that is not positive or for
-/// fewer than one cell.
+/// The surface with surface_point_count points, at least one cell each way. Throws InputError for a size of
+/// less than 0.0001 m or more than 1000 m.
 Surface surface_of(const BoxShape& box);
 
 /// Depth of a point: distance from the nearest side, m; not positive outside.
@@ -83,7 +83,8 @@ struct SphereShape {
 /// Points of the surface: 10 frequency^2 + 2.
 std::uint64_t surface_point_count(const SphereShape& sphere);
 
-/// The surface with surface_point_count points. Throws InputError unless radius and frequency are positive.
+/// The surface with surface_point_count points, of a positive frequency. Throws InputError for a radius of
+/// less than 0.0001 m or more than 1000 m.
 Surface surface_of(const SphereShape& sphere);
 
 /// Depth of a point: distance from the sphere, m; not positive outside.
@@ -104,8 +105,8 @@ struct TorusShape {
 /// Points of the surface: cells_around x cells_across.
 std::uint64_t surface_point_count(const TorusShape& torus);
 
-/// The surface with surface_point_count points. Throws InputError for radii that make no ring, an odd number
-/// of cells around, and fewer than 4 around or 3 across.
+/// The surface with surface_point_count points, at least 3 cells each way. Throws InputError for radii that
+/// make no ring, and an odd number of cells around.
 Surface surface_of(const TorusShape& torus);
 
 /// Depth of a point: distance from the ring's surface, m; not positive outside.
@@ -133,7 +134,7 @@ struct InteriorSpace {
 /// Exactly `count` points, rounded to micrometres. The spacing (the cube root of the volume per point) is the
 /// largest at which `count` points of the lattice lie inside, at least the margin deep; it follows from
 /// volume and count. Uses no libm except roots and no std distribution, so every platform places the same
-/// points. Throws InputError for parameters out of range and for more points than fit.
+/// points. Throws InputError for more points than fit.
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space);
 
 /// TetGen's switches that fill a surface and keep it as it is.
@@ -175,14 +176,14 @@ struct ShapePoints {
   Surface surface;
   std::vector<Vec3d> interior;
 };
-/// Makes these points; those inside lie within the triangles of the surface. Throws InputError for parameters
-/// out of range, and for points less than 10 micrometres apart.
+/// Makes these points; those inside lie within the triangles of the surface. Throws InputError like
+/// surface_of, and for points less than 10 micrometres apart.
 ShapePoints points_of(const GeneratedShape& shape);
 
 /// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add
 /// (none for the bodies of the committed scenes). Made by TetGen or taken from the cache (tetrahedralise).
-/// Throws InputError for parameters out of range, for more points than can be meshed (tetgen.h) and if TetGen
-/// leaves a point out; MissingProgram if TetGen is needed and not installed.
+/// Throws InputError like points_of, for more points than can be meshed (tetgen.h) and if TetGen leaves a
+/// point out; MissingProgram if TetGen is needed and not installed.
 TetMesh shape_mesh(const GeneratedShape& shape);
 
 /// A body whose closed surface comes from a user's file, to be filled with tetrahedra.
@@ -196,8 +197,8 @@ struct SurfaceFile {
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
 /// shaped and small enough; the shape stays. Uses the cache. Throws InputError, which names the file, if it
-/// cannot be read, encloses no body or is too thin to be filled, and for numbers out of range; MissingProgram
-/// if TetGen is needed and not installed.
+/// cannot be read, encloses no body or is too thin to be filled, and for a volume limit that makes more than
+/// ten million tetrahedra; MissingProgram if TetGen is needed and not installed.
 TetMesh surface_mesh(const SurfaceFile& body);
 
 }  // namespace mssim

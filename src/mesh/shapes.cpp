@@ -21,13 +21,6 @@ void require_length(double metres, std::string_view what) {
     throw InputError("{} is {} m; give a length from 0.0001 to 1000 m", what, decimal(metres));
 }
 
-/// Throws InputError unless `cells` is from `smallest` to 1,000. `what` names it in the message.
-void require_cells(std::uint32_t cells, std::uint32_t smallest, std::string_view what) {
-  constexpr std::uint32_t largest = 1000;
-  if (cells < smallest || cells > largest)
-    throw InputError("{} are {}; give a number from {} to {}", what, cells, smallest, largest);
-}
-
 using Index = std::array<std::uint32_t, 3>;
 
 /// Numbers the surface points of the grid of corners in the order of their first use.
@@ -117,8 +110,6 @@ class SpherePoints {
 void require_ring(const TorusShape& torus) {
   require_length(torus.major_radius_m, "a torus's major radius");
   require_length(torus.minor_radius_m, "a torus's minor radius");
-  require_cells(torus.cells_around, 4, "a torus's cells around");
-  require_cells(torus.cells_across, 3, "a torus's cells across");
   if (torus.cells_around % 2 != 0)
     throw InputError("a torus's cells around are " + std::to_string(torus.cells_around) +
                      ", an odd number; every other circle is turned by half a cell, so give an even one");
@@ -253,12 +244,6 @@ class Lattice {
   std::array<Vec3d, 3> axes_;
 };
 
-void require_between(double value, double low, double high, const std::string& what) {
-  if (!(value >= low && value <= high))
-    throw InputError("the {} of interior points is {}; give a number from {} to {}", what, decimal(value),
-                     decimal(low), decimal(high));
-}
-
 }  // namespace
 
 std::uint64_t surface_point_count(const BoxShape& box) {
@@ -270,8 +255,6 @@ Surface surface_of(const BoxShape& box) {
   require_length(box.size.x, "a box's size along x");
   require_length(box.size.y, "a box's size along y");
   require_length(box.size.z, "a box's size along z");
-  for (const std::uint32_t cells : box.cells) require_cells(cells, 1, "a box's cells along a side");
-
   Surface surface;
   SurfacePoints points(box, surface);
   for (std::size_t normal = 0; normal < 3; ++normal) {
@@ -308,7 +291,6 @@ std::uint64_t surface_point_count(const SphereShape& sphere) {
 
 Surface surface_of(const SphereShape& sphere) {
   require_length(sphere.radius_m, "a sphere's radius");
-  require_cells(sphere.frequency, 1, "a sphere's triangles along an edge of the icosahedron (frequency)");
   Surface surface;
   SpherePoints point(sphere, surface);
   const std::uint32_t n = sphere.frequency;
@@ -372,11 +354,6 @@ double depth_in(const TorusShape& torus, const Vec3d& point) {
 }
 
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space) {
-  constexpr std::uint32_t most = 1000000;
-  if (parameters.count > most)
-    throw InputError("the count of interior points is {}; give at most {}", parameters.count, most);
-  require_between(parameters.jitter, 0, 0.5, "jitter");
-  require_between(parameters.margin, 0, 1, "margin");
   if (parameters.count == 0) return {};
 
   UniformNumbers random(parameters.seed);
