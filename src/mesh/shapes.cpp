@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <random>
-#include <unordered_map>
 #include <utility>
 
 #include "geometry/geometry.h"
@@ -20,34 +18,6 @@ void require_length(double metres, std::string_view what) {
   if (!(metres >= 1e-4 && metres <= 1000))
     throw InputError("{} is {} m; give a length from 0.0001 to 1000 m", what, decimal(metres));
 }
-
-using Index = std::array<std::uint32_t, 3>;
-
-/// Numbers the surface points of the grid of corners in the order of their first use.
-class SurfacePoints {
- public:
-  SurfacePoints(const BoxShape& box, Surface& surface) : box_(box), surface_(surface) {}
-
-  std::uint32_t operator[](const Index& at) {
-    const auto& cells = box_.cells;
-    const std::uint32_t corner = (at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2];
-    const auto [entry, is_new] =
-        number_.try_emplace(corner, static_cast<std::uint32_t>(surface_.points.size()));
-    if (is_new) {
-      const auto coordinate = [&](std::size_t axis, double size) {
-        return size * (at[axis] / static_cast<double>(cells[axis]) - 0.5);
-      };
-      surface_.points.push_back(
-          rounded({coordinate(0, box_.size.x), coordinate(1, box_.size.y), coordinate(2, box_.size.z)}));
-    }
-    return entry->second;
-  }
-
- private:
-  const BoxShape& box_;
-  Surface& surface_;
-  std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< by the corner's index in the grid
-};
 
 /// The corners of an icosahedron: (0, +-1, +-golden ratio) and its cyclic permutations.
 std::array<Vec3d, 12> icosahedron_corners() {
@@ -72,40 +42,9 @@ constexpr std::array<std::array<std::uint32_t, 3>, 20> icosahedron_faces{{
     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1},
 }};
 
-/// The points of the cut icosahedron. A point on an edge belongs to several faces and has one number: its key
-/// is its weights at the corners around it.
-class SpherePoints {
- public:
-  SpherePoints(const SphereShape& sphere, Surface& surface) : sphere_(sphere), surface_(surface) {}
-
-  /// The point of a face with these weights at its corners; their sum is the frequency.
-  std::uint32_t operator()(const std::array<std::uint32_t, 3>& face,
-                           const std::array<std::uint32_t, 3>& weights) {
-    Weights key{};
-    for (std::size_t i = 0; i < 3; ++i)
-      if (weights[i] > 0) key[i] = {face[i] + 1, weights[i]};
-    std::sort(key.begin(), key.end());
-    const auto [entry, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(surface_.points.size()));
-    if (is_new) surface_.points.push_back(position(key));
-    return entry->second;
-  }
-
- private:
-  /// (corner of the icosahedron from 1, weight), ascending; corner 0: none.
-  using Weights = std::array<std::array<std::uint32_t, 2>, 3>;
-
-  Vec3d position(const Weights& weights) const {
-    Vec3d sum{};
-    for (const auto& [corner, weight] : weights)
-      if (corner > 0) sum += static_cast<double>(weight) * corners_[corner - 1];
-    return rounded((sphere_.radius_m / length(sum)) * sum);
-  }
-
-  const SphereShape& sphere_;
-  Surface& surface_;
-  std::array<Vec3d, 12> corners_ = icosahedron_corners();
-  std::map<Weights, std::uint32_t> number_;
-};
+/// The key of a point of the cut icosahedron, which several faces may share: its weights at the corners
+/// around it, as (corner of the icosahedron from 1, weight), ascending; corner 0: none.
+using Weights = std::array<std::array<std::uint32_t, 2>, 3>;
 
 void require_ring(const TorusShape& torus) {
   require_length(torus.major_radius_m, "a torus's major radius");
@@ -256,7 +195,11 @@ Surface surface_of(const BoxShape& box) {
   require_length(box.size.y, "a box's size along y");
   require_length(box.size.z, "a box's size along z");
   Surface surface;
-  SurfacePoints points(box, surface);
+  using Corner = std::array<std::uint32_t, 3>;  // of the grid of cells
+  PointNumbers<Corner> points(surface);
+  const auto coordinate = [&](const Corner& at, std::size_t axis, double size) {
+    return size * (at[axis] / static_cast<double>(box.cells[axis]) - 0.5);
+  };
   for (std::size_t normal = 0; normal < 3; ++normal) {
     const std::size_t right = (normal + 1) % 3;
     const std::size_t up = (normal + 2) % 3;
@@ -264,11 +207,14 @@ Surface surface_of(const BoxShape& box) {
       for (std::uint32_t r = 0; r < box.cells[right]; ++r)
         for (std::uint32_t u = 0; u < box.cells[up]; ++u) {
           const auto corner = [&](std::uint32_t to_right, std::uint32_t to_up) {
-            Index at{};
+            Corner at{};
             at[normal] = far_side ? box.cells[normal] : 0;
             at[right] = r + to_right;
             at[up] = u + to_up;
-            return points[at];
+            return points.of(at, [&] {
+              return rounded({coordinate(at, 0, box.size.x), coordinate(at, 1, box.size.y),
+                              coordinate(at, 2, box.size.z)});
+            });
           };
           // (right, up, normal) is right-handed: counter-clockwise seen from the far side.
           std::array<std::uint32_t, 4> square{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
@@ -292,13 +238,25 @@ std::uint64_t surface_point_count(const SphereShape& sphere) {
 Surface surface_of(const SphereShape& sphere) {
   require_length(sphere.radius_m, "a sphere's radius");
   Surface surface;
-  SpherePoints point(sphere, surface);
+  PointNumbers<Weights> points(surface);
+  const std::array<Vec3d, 12> corners = icosahedron_corners();
+  const auto position = [&](const Weights& weights) {
+    Vec3d sum{};
+    for (const auto& [corner, weight] : weights)
+      if (corner > 0) sum += static_cast<double>(weight) * corners[corner - 1];
+    return rounded((sphere.radius_m / length(sum)) * sum);
+  };
   const std::uint32_t n = sphere.frequency;
   for (const auto& face : icosahedron_faces)
     for (std::uint32_t i = 0; i < n; ++i)
       for (std::uint32_t j = 0; i + j < n; ++j) {
         const auto corner = [&](std::uint32_t second, std::uint32_t third) {
-          return point(face, {n - second - third, second, third});
+          const std::array<std::uint32_t, 3> weights{n - second - third, second, third};
+          Weights key{};
+          for (std::size_t k = 0; k < 3; ++k)
+            if (weights[k] > 0) key[k] = {face[k] + 1, weights[k]};
+          std::ranges::sort(key);
+          return points.of(key, [&] { return position(key); });
         };
         surface.triangles.push_back({corner(i, j), corner(i + 1, j), corner(i, j + 1)});
         if (i + j + 1 < n)
