@@ -182,103 +182,94 @@ std::size_t count_characters(std::string_view text) {
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+/// A value of a document, and the JSON pointer to it.
+struct Placed {
+  std::string pointer;
+  const json& value;
+};
+
 /// Reads one object. Misspelled keys explain missing ones, so both are reported at the end, misspelled ones
 /// first.
 class JsonReader final : public FieldVisitor {
  public:
-  JsonReader(const std::filesystem::path& file, std::string pointer, const json& value)
-      : file_(file), pointer_(std::move(pointer)), value_(value) {
-    if (!value.is_object())
-      fail(pointer_.empty() ? "the top level" : pointer_,
-           fmt::format("is {}: give an object, {{ ... }}", described(value)));
+  /// Assigns the values of an object to the fields.
+  static void read(const std::filesystem::path& file, const Placed& object, const FieldList& fields) {
+    JsonReader reader(file, object);
+    fields(reader);
+    reader.finish();
   }
 
   void number(const Field& field, double& target, const Range& range) override {
-    const std::string wanted = "a number " + described(range);
-    if (const json* value = find(field.key, Presence::required, wanted))
-      target = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
+    if (const auto number = find_number(field, Presence::required, range)) target = *number;
   }
 
   void optional_number(const Field& field, std::optional<double>& target, const Range& range) override {
-    const std::string wanted = "a number " + described(range);
-    if (const json* value = find(field.key, Presence::optional, wanted))
-      target = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
+    if (const auto number = find_number(field, Presence::optional, range)) target = number;
   }
 
   void number_or_auto(const Field& field, std::optional<double>& target, const Range& range) override {
     const std::string wanted = fmt::format("a number {}, or \"auto\"", described(range));
-    const json* value = find(field.key, Presence::required, wanted);
-    if (value == nullptr) return;
-    if (*value == "auto")
+    const auto found = find(field.key, Presence::required, wanted);
+    if (!found) return;
+    if (found->value == "auto")
       target.reset();
     else
-      target = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
+      target = number_of(*found, range, wanted);
   }
 
   void integer(const Field& field, std::uint32_t& target, std::uint32_t minimum,
                std::uint32_t maximum) override {
     const Range range = from(minimum, maximum);
     const std::string wanted = "an integer " + described(range);
-    const json* value = find(field.key, Presence::required, wanted);
-    if (value == nullptr) return;
-    const double number = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
-    if (number != std::floor(number)) refuse(field.key, *value, wanted);
+    const auto found = find(field.key, Presence::required, wanted);
+    if (!found) return;
+    const double number = number_of(*found, range, wanted);
+    if (number != std::floor(number)) refuse(*found, wanted);
     target = static_cast<std::uint32_t>(number);
   }
 
   void text(const Field& field, Presence presence, std::string& target) override {
-    if (const json* value = find(field.key, presence, one_text(longest_text)))
-      target = text_of(json_pointer(pointer_, field.key), *value, longest_text);
+    if (const auto found = find(field.key, presence, one_text(longest_text)))
+      target = text_of(*found, longest_text);
   }
 
   void texts(const Field& field, Presence presence, std::size_t least, std::size_t most, std::size_t longest,
              std::vector<std::string>& target) override {
     const std::string wanted = fmt::format("a list, [ ... ], of {} to {} texts", least, most);
-    const json* value = find(field.key, presence, wanted);
-    if (value == nullptr) return;
-    const std::string list = json_pointer(pointer_, field.key);
-    require_length(list, *value, least, most, wanted);
+    const auto list = find(field.key, presence, wanted);
+    if (!list) return;
     target.clear();
-    for (std::size_t i = 0; i < value->size(); ++i)
-      target.push_back(text_of(json_pointer(list, std::to_string(i)), (*value)[i], longest));
+    for (const Placed& text : elements(*list, least, most, wanted)) target.push_back(text_of(text, longest));
   }
 
   void named_texts(const Field& field, std::size_t most, std::size_t longest,
                    std::vector<std::pair<std::string, std::string>>& target) override {
     const std::string wanted = fmt::format("an object, {{ ... }}, of at most {} texts", most);
-    const json* value = find(field.key, Presence::optional, wanted);
-    if (value == nullptr) return;
-    if (!value->is_object() || value->size() > most) refuse(field.key, *value, wanted);
-    const std::string object = json_pointer(pointer_, field.key);
+    const auto object = find(field.key, Presence::optional, wanted);
+    if (!object) return;
+    if (!object->value.is_object() || object->value.size() > most) refuse(*object, wanted);
     target.clear();
-    for (const auto& [name, text] : value->items())
-      target.emplace_back(name, text_of(json_pointer(object, name), text, longest));
+    for (const auto& [name, text] : object->value.items())
+      target.emplace_back(name, text_of({json_pointer(object->pointer, name), text}, longest));
   }
 
   void vector(const Field& field, Presence presence, Vec3d& target, const Range& each) override {
     const std::string wanted = "a list of three numbers " + described(each);
-    const json* value = find(field.key, presence, wanted);
-    if (value == nullptr) return;
-    if (!value->is_array() || value->size() != 3) refuse(field.key, *value, wanted);
-    const std::string list = json_pointer(pointer_, field.key);
-    target = {component(list, *value, 0, each), component(list, *value, 1, each),
-              component(list, *value, 2, each)};
+    const auto list = find(field.key, presence, wanted);
+    if (!list) return;
+    if (!list->value.is_array() || list->value.size() != 3) refuse(*list, wanted);
+    target = {component(*list, 0, each), component(*list, 1, each), component(*list, 2, each)};
   }
 
   void points(const Field& field, std::size_t least, std::size_t most, const Range& each,
               std::vector<Vec3d>& target) override {
     const std::string wanted = fmt::format("a list, [ ... ], of {} to {} points [x, y]", least, most);
-    const json* value = find(field.key, Presence::required, wanted);
-    if (value == nullptr) return;
-    const std::string list = json_pointer(pointer_, field.key);
-    require_length(list, *value, least, most, wanted);
+    const auto list = find(field.key, Presence::required, wanted);
+    if (!list) return;
     target.clear();
-    for (std::size_t i = 0; i < value->size(); ++i) {
-      const json& point = (*value)[i];
-      const std::string pointer = json_pointer(list, std::to_string(i));
-      if (!point.is_array() || point.size() != 2)
-        fail(pointer, fmt::format("is {}: give a point, two numbers [x, y]", described(point)));
-      target.push_back({component(pointer, point, 0, each), component(pointer, point, 1, each), 0});
+    for (const Placed& point : elements(*list, least, most, wanted)) {
+      if (!point.value.is_array() || point.value.size() != 2) refuse(point, "a point, two numbers [x, y]");
+      target.push_back({component(point, 0, each), component(point, 1, each), 0});
     }
   }
 
@@ -300,112 +291,118 @@ class JsonReader final : public FieldVisitor {
   void list(const Field& field, Presence presence, std::size_t most, std::string_view /*description*/,
             const FieldList& fields) override {
     const std::string wanted = fmt::format("a list, [ ... ], of 1 to {} objects", most);
-    const json* value = find(field.key, presence, wanted);
-    if (value == nullptr) return;
-    const std::string pointer = json_pointer(pointer_, field.key);
-    require_length(pointer, *value, 1, most, wanted);
-    for (std::size_t i = 0; i < value->size(); ++i) {
-      JsonReader nested(file_, json_pointer(pointer, std::to_string(i)), (*value)[i]);
-      fields(nested);
-      nested.finish();
-    }
+    if (const auto list = find(field.key, presence, wanted))
+      for (const Placed& object : elements(*list, 1, most, wanted)) read(file_, object, fields);
   }
 
   void object(const Field& field, Presence presence, const FieldList& fields) override {
-    const json* value = find(field.key, presence, "an object, { ... }");
-    if (value == nullptr) return;
-    JsonReader nested(file_, json_pointer(pointer_, field.key), *value);
-    fields(nested);
-    nested.finish();
+    if (const auto object = find(field.key, presence, "an object, { ... }")) read(file_, *object, fields);
   }
 
-  /// Call once, after all fields have been visited.
+ private:
+  JsonReader(const std::filesystem::path& file, const Placed& object) : file_(file), object_(object) {
+    if (!object.value.is_object())
+      refuse({object.pointer.empty() ? "the top level" : object.pointer, object.value}, "an object, { ... }");
+  }
+
+  /// After all fields have been visited.
   void finish() const {
-    for (const auto& [key, value] : value_.items()) {
+    for (const auto& [key, value] : object_.value.items()) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
       std::string problem = "is not a known key (its value is ";
       problem += described(value);
       problem += "): ";
       const std::string_view nearest = nearest_name(key, known_);
-      if (nearest.empty()) fail(json_pointer(pointer_, key), problem + "known here are " + listed(known_));
-      fail(json_pointer(pointer_, key), fmt::format("{}did you mean \"{}\"?", problem, nearest));
+      if (nearest.empty()) fail(pointer_to(key), problem + "known here are " + listed(known_));
+      fail(pointer_to(key), fmt::format("{}did you mean \"{}\"?", problem, nearest));
     }
     if (!missing_.empty()) fail(missing_, missing_remedy_);
   }
 
- private:
   [[noreturn]] void fail(std::string_view pointer, const std::string& problem) const {
     mssim::refuse(file_, pointer, problem);
   }
 
-  [[noreturn]] void refuse(std::string_view key, const json& value, const std::string& wanted) const {
-    fail(json_pointer(pointer_, key), fmt::format("is {}: give {}", described(value), wanted));
+  [[noreturn]] void refuse(const Placed& found, std::string_view wanted) const {
+    fail(found.pointer, fmt::format("is {}: give {}", described(found.value), wanted));
   }
 
-  /// The key's value, or nullptr if it is missing.
-  const json* find(std::string_view key, Presence presence, const std::string& wanted) {
+  std::string pointer_to(std::string_view key) const { return json_pointer(object_.pointer, key); }
+
+  /// The key's value, or nothing if it is missing.
+  std::optional<Placed> find(std::string_view key, Presence presence, const std::string& wanted) {
     known_.push_back(key);
-    const auto match = value_.find(std::string(key));
-    if (match != value_.end()) return &*match;
+    const auto match = object_.value.find(std::string(key));
+    if (match != object_.value.end()) return Placed{pointer_to(key), *match};
     if (presence == Presence::required && missing_.empty()) {
-      missing_ = json_pointer(pointer_, key);
+      missing_ = pointer_to(key);
       missing_remedy_ = "is missing: add it as " + wanted;
     }
-    return nullptr;
+    return std::nullopt;
+  }
+
+  std::optional<double> find_number(const Field& field, Presence presence, const Range& range) {
+    const std::string wanted = "a number " + described(range);
+    const auto found = find(field.key, presence, wanted);
+    return found ? std::optional(number_of(*found, range, wanted)) : std::nullopt;
   }
 
   /// The index of the word at `key`; nothing if the key is missing.
   std::optional<std::size_t> chosen(std::string_view key, Presence presence,
                                     std::span<const std::string_view> words) {
     std::string wanted = "the text " + listed(words, "or");
-    const json* value = find(key, presence, wanted);
-    if (value == nullptr) return std::nullopt;
-    if (!value->is_string()) refuse(key, *value, wanted);
-    const auto& word = value->get_ref<const std::string&>();
+    const auto found = find(key, presence, wanted);
+    if (!found) return std::nullopt;
+    if (!found->value.is_string()) refuse(*found, wanted);
+    const auto& word = found->value.get_ref<const std::string&>();
     const auto match = std::find(words.begin(), words.end(), word);
     if (match == words.end()) {
       const std::string_view nearest = nearest_name(word, words);
       if (!nearest.empty() && words.size() > 1) wanted += ", perhaps " + std::string(nearest);
-      refuse(key, *value, wanted);
+      refuse(*found, wanted);
     }
     return static_cast<std::size_t>(match - words.begin());
   }
 
-  void require_length(std::string_view pointer, const json& value, std::size_t least, std::size_t most,
-                      const std::string& wanted) const {
-    if (!value.is_array()) fail(pointer, fmt::format("is {}: give {}", described(value), wanted));
-    if (value.size() < least || value.size() > most)
-      fail(pointer, fmt::format("has {}: give {}", pluralize(value.size(), "element"), wanted));
+  /// The elements of a list, which must be `least` to `most`.
+  std::vector<Placed> elements(const Placed& list, std::size_t least, std::size_t most,
+                               const std::string& wanted) const {
+    if (!list.value.is_array()) refuse(list, wanted);
+    if (list.value.size() < least || list.value.size() > most)
+      fail(list.pointer, fmt::format("has {}: give {}", pluralize(list.value.size(), "element"), wanted));
+    std::vector<Placed> all;
+    for (const json& element : list.value)
+      all.push_back({json_pointer(list.pointer, std::to_string(all.size())), element});
+    return all;
   }
 
-  double component(std::string_view list, const json& value, std::size_t i, const Range& each) const {
-    return number_of(json_pointer(list, std::to_string(i)), value[i], each, "a number " + described(each));
+  double component(const Placed& list, std::size_t i, const Range& each) const {
+    return number_of({json_pointer(list.pointer, std::to_string(i)), list.value[i]}, each,
+                     "a number " + described(each));
   }
 
-  std::string text_of(std::string_view pointer, const json& value, std::size_t longest) const {
-    if (value.is_string()) {
-      const auto& text = value.get_ref<const std::string&>();
+  std::string text_of(const Placed& found, std::size_t longest) const {
+    if (found.value.is_string()) {
+      const auto& text = found.value.get_ref<const std::string&>();
       const bool one_line =
           std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
       if (one_line && count_characters(text) <= longest) return text;
     }
-    fail(pointer, fmt::format("is {}: give {}", described(value), one_text(longest)));
+    refuse(found, one_text(longest));
   }
 
   static std::string one_text(std::size_t longest) {
     return fmt::format("one line of text of at most {} characters", longest);
   }
 
-  double number_of(std::string_view pointer, const json& value, const Range& range,
-                   const std::string& wanted) const {
-    if (value.is_number())
-      if (const auto number = value.get<double>(); contains(range, number)) return number;
-    fail(pointer, "is " + described(value) + ": give " + wanted);
+  double number_of(const Placed& found, const Range& range, const std::string& wanted) const {
+    if (found.value.is_number())
+      if (const auto number = found.value.get<double>(); contains(range, number)) return number;
+    refuse(found, wanted);
   }
 
   const std::filesystem::path& file_;
-  std::string pointer_;
-  const json& value_;
+  const Placed& object_;
   std::vector<std::string_view> known_;
   std::string missing_;  ///< pointer to the first missing required key
   std::string missing_remedy_;
@@ -415,9 +412,7 @@ class JsonReader final : public FieldVisitor {
 
 void read_fields(const std::filesystem::path& file, const std::string& text, const FieldList& fields) {
   const json document = parse_json(file, text);
-  JsonReader reader(file, "", document);
-  fields(reader);
-  reader.finish();
+  JsonReader::read(file, {"", document}, fields);
 }
 
 }  // namespace mssim
