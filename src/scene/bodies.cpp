@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -143,24 +142,16 @@ OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) 
   return {body.shape, scene.file.parent_path(), body.expected, scene.file};
 }
 
-/// Makes the mesh of a shape; one overload per kind.
-struct Mesher {
-  const std::filesystem::path& folder;
-
-  TetMesh operator()(const GeneratedShape& shape) const { return shape_mesh(shape); }
-  TetMesh operator()(const MeshFiles& files) const {
-    TetMesh mesh = read_tetgen_files(folder / files.node_file, folder / files.ele_file);
-    for (Vec3d& node : mesh.nodes) node = files.unit_m * node;
-    return mesh;
-  }
-  TetMesh operator()(const SurfaceFile& surface) const {
-    return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
-  }
-  /// Unreachable: own_shape has resolved references to other scenes.
-  TetMesh operator()(const ShapeOfScene& shape) const {
-    throw std::logic_error("the shape of the scene " + shape.name + " was not read");
-  }
-};
+/// Makes the mesh of a shape.
+TetMesh mesh_of(const OwnShape& own) {
+  if (const auto* generated = std::get_if<GeneratedShape>(&own.shape)) return shape_mesh(*generated);
+  if (const auto* surface = std::get_if<SurfaceFile>(&own.shape))
+    return surface_mesh({own.folder / surface->file, surface->unit_m, surface->largest_tetrahedron_m3});
+  const auto& files = std::get<MeshFiles>(own.shape);  // own_shape has resolved references to other scenes
+  TetMesh mesh = read_tetgen_files(own.folder / files.node_file, own.folder / files.ele_file);
+  for (Vec3d& node : mesh.nodes) node = files.unit_m * node;
+  return mesh;
+}
 
 /// Lower bounds on a mesh before it is made. All edges of a generated surface are edges of the mesh, in the
 /// limit three per point; an inner point has at least four, each possibly shared.
@@ -241,7 +232,7 @@ void require_lengths(const MeshedShape& shape, const SceneSpec& spec) {
 
 void mesh(MeshedShape& shape, const SceneSpec& spec) {
   try {
-    shape.mesh = std::visit(Mesher{shape.own.folder}, shape.own.shape);
+    shape.mesh = mesh_of(shape.own);
   } catch (const InputError& error) {
     refuse(spec.file, pointer_to(shape.first_body), "has no mesh: " + printable(error.what(), 1500));
   }

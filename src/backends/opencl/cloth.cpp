@@ -130,8 +130,8 @@ class OpenclBands final : public OpenclBackend {
     add_argument(bytes_of(free.mask_of));
     add_argument(bytes_of(free.numbers));
     // Zeros in the padding too, so that no arithmetic meets a denormal number, which can be slow.
-    arguments_.push_back(queue_.zeros<std::byte>(ring_bytes(shape, integrator)));
-    arguments_.push_back(queue_.array<std::byte>(sum_bytes(shape)));
+    arguments_.push_back(queue_.zeros<char>(ring_bytes(shape, integrator)));
+    arguments_.push_back(queue_.array<char>(sum_bytes(shape)));
     const cl::Program program = queue_.build(grid_program_text(integrator, static_cast<int>(bands.lanes)));
     for (const bool swapped : {false, true})
       for (int steps = 1; steps <= steps_per_launch_; ++steps) {

@@ -20,17 +20,7 @@ constexpr std::size_t deepest_json_level = 32;
 
 /// A JSON pointer (RFC 6901) to `key` in the object at `pointer`.
 std::string json_pointer(std::string_view pointer, std::string_view key) {
-  std::string result(pointer);
-  result += '/';
-  for (const char c : key) {
-    if (c == '~')
-      result += "~0";
-    else if (c == '/')
-      result += "~1";
-    else
-      result += c;
-  }
-  return result;
+  return std::string(pointer) + (json::json_pointer() / std::string(key)).to_string();
 }
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
