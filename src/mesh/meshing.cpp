@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include "geometry/geometry.h"
@@ -171,38 +170,6 @@ class MeshCache {
 
   fs::path folder_ = cache_folder("meshes");  ///< empty if the user has neither variable nor home
 };
-
-Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }
-Vec3d half_size(const SphereShape& sphere) { return {sphere.radius_m, sphere.radius_m, sphere.radius_m}; }
-Vec3d half_size(const TorusShape& torus) {
-  const double outer = torus.major_radius_m + torus.minor_radius_m;
-  return {outer, torus.minor_radius_m, outer};
-}
-
-/// Lengths of a surface's edges, m.
-struct EdgeLengths {
-  double shortest = HUGE_VAL, longest = 0;
-
-  explicit EdgeLengths(const Surface& surface) {
-    for (const auto& triangle : surface.triangles)
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double edge = length(surface.points[triangle[i]] - surface.points[triangle[(i + 1) % 3]]);
-        shortest = std::min(shortest, edge);
-        longest = std::max(longest, edge);
-      }
-  }
-};
-
-/// Throws InputError if points are this near to each other, m: rounding would merge them or turn triangles
-/// over.
-void require_apart(double distance) {
-  constexpr double least = 1e-5;
-  if (distance >= least) return;
-  throw InputError(
-      "its points are {} m apart, and coordinates are rounded to 0.000001 m; give a larger body, or fewer "
-      "cells or points, for a distance of {} m",
-      two_digits(distance), decimal(least));
-}
 
 /// TetGen adds nodes, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
 /// than 1.414 times its shortest edge. (Long triangles of the surface, if kept, would become springs of the
@@ -377,39 +344,6 @@ TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interio
   TetMesh mesh = run_tetgen(*program, surface, interior, switches);
   cache.store(input, program->fnv1a_64, mesh);
   return mesh;
-}
-
-std::uint64_t point_count(const GeneratedShape& shape) {
-  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape.solid) +
-         shape.interior.count;
-}
-
-ShapePoints points_of(const GeneratedShape& shape) {
-  const InteriorPoints& interior = shape.interior;
-  return std::visit(
-      [&](const auto& kind) {
-        ShapePoints points;
-        points.surface = surface_of(kind);
-        const double volume = volume_of(points.surface);
-        const EdgeLengths edges(points.surface);
-        require_apart(edges.shortest);
-        if (interior.count > 0) require_apart(std::cbrt(volume / interior.count));
-        // A round shape has points outside its triangles, no deeper than a triangle's middle, whose nearest
-        // corner lies on the shape.
-        const TriangleTree triangles(points.surface);
-        constexpr bool is_round = !std::is_same_v<decltype(kind), const BoxShape&>;
-        const double deepest_triangle = is_round ? edges.longest / std::sqrt(3.0) : 0;
-        const auto depth = [&](const Vec3d& point) {
-          const double in_shape = depth_in(kind, point);
-          if (in_shape <= 0 || in_shape > deepest_triangle) return in_shape;
-          const Vec3d placed = rounded(point);
-          const std::optional<int> winding = triangles.winding_by_ray(placed);
-          return (winding ? *winding : triangles.winding_by_angles(placed)) == 1 ? in_shape : 0;
-        };
-        points.interior = place_interior_points(interior, {volume, half_size(kind), depth});
-        return points;
-      },
-      shape.solid);
 }
 
 TetMesh shape_mesh(const GeneratedShape& shape) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,15 +60,9 @@ struct BoxShape {
   bool operator==(const BoxShape&) const = default;
 };
 
-/// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
-std::uint64_t surface_point_count(const BoxShape& box);
-
-/// The surface with surface_point_count points, at least one cell each way. Throws InputError for a size of
-/// less than 0.0001 m or more than 1000 m.
+/// The surface, of at least one cell each way; 2 (ab + bc + ca) + 2 points for a x b x c cells. Throws
+/// InputError for a size of less than 0.0001 m or more than 1000 m.
 Surface surface_of(const BoxShape& box);
-
-/// Depth of a point: distance from the nearest side, m; not positive outside.
-double depth_in(const BoxShape& box, const Vec3d& point);
 
 /// A sphere around the origin: an icosahedron whose triangles are cut into frequency^2 each and projected
 /// onto the sphere.
@@ -80,15 +73,9 @@ struct SphereShape {
   bool operator==(const SphereShape&) const = default;
 };
 
-/// Points of the surface: 10 frequency^2 + 2.
-std::uint64_t surface_point_count(const SphereShape& sphere);
-
-/// The surface with surface_point_count points, of a positive frequency. Throws InputError for a radius of
-/// less than 0.0001 m or more than 1000 m.
+/// The surface, of a positive frequency; 10 frequency^2 + 2 points. Throws InputError for a radius of less
+/// than 0.0001 m or more than 1000 m.
 Surface surface_of(const SphereShape& sphere);
-
-/// Depth of a point: distance from the sphere, m; not positive outside.
-double depth_in(const SphereShape& sphere, const Vec3d& point);
 
 /// A ring around the y axis: a circle of the minor radius whose centre moves around the origin at the major
 /// radius.
@@ -102,15 +89,9 @@ struct TorusShape {
   bool operator==(const TorusShape&) const = default;
 };
 
-/// Points of the surface: cells_around x cells_across.
-std::uint64_t surface_point_count(const TorusShape& torus);
-
-/// The surface with surface_point_count points, at least 3 cells each way. Throws InputError for radii that
-/// make no ring, and an odd number of cells around.
+/// The surface, of at least 3 cells each way; cells_around x cells_across points. Throws InputError for radii
+/// that make no ring, and an odd number of cells around.
 Surface surface_of(const TorusShape& torus);
-
-/// Depth of a point: distance from the ring's surface, m; not positive outside.
-double depth_in(const TorusShape& torus, const Vec3d& point);
 
 /// The nodes inside a generated body: points of a body-centred cubic lattice, slightly perturbed at random.
 /// (That lattice gives the best-shaped tetrahedra that fill space.)
@@ -122,20 +103,6 @@ struct InteriorPoints {
 
   bool operator==(const InteriorPoints&) const = default;
 };
-
-/// The space for interior points.
-struct InteriorSpace {
-  double volume = 0;  ///< m^3
-  Vec3d half_size;    ///< m, of a box around the origin that holds the space
-  /// Distance of a point inside from the surface, m; not positive outside.
-  std::function<double(const Vec3d&)> depth;
-};
-
-/// Exactly `count` points, rounded to micrometres. The spacing (the cube root of the volume per point) is the
-/// largest at which `count` points of the lattice lie inside, at least the margin deep; it follows from
-/// volume and count. Uses no libm except roots and no std distribution, so every platform places the same
-/// points. Throws InputError for more points than fit.
-std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space);
 
 /// TetGen's switches that fill a surface and keep it as it is.
 inline constexpr const char* keep_surface = "-pY";
