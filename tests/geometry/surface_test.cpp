@@ -185,15 +185,9 @@ Surface open_sphere(double height, double sign = 1) {
   });
   // Points of no triangle go, as a file's reader would have it.
   Surface used;
-  std::vector<std::uint32_t> number(surface.points.size(), UINT32_MAX);
+  PointNumbers<std::uint32_t> numbers(used);
   for (auto& triangle : surface.triangles)
-    for (std::uint32_t& point : triangle) {
-      if (number[point] == UINT32_MAX) {
-        number[point] = static_cast<std::uint32_t>(used.points.size());
-        used.points.push_back(surface.points[point]);
-      }
-      point = number[point];
-    }
+    for (std::uint32_t& point : triangle) point = numbers.of(point, [&] { return surface.points[point]; });
   used.triangles = surface.triangles;
   return used;
 }
