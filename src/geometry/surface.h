@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,26 @@ namespace mssim {
 struct Surface {
   std::vector<Vec3d> points;  ///< m
   std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Numbers the points of a surface by keys: a key used again has the same point.
+template <class Key>
+class PointNumbers {
+ public:
+  /// `surface` gets the points; it must outlive this object.
+  explicit PointNumbers(Surface& surface) : surface_(surface) {}
+
+  /// The number of the key's point, which position() gives if the key is new.
+  template <class Position>
+  std::uint32_t of(const Key& key, Position position) {
+    const auto [entry, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(surface_.points.size()));
+    if (is_new) surface_.points.push_back(position());
+    return entry->second;
+  }
+
+ private:
+  Surface& surface_;
+  std::map<Key, std::uint32_t> number_;
 };
 
 /// Throws InputError, which begins with `name`, unless the surface encloses a volume as far as the joins of

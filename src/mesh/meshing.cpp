@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include "geometry/geometry.h"
@@ -171,38 +170,6 @@ class MeshCache {
 
   fs::path folder_ = cache_folder("meshes");  ///< empty if the user has neither variable nor home
 };
-
-Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }
-Vec3d half_size(const SphereShape& sphere) { return {sphere.radius_m, sphere.radius_m, sphere.radius_m}; }
-Vec3d half_size(const TorusShape& torus) {
-  const double outer = torus.major_radius_m + torus.minor_radius_m;
-  return {outer, torus.minor_radius_m, outer};
-}
-
-/// Lengths of a surface's edges, m.
-struct EdgeLengths {
-  double shortest = HUGE_VAL, longest = 0;
-
-  explicit EdgeLengths(const Surface& surface) {
-    for (const auto& triangle : surface.triangles)
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double edge = length(surface.points[triangle[i]] - surface.points[triangle[(i + 1) % 3]]);
-        shortest = std::min(shortest, edge);
-        longest = std::max(longest, edge);
-      }
-  }
-};
-
-/// Throws InputError if points are this near to each other, m: rounding would merge them or turn triangles
-/// over.
-void require_apart(double distance) {
-  constexpr double least = 1e-5;
-  if (distance >= least) return;
-  throw InputError(
-      "its points are {} m apart, and coordinates are rounded to 0.000001 m; give a larger body, or fewer "
-      "cells or points, for a distance of {} m",
-      two_digits(distance), decimal(least));
-}
 
 /// TetGen adds nodes, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
 /// than 1.414 times its shortest edge. (Long triangles of the surface, if kept, would become springs of the
@@ -379,40 +346,9 @@ TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interio
   return mesh;
 }
 
-std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior) {
-  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape) + interior.count;
-}
-
-ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
-  return std::visit(
-      [&](const auto& kind) {
-        ShapePoints points;
-        points.surface = surface_of(kind);
-        const double volume = volume_of(points.surface);
-        const EdgeLengths edges(points.surface);
-        require_apart(edges.shortest);
-        if (interior.count > 0) require_apart(std::cbrt(volume / interior.count));
-        // A round shape has points outside its triangles, no deeper than a triangle's middle, whose nearest
-        // corner lies on the shape.
-        const TriangleTree triangles(points.surface);
-        constexpr bool is_round = !std::is_same_v<decltype(kind), const BoxShape&>;
-        const double deepest_triangle = is_round ? edges.longest / std::sqrt(3.0) : 0;
-        const auto depth = [&](const Vec3d& point) {
-          const double in_shape = depth_in(kind, point);
-          if (in_shape <= 0 || in_shape > deepest_triangle) return in_shape;
-          const Vec3d placed = rounded(point);
-          const std::optional<int> winding = triangles.winding_by_ray(placed);
-          return (winding ? *winding : triangles.winding_by_angles(placed)) == 1 ? in_shape : 0;
-        };
-        points.interior = place_interior_points(interior, {volume, half_size(kind), depth});
-        return points;
-      },
-      shape);
-}
-
-TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
-  require_meshable(point_count(shape, interior));
-  ShapePoints points = points_of(shape, interior);
+TetMesh shape_mesh(const GeneratedShape& shape) {
+  require_meshable(point_count(shape));
+  ShapePoints points = points_of(shape);
   TetMesh mesh = tetrahedralise(points.surface, points.interior, keep_surface);
   std::vector<Vec3d> wanted = std::move(points.surface.points);
   wanted.insert(wanted.end(), points.interior.begin(), points.interior.end());
@@ -423,32 +359,27 @@ TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
   return mesh;
 }
 
-TetMesh surface_mesh(const SurfaceShape& body) {
-  const std::string name = body.file.string();
-  if (!(body.unit_m > 0) || !std::isfinite(body.unit_m))
-    throw InputError("{}: a unit of the file is {} m; give a positive number", name, decimal(body.unit_m));
-  if (!(body.largest_volume_m3 >= 0) || !std::isfinite(body.largest_volume_m3))
-    throw InputError(name + ": the largest volume of a tetrahedron is " + decimal(body.largest_volume_m3) +
-                     " m^3; give a positive number, or 0 for no limit");
-
+TetMesh surface_mesh(const SurfaceFile& body) {
+  const std::string& name = body.file;
   auto [surface, note] = read_surface(body.file);
   for (Vec3d& point : surface.points) point = body.unit_m * point;
   validate_surface(surface, name);
   const double volume = volume_of(surface);
-  const double tetrahedra = body.largest_volume_m3 > 0 ? volume / body.largest_volume_m3 : 0;  // lower bound
+  const double tetrahedra =
+      body.largest_tetrahedron_m3 > 0 ? volume / body.largest_tetrahedron_m3 : 0;  // lower bound
   constexpr double tetrahedra_a_node = 7;  // slightly less than in a fine mesh
   // A limit far below the body's volume would fill the memory.
   if (tetrahedra > 1e7)
     throw InputError(
         "{}: tetrahedra of at most {} m^3 in a body of {} m^3 would be more than ten million; give a larger "
         "volume",
-        name, decimal(body.largest_volume_m3), shown(volume));
+        name, decimal(body.largest_tetrahedron_m3), shown(volume));
   const auto nodes = std::max(std::uint64_t{surface.points.size()},
                               static_cast<std::uint64_t>(tetrahedra / tetrahedra_a_node));
   try {
     require_meshable(nodes);
     require_thick(surface);
-    TetMesh mesh = tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3),
+    TetMesh mesh = tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_tetrahedron_m3),
                                   nodes - surface.points.size());
     mesh.note = std::move(note);
     return mesh;

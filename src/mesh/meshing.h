@@ -3,8 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,15 +60,9 @@ struct BoxShape {
   bool operator==(const BoxShape&) const = default;
 };
 
-/// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
-std::uint64_t surface_point_count(const BoxShape& box);
-
-/// The surface with surface_point_count points. Throws InputError for a size that is not positive or for
-/// fewer than one cell.
+/// The surface, of at least one cell each way; 2 (ab + bc + ca) + 2 points for a x b x c cells. Throws
+/// InputError for a size of less than 0.0001 m or more than 1000 m.
 Surface surface_of(const BoxShape& box);
-
-/// Depth of a point: distance from the nearest side, m; not positive outside.
-double depth_in(const BoxShape& box, const Vec3d& point);
 
 /// A sphere around the origin: an icosahedron whose triangles are cut into frequency^2 each and projected
 /// onto the sphere.
@@ -81,14 +73,9 @@ struct SphereShape {
   bool operator==(const SphereShape&) const = default;
 };
 
-/// Points of the surface: 10 frequency^2 + 2.
-std::uint64_t surface_point_count(const SphereShape& sphere);
-
-/// The surface with surface_point_count points. Throws InputError unless radius and frequency are positive.
+/// The surface, of a positive frequency; 10 frequency^2 + 2 points. Throws InputError for a radius of less
+/// than 0.0001 m or more than 1000 m.
 Surface surface_of(const SphereShape& sphere);
-
-/// Depth of a point: distance from the sphere, m; not positive outside.
-double depth_in(const SphereShape& sphere, const Vec3d& point);
 
 /// A ring around the y axis: a circle of the minor radius whose centre moves around the origin at the major
 /// radius.
@@ -102,15 +89,9 @@ struct TorusShape {
   bool operator==(const TorusShape&) const = default;
 };
 
-/// Points of the surface: cells_around x cells_across.
-std::uint64_t surface_point_count(const TorusShape& torus);
-
-/// The surface with surface_point_count points. Throws InputError for radii that make no ring, an odd number
-/// of cells around, and fewer than 4 around or 3 across.
+/// The surface, of at least 3 cells each way; cells_around x cells_across points. Throws InputError for radii
+/// that make no ring, and an odd number of cells around.
 Surface surface_of(const TorusShape& torus);
-
-/// Depth of a point: distance from the ring's surface, m; not positive outside.
-double depth_in(const TorusShape& torus, const Vec3d& point);
 
 /// The nodes inside a generated body: points of a body-centred cubic lattice, slightly perturbed at random.
 /// (That lattice gives the best-shaped tetrahedra that fill space.)
@@ -122,20 +103,6 @@ struct InteriorPoints {
 
   bool operator==(const InteriorPoints&) const = default;
 };
-
-/// The space for interior points.
-struct InteriorSpace {
-  double volume = 0;  ///< m^3
-  Vec3d half_size;    ///< m, of a box around the origin that holds the space
-  /// Distance of a point inside from the surface, m; not positive outside.
-  std::function<double(const Vec3d&)> depth;
-};
-
-/// Exactly `count` points, rounded to micrometres. The spacing (the cube root of the volume per point) is the
-/// largest at which `count` points of the lattice lie inside, at least the margin deep; it follows from
-/// volume and count. Uses no libm except roots and no std distribution, so every platform places the same
-/// points. Throws InputError for parameters out of range and for more points than fit.
-std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space);
 
 /// TetGen's switches that fill a surface and keep it as it is.
 inline constexpr const char* keep_surface = "-pY";
@@ -160,35 +127,45 @@ struct MeshSize {
 /// The shapes that mssim can make by itself.
 using Shape = std::variant<BoxShape, SphereShape, TorusShape>;
 
+/// A body of such a shape.
+struct GeneratedShape {
+  Shape solid;
+  InteriorPoints interior;
+
+  bool operator==(const GeneratedShape&) const = default;
+};
+
 /// Number of points that TetGen gets for a shape, without making them.
-std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior);
+std::uint64_t point_count(const GeneratedShape& shape);
 
 /// TetGen's input for a shape: its surface and the points inside.
 struct ShapePoints {
   Surface surface;
   std::vector<Vec3d> interior;
 };
-/// Makes these points; those inside lie within the triangles of the surface. Throws InputError for parameters
-/// out of range, and for points less than 10 micrometres apart.
-ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
+/// Makes these points; those inside lie within the triangles of the surface. Throws InputError like
+/// surface_of, and for points less than 10 micrometres apart.
+ShapePoints points_of(const GeneratedShape& shape);
 
 /// The mesh of a shape: its surface points first, then the interior points, then those that TetGen had to add
 /// (none for the bodies of the committed scenes). Made by TetGen or taken from the cache (tetrahedralise).
-/// Throws InputError for parameters out of range, for more points than can be meshed (tetgen.h) and if TetGen
-/// leaves a point out; MissingProgram if TetGen is needed and not installed.
-TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior);
+/// Throws InputError like points_of, for more points than can be meshed (tetgen.h) and if TetGen leaves a
+/// point out; MissingProgram if TetGen is needed and not installed.
+TetMesh shape_mesh(const GeneratedShape& shape);
 
-/// A body whose surface comes from a user's file.
-struct SurfaceShape {
-  std::filesystem::path file;    ///< .obj or .stl
-  double unit_m = 1;             ///< metres in one unit of the file; 0.001 for a drawing in millimetres
-  double largest_volume_m3 = 0;  ///< upper limit for each tetrahedron; 0: none
+/// A body whose closed surface comes from a user's file, to be filled with tetrahedra.
+struct SurfaceFile {
+  std::string file;                   ///< .obj or .stl
+  double unit_m = 1;                  ///< metres in one unit of the file; 0.001 for a drawing in millimetres
+  double largest_tetrahedron_m3 = 0;  ///< maximum volume; 0: no limit
+
+  bool operator==(const SurfaceFile&) const = default;
 };
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
 /// shaped and small enough; the shape stays. Uses the cache. Throws InputError, which names the file, if it
-/// cannot be read, encloses no body or is too thin to be filled, and for numbers out of range; MissingProgram
-/// if TetGen is needed and not installed.
-TetMesh surface_mesh(const SurfaceShape& body);
+/// cannot be read, encloses no body or is too thin to be filled, and for a volume limit that makes more than
+/// ten million tetrahedra; MissingProgram if TetGen is needed and not installed.
+TetMesh surface_mesh(const SurfaceFile& body);
 
 }  // namespace mssim

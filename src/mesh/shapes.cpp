@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <functional>
 #include <numbers>
 #include <random>
-#include <unordered_map>
+#include <type_traits>
 #include <utility>
 
 #include "geometry/geometry.h"
+#include "geometry/triangle_tree.h"
 #include "mesh/meshing.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -20,41 +21,6 @@ void require_length(double metres, std::string_view what) {
   if (!(metres >= 1e-4 && metres <= 1000))
     throw InputError("{} is {} m; give a length from 0.0001 to 1000 m", what, decimal(metres));
 }
-
-/// Throws InputError unless `cells` is from `smallest` to 1,000. `what` names it in the message.
-void require_cells(std::uint32_t cells, std::uint32_t smallest, std::string_view what) {
-  constexpr std::uint32_t largest = 1000;
-  if (cells < smallest || cells > largest)
-    throw InputError("{} are {}; give a number from {} to {}", what, cells, smallest, largest);
-}
-
-using Index = std::array<std::uint32_t, 3>;
-
-/// Numbers the surface points of the grid of corners in the order of their first use.
-class SurfacePoints {
- public:
-  SurfacePoints(const BoxShape& box, Surface& surface) : box_(box), surface_(surface) {}
-
-  std::uint32_t operator[](const Index& at) {
-    const auto& cells = box_.cells;
-    const std::uint32_t corner = (at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2];
-    const auto [entry, is_new] =
-        number_.try_emplace(corner, static_cast<std::uint32_t>(surface_.points.size()));
-    if (is_new) {
-      const auto coordinate = [&](std::size_t axis, double size) {
-        return size * (at[axis] / static_cast<double>(cells[axis]) - 0.5);
-      };
-      surface_.points.push_back(
-          rounded({coordinate(0, box_.size.x), coordinate(1, box_.size.y), coordinate(2, box_.size.z)}));
-    }
-    return entry->second;
-  }
-
- private:
-  const BoxShape& box_;
-  Surface& surface_;
-  std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< by the corner's index in the grid
-};
 
 /// The corners of an icosahedron: (0, +-1, +-golden ratio) and its cyclic permutations.
 std::array<Vec3d, 12> icosahedron_corners() {
@@ -79,46 +45,13 @@ constexpr std::array<std::array<std::uint32_t, 3>, 20> icosahedron_faces{{
     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1},
 }};
 
-/// The points of the cut icosahedron. A point on an edge belongs to several faces and has one number: its key
-/// is its weights at the corners around it.
-class SpherePoints {
- public:
-  SpherePoints(const SphereShape& sphere, Surface& surface) : sphere_(sphere), surface_(surface) {}
-
-  /// The point of a face with these weights at its corners; their sum is the frequency.
-  std::uint32_t operator()(const std::array<std::uint32_t, 3>& face,
-                           const std::array<std::uint32_t, 3>& weights) {
-    Weights key{};
-    for (std::size_t i = 0; i < 3; ++i)
-      if (weights[i] > 0) key[i] = {face[i] + 1, weights[i]};
-    std::sort(key.begin(), key.end());
-    const auto [entry, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(surface_.points.size()));
-    if (is_new) surface_.points.push_back(position(key));
-    return entry->second;
-  }
-
- private:
-  /// (corner of the icosahedron from 1, weight), ascending; corner 0: none.
-  using Weights = std::array<std::array<std::uint32_t, 2>, 3>;
-
-  Vec3d position(const Weights& weights) const {
-    Vec3d sum{};
-    for (const auto& [corner, weight] : weights)
-      if (corner > 0) sum += static_cast<double>(weight) * corners_[corner - 1];
-    return rounded((sphere_.radius_m / length(sum)) * sum);
-  }
-
-  const SphereShape& sphere_;
-  Surface& surface_;
-  std::array<Vec3d, 12> corners_ = icosahedron_corners();
-  std::map<Weights, std::uint32_t> number_;
-};
+/// The key of a point of the cut icosahedron, which several faces may share: its weights at the corners
+/// around it, as (corner of the icosahedron from 1, weight), ascending; corner 0: none.
+using Weights = std::array<std::array<std::uint32_t, 2>, 3>;
 
 void require_ring(const TorusShape& torus) {
   require_length(torus.major_radius_m, "a torus's major radius");
   require_length(torus.minor_radius_m, "a torus's minor radius");
-  require_cells(torus.cells_around, 4, "a torus's cells around");
-  require_cells(torus.cells_across, 3, "a torus's cells across");
   if (torus.cells_around % 2 != 0)
     throw InputError("a torus's cells around are " + std::to_string(torus.cells_around) +
                      ", an odd number; every other circle is turned by half a cell, so give an even one");
@@ -163,6 +96,14 @@ std::array<Vec3d, 3> random_axes(UniformNumbers& random) {
            {2 * (b * c - a * d), 1 - 2 * (b * b + d * d), 2 * (c * d + a * b)},
            {2 * (b * d + a * c), 2 * (c * d - a * b), 1 - 2 * (b * b + c * c)}}};
 }
+
+/// The space for interior points.
+struct InteriorSpace {
+  double volume = 0;  ///< m^3
+  Vec3d half_size;    ///< m, of a box around the origin that holds the space
+  /// Distance of a point inside from the surface, m; not positive outside.
+  std::function<double(const Vec3d&)> depth;
+};
 
 struct LatticePoint {
   double depth = 0;
@@ -253,130 +194,11 @@ class Lattice {
   std::array<Vec3d, 3> axes_;
 };
 
-void require_between(double value, double low, double high, const std::string& what) {
-  if (!(value >= low && value <= high))
-    throw InputError("the {} of interior points is {}; give a number from {} to {}", what, decimal(value),
-                     decimal(low), decimal(high));
-}
-
-}  // namespace
-
-std::uint64_t surface_point_count(const BoxShape& box) {
-  const std::uint64_t a = box.cells[0], b = box.cells[1], c = box.cells[2];
-  return 2 * (a * b + b * c + c * a) + 2;
-}
-
-Surface surface_of(const BoxShape& box) {
-  require_length(box.size.x, "a box's size along x");
-  require_length(box.size.y, "a box's size along y");
-  require_length(box.size.z, "a box's size along z");
-  for (const std::uint32_t cells : box.cells) require_cells(cells, 1, "a box's cells along a side");
-
-  Surface surface;
-  SurfacePoints points(box, surface);
-  for (std::size_t normal = 0; normal < 3; ++normal) {
-    const std::size_t right = (normal + 1) % 3;
-    const std::size_t up = (normal + 2) % 3;
-    for (const bool far_side : {false, true})
-      for (std::uint32_t r = 0; r < box.cells[right]; ++r)
-        for (std::uint32_t u = 0; u < box.cells[up]; ++u) {
-          const auto corner = [&](std::uint32_t to_right, std::uint32_t to_up) {
-            Index at{};
-            at[normal] = far_side ? box.cells[normal] : 0;
-            at[right] = r + to_right;
-            at[up] = u + to_up;
-            return points[at];
-          };
-          // (right, up, normal) is right-handed: counter-clockwise seen from the far side.
-          std::array<std::uint32_t, 4> square{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
-          if (!far_side) std::swap(square[1], square[3]);
-          surface.triangles.push_back({square[0], square[1], square[2]});
-          surface.triangles.push_back({square[0], square[2], square[3]});
-        }
-  }
-  return surface;
-}
-
-double depth_in(const BoxShape& box, const Vec3d& point) {
-  return std::min({box.size.x / 2 - std::abs(point.x), box.size.y / 2 - std::abs(point.y),
-                   box.size.z / 2 - std::abs(point.z)});
-}
-
-std::uint64_t surface_point_count(const SphereShape& sphere) {
-  return 10 * std::uint64_t{sphere.frequency} * sphere.frequency + 2;
-}
-
-Surface surface_of(const SphereShape& sphere) {
-  require_length(sphere.radius_m, "a sphere's radius");
-  require_cells(sphere.frequency, 1, "a sphere's triangles along an edge of the icosahedron (frequency)");
-  Surface surface;
-  SpherePoints point(sphere, surface);
-  const std::uint32_t n = sphere.frequency;
-  for (const auto& face : icosahedron_faces)
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (std::uint32_t j = 0; i + j < n; ++j) {
-        const auto corner = [&](std::uint32_t second, std::uint32_t third) {
-          return point(face, {n - second - third, second, third});
-        };
-        surface.triangles.push_back({corner(i, j), corner(i + 1, j), corner(i, j + 1)});
-        if (i + j + 1 < n)
-          surface.triangles.push_back({corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)});
-      }
-  return surface;
-}
-
-double depth_in(const SphereShape& sphere, const Vec3d& point) { return sphere.radius_m - length(point); }
-
-std::uint64_t surface_point_count(const TorusShape& torus) {
-  return std::uint64_t{torus.cells_around} * torus.cells_across;
-}
-
-Surface surface_of(const TorusShape& torus) {
-  require_ring(torus);
-  constexpr double full_turn = 2 * std::numbers::pi;
-  const std::uint32_t around = torus.cells_around;
-  const std::uint32_t across = torus.cells_across;
-  Surface surface;
-  for (std::uint32_t i = 0; i < around; ++i)
-    for (std::uint32_t j = 0; j < across; ++j) {
-      const double u = full_turn * i / around;
-      const double v = full_turn * (j + (i % 2 == 0 ? 0.0 : 0.5)) / across;
-      const double ring = torus.major_radius_m + torus.minor_radius_m * std::cos(v);
-      surface.points.push_back(
-          rounded({ring * std::cos(u), torus.minor_radius_m * std::sin(v), ring * std::sin(u)}));
-    }
-
-  for (std::uint32_t i = 0; i < around; ++i)
-    for (std::uint32_t j = 0; j < across; ++j) {
-      const auto point = [&](std::uint32_t circle, std::uint32_t place_on_it) {
-        return (circle % around) * across + place_on_it % across;
-      };
-      // Point j of an odd circle lies between points j and j + 1 of the neighbouring even circles.
-      const std::uint32_t a = point(i, j);
-      const std::uint32_t b = point(i, j + 1);
-      if (i % 2 == 0) {
-        surface.triangles.push_back({a, b, point(i + 1, j)});
-        surface.triangles.push_back({b, point(i + 1, j + 1), point(i + 1, j)});
-      } else {
-        surface.triangles.push_back({a, point(i + 1, j + 1), point(i + 1, j)});
-        surface.triangles.push_back({a, b, point(i + 1, j + 1)});
-      }
-    }
-  return surface;
-}
-
-double depth_in(const TorusShape& torus, const Vec3d& point) {
-  const double from_axis = std::sqrt(point.x * point.x + point.z * point.z);
-  const double from_circle = from_axis - torus.major_radius_m;
-  return torus.minor_radius_m - std::sqrt(from_circle * from_circle + point.y * point.y);
-}
-
+/// Exactly `count` points, rounded to micrometres. The spacing (the cube root of the volume per point) is the
+/// largest at which `count` points of the lattice lie inside, at least the margin deep; it follows from
+/// volume and count. Uses no libm except roots and no std distribution, so every platform places the same
+/// points. Throws InputError for more points than fit.
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space) {
-  constexpr std::uint32_t most = 1000000;
-  if (parameters.count > most)
-    throw InputError("the count of interior points is {}; give at most {}", parameters.count, most);
-  require_between(parameters.jitter, 0, 0.5, "jitter");
-  require_between(parameters.margin, 0, 1, "margin");
   if (parameters.count == 0) return {};
 
   UniformNumbers random(parameters.seed);
@@ -416,6 +238,198 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
     points.push_back(rounded(moved));
   }
   return points;
+}
+
+/// Points of the surface.
+std::uint64_t surface_point_count(const BoxShape& box) {
+  const std::uint64_t a = box.cells[0], b = box.cells[1], c = box.cells[2];
+  return 2 * (a * b + b * c + c * a) + 2;
+}
+std::uint64_t surface_point_count(const SphereShape& sphere) {
+  return 10 * std::uint64_t{sphere.frequency} * sphere.frequency + 2;
+}
+std::uint64_t surface_point_count(const TorusShape& torus) {
+  return std::uint64_t{torus.cells_around} * torus.cells_across;
+}
+
+/// Distance of a point from the surface, m; not positive outside.
+double depth_in(const BoxShape& box, const Vec3d& point) {
+  return std::min({box.size.x / 2 - std::abs(point.x), box.size.y / 2 - std::abs(point.y),
+                   box.size.z / 2 - std::abs(point.z)});
+}
+double depth_in(const SphereShape& sphere, const Vec3d& point) { return sphere.radius_m - length(point); }
+double depth_in(const TorusShape& torus, const Vec3d& point) {
+  const double from_axis = std::sqrt(point.x * point.x + point.z * point.z);
+  const double from_circle = from_axis - torus.major_radius_m;
+  return torus.minor_radius_m - std::sqrt(from_circle * from_circle + point.y * point.y);
+}
+
+/// Of a box around the origin that holds the shape, m.
+Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }
+Vec3d half_size(const SphereShape& sphere) { return {sphere.radius_m, sphere.radius_m, sphere.radius_m}; }
+Vec3d half_size(const TorusShape& torus) {
+  const double outer = torus.major_radius_m + torus.minor_radius_m;
+  return {outer, torus.minor_radius_m, outer};
+}
+
+/// Lengths of a surface's edges, m.
+struct EdgeLengths {
+  double shortest = HUGE_VAL, longest = 0;
+
+  explicit EdgeLengths(const Surface& surface) {
+    for (const auto& triangle : surface.triangles)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double edge = length(surface.points[triangle[i]] - surface.points[triangle[(i + 1) % 3]]);
+        shortest = std::min(shortest, edge);
+        longest = std::max(longest, edge);
+      }
+  }
+};
+
+/// Throws InputError if points are this near to each other, m: rounding would merge them or turn triangles
+/// over.
+void require_apart(double distance) {
+  constexpr double least = 1e-5;
+  if (distance >= least) return;
+  throw InputError(
+      "its points are {} m apart, and coordinates are rounded to 0.000001 m; give a larger body, or fewer "
+      "cells or points, for a distance of {} m",
+      two_digits(distance), decimal(least));
+}
+
+}  // namespace
+
+Surface surface_of(const BoxShape& box) {
+  require_length(box.size.x, "a box's size along x");
+  require_length(box.size.y, "a box's size along y");
+  require_length(box.size.z, "a box's size along z");
+  Surface surface;
+  using Corner = std::array<std::uint32_t, 3>;  // of the grid of cells
+  PointNumbers<Corner> points(surface);
+  const auto coordinate = [&](const Corner& at, std::size_t axis, double size) {
+    return size * (at[axis] / static_cast<double>(box.cells[axis]) - 0.5);
+  };
+  for (std::size_t normal = 0; normal < 3; ++normal) {
+    const std::size_t right = (normal + 1) % 3;
+    const std::size_t up = (normal + 2) % 3;
+    for (const bool far_side : {false, true})
+      for (std::uint32_t r = 0; r < box.cells[right]; ++r)
+        for (std::uint32_t u = 0; u < box.cells[up]; ++u) {
+          const auto corner = [&](std::uint32_t to_right, std::uint32_t to_up) {
+            Corner at{};
+            at[normal] = far_side ? box.cells[normal] : 0;
+            at[right] = r + to_right;
+            at[up] = u + to_up;
+            return points.of(at, [&] {
+              return rounded({coordinate(at, 0, box.size.x), coordinate(at, 1, box.size.y),
+                              coordinate(at, 2, box.size.z)});
+            });
+          };
+          // (right, up, normal) is right-handed: counter-clockwise seen from the far side.
+          std::array<std::uint32_t, 4> square{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+          if (!far_side) std::swap(square[1], square[3]);
+          surface.triangles.push_back({square[0], square[1], square[2]});
+          surface.triangles.push_back({square[0], square[2], square[3]});
+        }
+  }
+  return surface;
+}
+
+Surface surface_of(const SphereShape& sphere) {
+  require_length(sphere.radius_m, "a sphere's radius");
+  Surface surface;
+  PointNumbers<Weights> points(surface);
+  const std::array<Vec3d, 12> corners = icosahedron_corners();
+  const auto position = [&](const Weights& weights) {
+    Vec3d sum{};
+    for (const auto& [corner, weight] : weights)
+      if (corner > 0) sum += static_cast<double>(weight) * corners[corner - 1];
+    return rounded((sphere.radius_m / length(sum)) * sum);
+  };
+  const std::uint32_t n = sphere.frequency;
+  for (const auto& face : icosahedron_faces)
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = 0; i + j < n; ++j) {
+        const auto corner = [&](std::uint32_t second, std::uint32_t third) {
+          const std::array<std::uint32_t, 3> weights{n - second - third, second, third};
+          Weights key{};
+          for (std::size_t k = 0; k < 3; ++k)
+            if (weights[k] > 0) key[k] = {face[k] + 1, weights[k]};
+          std::ranges::sort(key);
+          return points.of(key, [&] { return position(key); });
+        };
+        surface.triangles.push_back({corner(i, j), corner(i + 1, j), corner(i, j + 1)});
+        if (i + j + 1 < n)
+          surface.triangles.push_back({corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)});
+      }
+  return surface;
+}
+
+Surface surface_of(const TorusShape& torus) {
+  require_ring(torus);
+  constexpr double full_turn = 2 * std::numbers::pi;
+  const std::uint32_t around = torus.cells_around;
+  const std::uint32_t across = torus.cells_across;
+  Surface surface;
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const double u = full_turn * i / around;
+      const double v = full_turn * (j + (i % 2 == 0 ? 0.0 : 0.5)) / across;
+      const double ring = torus.major_radius_m + torus.minor_radius_m * std::cos(v);
+      surface.points.push_back(
+          rounded({ring * std::cos(u), torus.minor_radius_m * std::sin(v), ring * std::sin(u)}));
+    }
+
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const auto point = [&](std::uint32_t circle, std::uint32_t place_on_it) {
+        return (circle % around) * across + place_on_it % across;
+      };
+      // Point j of an odd circle lies between points j and j + 1 of the neighbouring even circles.
+      const std::uint32_t a = point(i, j);
+      const std::uint32_t b = point(i, j + 1);
+      if (i % 2 == 0) {
+        surface.triangles.push_back({a, b, point(i + 1, j)});
+        surface.triangles.push_back({b, point(i + 1, j + 1), point(i + 1, j)});
+      } else {
+        surface.triangles.push_back({a, point(i + 1, j + 1), point(i + 1, j)});
+        surface.triangles.push_back({a, b, point(i + 1, j + 1)});
+      }
+    }
+  return surface;
+}
+
+std::uint64_t point_count(const GeneratedShape& shape) {
+  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape.solid) +
+         shape.interior.count;
+}
+
+ShapePoints points_of(const GeneratedShape& shape) {
+  const InteriorPoints& interior = shape.interior;
+  return std::visit(
+      [&](const auto& kind) {
+        ShapePoints points;
+        points.surface = surface_of(kind);
+        const double volume = volume_of(points.surface);
+        const EdgeLengths edges(points.surface);
+        require_apart(edges.shortest);
+        if (interior.count > 0) require_apart(std::cbrt(volume / interior.count));
+        // A round shape has points outside its triangles, no deeper than a triangle's middle, whose nearest
+        // corner lies on the shape.
+        const TriangleTree triangles(points.surface);
+        constexpr bool is_round = !std::is_same_v<decltype(kind), const BoxShape&>;
+        const double deepest_triangle = is_round ? edges.longest / std::sqrt(3.0) : 0;
+        const auto depth = [&](const Vec3d& point) {
+          const double in_shape = depth_in(kind, point);
+          if (in_shape <= 0 || in_shape > deepest_triangle) return in_shape;
+          const Vec3d placed = rounded(point);
+          const std::optional<int> winding = triangles.winding_by_ray(placed);
+          return (winding ? *winding : triangles.winding_by_angles(placed)) == 1 ? in_shape : 0;
+        };
+        points.interior = place_interior_points(interior, {volume, half_size(kind), depth});
+        return points;
+      },
+      shape.solid);
 }
 
 }  // namespace mssim

@@ -15,25 +15,16 @@
 namespace mssim {
 namespace {
 
-/// Adds points to a surface, each location once, so files that list the corners of every triangle separately
-/// become surfaces with shared points.
-class PointMerger {
- public:
-  explicit PointMerger(Surface& surface) : surface_(surface) {}
+/// Points by their locations, each once, so files that list the corners of every triangle separately become
+/// surfaces with shared points.
+using MergedPoints = PointNumbers<std::array<double, 3>>;
 
-  /// The number of the point at exactly this location.
-  std::uint32_t add(const Vec3d& point) {
-    // Adding zero turns -0 into 0.
-    const std::array<double, 3> key{point.x + 0.0, point.y + 0.0, point.z + 0.0};
-    const auto [entry, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(surface_.points.size()));
-    if (is_new) surface_.points.push_back({key[0], key[1], key[2]});
-    return entry->second;
-  }
-
- private:
-  Surface& surface_;
-  std::map<std::array<double, 3>, std::uint32_t> number_;
-};
+/// The number of the point at exactly this location.
+std::uint32_t number_of(const Vec3d& point, MergedPoints& points) {
+  // Adding zero turns -0 into 0.
+  const std::array<double, 3> at{point.x + 0.0, point.y + 0.0, point.z + 0.0};
+  return points.of(at, [&] { return Vec3d{at[0], at[1], at[2]}; });
+}
 
 using Corners = std::array<std::size_t, 3>;
 
@@ -185,12 +176,12 @@ bool on_a_line(const std::vector<Vec3d>& corners) {
 class ObjReader {
  public:
   ObjReader(const std::string& name, std::string_view text)
-      : lines_(name, text, {'#', '\\'}), merger_(surface_) {}
+      : lines_(name, text, {'#', '\\'}), points_(surface_) {}
 
   Surface read() {
     while (lines_.next()) {
       const std::string_view keyword = lines_.words().front();
-      if (keyword == "v") vertex();
+      if (keyword == "v") vertices_.push_back(lines_.point());
       if (keyword == "f") face();
     }
     if (faces_.empty())
@@ -205,10 +196,6 @@ class ObjReader {
     std::size_t line;
     std::vector<std::int64_t> vertices;  ///< from 1
   };
-
-  void vertex() {
-    vertices_.push_back({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
-  }
 
   /// A corner reads V, V/VT, V//VN or V/VT/VN; negative numbers count back from the latest.
   std::int64_t corner(std::string_view word) const {
@@ -252,7 +239,7 @@ class ObjReader {
             face.line,
             fmt::format("the face names vertex {} of {}; the file is truncated or the number wrong", vertex,
                         vertices_.size()));
-      points.push_back(merger_.add(vertices_[static_cast<std::size_t>(vertex - 1)]));
+      points.push_back(number_of(vertices_[static_cast<std::size_t>(vertex - 1)], points_));
     }
     if (points.size() > 3) leave_out_repeated(points);
     for (const auto& [a, b, c] : triangles_of(face.line, points))
@@ -289,7 +276,7 @@ class ObjReader {
   std::vector<Vec3d> vertices_;
   std::vector<Face> faces_;
   Surface surface_;
-  PointMerger merger_;
+  MergedPoints points_;
 };
 
 // A binary file: 80 bytes of any text, the number of triangles, then a normal, three corners and two bytes
@@ -325,7 +312,7 @@ Surface parse_binary(const std::string& name, std::string_view content) {
                      content.size() - due);
   if (count == 0) throw InputError(name + ": the file has no triangles; give a surface");
   Surface surface;
-  PointMerger merger(surface);
+  MergedPoints points(surface);
   surface.triangles.reserve(count);
   for (std::size_t t = 0; t < count; ++t) {
     std::array<std::uint32_t, 3> triangle{};
@@ -336,7 +323,7 @@ Surface parse_binary(const std::string& name, std::string_view content) {
       if (!is_coordinate(point.x) || !is_coordinate(point.y) || !is_coordinate(point.z))
         throw InputError("{}, byte {}: a corner is at {}; for each axis {}", name, byte, place(point),
                          coordinate_wanted);
-      triangle[corner] = merger.add(point);
+      triangle[corner] = number_of(point, points);
     }
     surface.triangles.push_back(triangle);
   }
@@ -346,7 +333,7 @@ Surface parse_binary(const std::string& name, std::string_view content) {
 class AsciiReader {
  public:
   AsciiReader(const std::string& name, std::string_view text)
-      : lines_(name, text, {'\0', '\0'}), merger_(surface_) {}
+      : lines_(name, text, {'\0', '\0'}), points_(surface_) {}
 
   Surface read() {
     while (lines_.next()) {
@@ -359,17 +346,13 @@ class AsciiReader {
   }
 
  private:
-  static bool equal(std::string_view word, std::string_view keyword) {
-    return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
-                      [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
-  }
-
   /// Does the line begin with the keyword? Some writers have "end loop" for "endloop".
   bool begins(std::string_view keyword) const {
     const auto& words = lines_.words();
     constexpr std::string_view end = "end";
-    return equal(words[0], keyword) || (words.size() > 1 && keyword.starts_with(end) &&
-                                        equal(words[0], end) && equal(words[1], keyword.substr(end.size())));
+    const std::string first = to_lower(words[0]);
+    return first == keyword || (words.size() > 1 && keyword.starts_with(end) && first == end &&
+                                to_lower(words[1]) == keyword.substr(end.size()));
   }
 
   /// Advances to the next line and tests whether it begins with the keyword.
@@ -381,7 +364,7 @@ class AsciiReader {
   /// The line must begin with these words (the second may be empty: anything).
   void require(std::string_view first, std::string_view second) const {
     const auto& words = lines_.words();
-    if (begins(first) && (second.empty() || (words.size() > 1 && equal(words[1], second)))) return;
+    if (begins(first) && (second.empty() || (words.size() > 1 && to_lower(words[1]) == second))) return;
     const std::string due = std::string(first) + (second.empty() ? "" : " ") + std::string(second);
     lines_.fail("it begins with {} where \"{}\" is expected; the file is damaged or not an STL file",
                 TextLines::quoted(words[0]), due);
@@ -397,7 +380,7 @@ class AsciiReader {
     std::array<std::uint32_t, 3> triangle{};
     for (std::uint32_t& point : triangle) {
       next("vertex", "");
-      point = merger_.add({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
+      point = number_of(lines_.point(), points_);
     }
     next("endloop", "");
     next("endfacet", "");
@@ -406,7 +389,7 @@ class AsciiReader {
 
   TextLines lines_;
   Surface surface_;
-  PointMerger merger_;
+  MergedPoints points_;
 };
 
 /// Binary files may begin with "solid" as well, so the length decides; if it is wrong too (truncated), a zero

@@ -1,5 +1,7 @@
 #include "mesh/tetgen.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -118,7 +120,7 @@ std::int64_t read_nodes(TextLines& lines, std::vector<Vec3d>& nodes, std::vector
     if (index != first + static_cast<std::int64_t>(n))
       lines.fail("node {} is where node {} is expected; number nodes in ascending order", index,
                  first + static_cast<std::int64_t>(n));
-    nodes.push_back({lines.coordinate(1, "x"), lines.coordinate(2, "y"), lines.coordinate(3, "z")});
+    nodes.push_back(lines.point());
     at_line.push_back(lines.line());
   }
   require_end(lines, "nodes", count);
@@ -155,12 +157,6 @@ void read_tetrahedra(TextLines& lines, std::vector<Tetrahedron>& tetrahedra,
     at_line.push_back(lines.line());
   }
   require_end(lines, "tetrahedra", count);
-}
-
-void append(std::string& text, std::uint64_t value) { text += fmt::format(" {}", value); }
-
-void append(std::string& text, const Vec3d& point) {
-  for (const double x : {point.x, point.y, point.z}) text += ' ' + decimal(x);
 }
 
 /// The mesh of the largest committed body takes 0.2 s; a run of this length does not end.
@@ -343,32 +339,22 @@ TetMesh read_tetgen_files(const std::filesystem::path& node_file, const std::fil
 
 std::string node_text(const std::vector<Vec3d>& nodes) {
   std::string text = fmt::format("{} 3 0 0\n", nodes.size());
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    text += std::to_string(n);
-    append(text, nodes[n]);
-    text += '\n';
-  }
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    text += fmt::format("{} {} {} {}\n", n, decimal(nodes[n].x), decimal(nodes[n].y), decimal(nodes[n].z));
   return text;
 }
 
 std::string ele_text(const std::vector<Tetrahedron>& tetrahedra) {
   std::string text = fmt::format("{} 4 0\n", tetrahedra.size());
-  for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
-    text += std::to_string(t);
-    for (const std::uint32_t node : tetrahedra[t]) append(text, node);
-    text += '\n';
-  }
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+    text += fmt::format("{} {}\n", t, fmt::join(tetrahedra[t], " "));
   return text;
 }
 
 std::string smesh_text(const Surface& surface) {
   std::string text = node_text(surface.points);
   text += fmt::format("{} 0\n", surface.triangles.size());
-  for (const auto& triangle : surface.triangles) {
-    text += '3';
-    for (const std::uint32_t point : triangle) append(text, point);
-    text += '\n';
-  }
+  for (const auto& triangle : surface.triangles) text += fmt::format("3 {}\n", fmt::join(triangle, " "));
   return text + "0\n0\n";  // no holes, no regions
 }
 

@@ -73,6 +73,8 @@ std::string TextLines::quoted(std::string_view word) {
   return '"' + printable(word, longest) + '"';
 }
 
+Vec3d TextLines::point() const { return {coordinate(1, "x"), coordinate(2, "y"), coordinate(3, "z")}; }
+
 double TextLines::coordinate(std::size_t index, std::string_view what) const {
   const std::string_view text = word(index, what);
   const auto value = number_in<double>(text);

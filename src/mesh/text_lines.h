@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/vec3.h"
+
 namespace mssim {
 
 /// The whole content of a file. Throws InputError with one sentence when it cannot be read.
@@ -42,8 +44,8 @@ class TextLines {
   /// Bytes of the whole text: an upper bound on its lines.
   std::size_t bytes() const { return text_.size(); }
 
-  /// Word `index` as a coordinate (is_coordinate); `what` names it in the message.
-  double coordinate(std::size_t index, std::string_view what) const;
+  /// Words 1 to 3 as the coordinates of a point (is_coordinate).
+  Vec3d point() const;
   /// Word `index` as a whole number; `what` names it in the message.
   std::int64_t integer(std::size_t index, std::string_view what) const;
 
@@ -59,6 +61,7 @@ class TextLines {
  private:
   /// Adds the next line's words to the statement; returns whether the line is continued.
   bool take_line();
+  double coordinate(std::size_t index, std::string_view what) const;
   std::string_view word(std::size_t index, std::string_view what) const;
 
   std::string file_;

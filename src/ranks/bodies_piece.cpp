@@ -181,7 +181,8 @@ class BodiesPiece final : public Piece {
 
     const BodiesPart part = part_of_rank(session.rank(), system, here, rank_of);
     if (part.graph.own == system.nodes()) {
-      whole_ = make_openmp(system, *job.integrator, job.dt_s, {job.threads, ""}, kernel_.instruction_set);
+      whole_ = make_openmp(system, *job.integrator, job.dt_s,
+                           {.threads = job.threads, .instruction_set = kernel_.instruction_set});
       return;
     }
     bodies_.emplace(part.system, SlicedGraph(part.system, kernel_.lanes, part.graph), *job.integrator,

@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,7 +49,8 @@ void visit_interior(FieldVisitor& fields, InteriorPoints& interior) {
 }
 
 void visit_box(FieldVisitor& fields, BodySpec& body) {
-  auto& [box, interior] = body.shape.emplace<GeneratedShape<BoxShape>>();
+  auto& [solid, interior] = body.shape.emplace<GeneratedShape>();
+  auto& box = solid.emplace<BoxShape>();
   fields.vector({"size_m", "Length of the sides, m."}, Presence::required, box.size, above(0, 1000));
   fields.integer({"cells_x", "Squares along x."}, box.cells[0], 1, 1000);
   fields.integer({"cells_y", "Squares along y."}, box.cells[1], 1, 1000);
@@ -59,14 +59,16 @@ void visit_box(FieldVisitor& fields, BodySpec& body) {
 }
 
 void visit_sphere(FieldVisitor& fields, BodySpec& body) {
-  auto& [sphere, interior] = body.shape.emplace<GeneratedShape<SphereShape>>();
+  auto& [solid, interior] = body.shape.emplace<GeneratedShape>();
+  auto& sphere = solid.emplace<SphereShape>();
   fields.number({"radius_m", "Radius of the sphere, m."}, sphere.radius_m, above(0, 1000));
   fields.integer({"frequency", "Triangles along an edge of the icosahedron."}, sphere.frequency, 1, 1000);
   visit_interior(fields, interior);
 }
 
 void visit_torus(FieldVisitor& fields, BodySpec& body) {
-  auto& [torus, interior] = body.shape.emplace<GeneratedShape<TorusShape>>();
+  auto& [solid, interior] = body.shape.emplace<GeneratedShape>();
+  auto& torus = solid.emplace<TorusShape>();
   fields.number({"major_radius_m", "Distance from the centre of the ring to that of its section, m."},
                 torus.major_radius_m, above(0, 1000));
   fields.number({"minor_radius_m", "Radius of the section, m."}, torus.minor_radius_m, above(0, 1000));
@@ -97,8 +99,7 @@ void visit_scene_shape(FieldVisitor& fields, BodySpec& body) {
               Presence::required, body.shape.emplace<ShapeOfScene>().name);
 }
 
-/// The TABLE of shapes, in the order of BodyShape's alternatives: value of `shape`, its section, and the
-/// function that names the section's fields.
+/// The TABLE of shapes: value of `shape`, its section, and the function that names the section's fields.
 struct ShapeKind {
   Field section;
   void (*visit_fields)(FieldVisitor& fields, BodySpec& body);
@@ -113,7 +114,7 @@ constexpr auto shape_kinds = std::to_array<ShapeKind>({
      visit_surface_file},
     {{"scene", "The shape of the first body of another scene."}, visit_scene_shape},
 });
-static_assert(shape_kinds.size() == std::variant_size_v<BodyShape>);
+static_assert(shape_kinds.size() == std::variant_size_v<Shape> + std::variant_size_v<BodyShape> - 1);
 
 /// A shape with the reference to another scene resolved.
 struct OwnShape {
@@ -141,40 +142,24 @@ OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) 
   return {body.shape, scene.file.parent_path(), body.expected, scene.file};
 }
 
-/// Makes the mesh of a shape; one overload per kind.
-struct Mesher {
-  const std::filesystem::path& folder;
-
-  template <class Solid>
-  TetMesh operator()(const GeneratedShape<Solid>& shape) const {
-    return shape_mesh(shape.solid, shape.interior);
-  }
-  TetMesh operator()(const MeshFiles& files) const {
-    TetMesh mesh = read_tetgen_files(folder / files.node_file, folder / files.ele_file);
-    for (Vec3d& node : mesh.nodes) node = files.unit_m * node;
-    return mesh;
-  }
-  TetMesh operator()(const SurfaceFile& surface) const {
-    return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
-  }
-  /// Unreachable: own_shape has resolved references to other scenes.
-  TetMesh operator()(const ShapeOfScene& shape) const {
-    throw std::logic_error("the shape of the scene " + shape.name + " was not read");
-  }
-};
+/// Makes the mesh of a shape.
+TetMesh mesh_of(const OwnShape& own) {
+  if (const auto* generated = std::get_if<GeneratedShape>(&own.shape)) return shape_mesh(*generated);
+  if (const auto* surface = std::get_if<SurfaceFile>(&own.shape))
+    return surface_mesh({own.folder / surface->file, surface->unit_m, surface->largest_tetrahedron_m3});
+  const auto& files = std::get<MeshFiles>(own.shape);  // own_shape has resolved references to other scenes
+  TetMesh mesh = read_tetgen_files(own.folder / files.node_file, own.folder / files.ele_file);
+  for (Vec3d& node : mesh.nodes) node = files.unit_m * node;
+  return mesh;
+}
 
 /// Lower bounds on a mesh before it is made. All edges of a generated surface are edges of the mesh, in the
 /// limit three per point; an inner point has at least four, each possibly shared.
 SceneCounts least_counts(const OwnShape& own) {
-  return std::visit(
-      [](const auto& shape) -> SceneCounts {
-        if constexpr (requires { shape.interior; }) {
-          const std::uint64_t outer = surface_point_count(shape.solid), inner = shape.interior.count;
-          return {outer + inner, 3 * outer - 6 + 2 * inner};
-        }
-        return {};
-      },
-      own.shape);
+  const auto* shape = std::get_if<GeneratedShape>(&own.shape);
+  if (shape == nullptr) return {};
+  const std::uint64_t all = point_count(*shape), inner = shape->interior.count;
+  return {all, 3 * (all - inner) - 6 + 2 * inner};
 }
 
 constexpr std::size_t most_bodies = 10'000;
@@ -247,7 +232,7 @@ void require_lengths(const MeshedShape& shape, const SceneSpec& spec) {
 
 void mesh(MeshedShape& shape, const SceneSpec& spec) {
   try {
-    shape.mesh = std::visit(Mesher{shape.own.folder}, shape.own.shape);
+    shape.mesh = mesh_of(shape.own);
   } catch (const InputError& error) {
     refuse(spec.file, pointer_to(shape.first_body), "has no mesh: " + printable(error.what(), 1500));
   }

@@ -25,10 +25,6 @@ SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
   return counts;
 }
 
-std::optional<SceneCounts> with_published(const SceneSpec& spec, const std::optional<SceneCounts>& counts) {
-  return counts ? std::optional(with_published(spec, *counts)) : std::nullopt;
-}
-
 }  // namespace
 
 std::span<const SceneKind* const> scene_kinds() { return table; }
@@ -36,7 +32,8 @@ std::span<const SceneKind* const> scene_kinds() { return table; }
 const SceneKind& kind_of(const SceneSpec& spec) { return *table.at(spec.content.index()); }
 
 std::optional<SceneCounts> stated_counts(const SceneSpec& spec) {
-  return with_published(spec, kind_of(spec).stated(spec));
+  const std::optional<SceneCounts> counts = kind_of(spec).stated(spec);
+  return counts ? std::optional(with_published(spec, *counts)) : std::nullopt;
 }
 
 SceneParts read_parts(const SceneSpec& spec) {

@@ -43,7 +43,8 @@ void expect_hashes(const System& system, const Integrator& integrator, double dt
     if (!has_exact_roots(set)) continue;
     ++held;
     for (const int threads : {1, 3})
-      EXPECT_EQ(hash_after_100_steps(*make_openmp(system, integrator, dt_s, {threads, ""}, set)),
+      EXPECT_EQ(hash_after_100_steps(*make_openmp(system, integrator, dt_s,
+                                                  {.threads = threads, .instruction_set = std::string(set)})),
                 fuses(set) ? expected.fused : expected.not_fused)
           << set << ", " << threads << " threads";
   }

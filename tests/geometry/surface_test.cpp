@@ -102,36 +102,36 @@ TEST(Surface, ShapesThatCannotBeAreRefused) {
   EXPECT_THAT(complaint_about(BoxShape{{1, 0, 1}, {1, 1, 1}}),
               HasSubstr("size along y is 0 m; give a length"));
   EXPECT_THAT(complaint_about(BoxShape{{1, 1, std::nan("")}, {1, 1, 1}}), HasSubstr("size along z is nan m"));
-  EXPECT_THAT(complaint_about(BoxShape{{1, 1, 1}, {1, 0, 1}}),
-              HasSubstr("cells along a side are 0; give a number"));
-  EXPECT_THAT(complaint_about(BoxShape{{1, 1, 1}, {1, 4000000000, 1}}), HasSubstr("4000000000"));
   EXPECT_THAT(complaint_about(SphereShape{-1, 3}), HasSubstr("radius is -1 m"));
-  EXPECT_THAT(complaint_about(SphereShape{1, 0}), HasSubstr("(frequency) are 0"));
   EXPECT_THAT(complaint_about(TorusShape{0.3, 0.3, 10, 8}), HasSubstr("leaves no hole"));
   EXPECT_THAT(complaint_about(TorusShape{0.3, 0.1, 11, 8}), HasSubstr("an odd number"));
-  EXPECT_THAT(complaint_about(TorusShape{0.3, 0.1, 10, 2}), HasSubstr("cells across are 2"));
 }
 
 TEST(InteriorPoints, ExactlySoManyLieInsideAndAwayFromTheSurface) {
   const SphereShape sphere{0.5, 4};
   for (const std::uint32_t count : {1U, 100U, 777U})
     for (const std::uint32_t seed : {1U, 2U}) {
-      const std::vector<Vec3d> points = points_of(sphere, {count, seed, 0.2, 0.6}).interior;
+      const std::vector<Vec3d> points = points_of({sphere, {count, seed, 0.2, 0.6}}).interior;
       ASSERT_EQ(points.size(), count);
       // The spacing is less than that of the sphere's whole volume, and cannot be less than half of it here.
       const double spacing = std::cbrt(volume_of(surface_of(sphere)) / count);
-      for (const Vec3d& point : points) EXPECT_GT(depth_in(sphere, point), 0.6 * spacing / 2);
+      for (const Vec3d& point : points) EXPECT_GT(sphere.radius_m - length(point), 0.6 * spacing / 2);
     }
+}
+
+bool is_inside(const BoxShape& box, const Vec3d& point) {
+  return std::abs(point.x) < box.size.x / 2 && std::abs(point.y) < box.size.y / 2 &&
+         std::abs(point.z) < box.size.z / 2;
 }
 
 // A lattice over the whole cube around it would have billions of cells.
 TEST(InteriorPoints, LieInARod) {
   const BoxShape rod{{2, 0.002, 0.002}, {500, 1, 1}};
-  const std::vector<Vec3d> points = points_of(rod, {400, 1, 0.1, 0.6}).interior;
+  const std::vector<Vec3d> points = points_of({rod, {400, 1, 0.1, 0.6}}).interior;
   ASSERT_EQ(points.size(), 400U);
   std::set<int> tenths;
   for (const Vec3d& point : points) {
-    EXPECT_GT(depth_in(rod, point), 0);
+    EXPECT_TRUE(is_inside(rod, point));
     tenths.insert(static_cast<int>(std::floor(5 * (point.x + 1))));
   }
   EXPECT_EQ(tenths.size(), 10U) << "all along the rod";
@@ -140,9 +140,9 @@ TEST(InteriorPoints, LieInARod) {
 // The planes of a lattice over a rope have billions of lines.
 TEST(InteriorPoints, LieInARope) {
   const BoxShape rope{{1000, 0.01, 0.01}, {1000, 1, 1}};
-  const std::vector<Vec3d> points = points_of(rope, {1000, 1453, 0.1, 0.05}).interior;
+  const std::vector<Vec3d> points = points_of({rope, {1000, 1453, 0.1, 0.05}}).interior;
   ASSERT_EQ(points.size(), 1000U);
-  for (const Vec3d& point : points) EXPECT_GT(depth_in(rope, point), 0);
+  for (const Vec3d& point : points) EXPECT_TRUE(is_inside(rope, point));
 }
 
 TEST(InteriorPoints, LieInTheTrianglesOfACoarseShape) {
@@ -150,7 +150,7 @@ TEST(InteriorPoints, LieInTheTrianglesOfACoarseShape) {
                                     TorusShape{0.3, 0.1, 10, 5}};
   for (const Shape& shape : shapes)
     for (const double margin : {0.0, 0.3}) {
-      const ShapePoints points = points_of(shape, {200, 1453, 0.5, margin});
+      const ShapePoints points = points_of({shape, {200, 1453, 0.5, margin}});
       ASSERT_EQ(points.interior.size(), 200U);
       const TriangleTree triangles(points.surface);
       for (const Vec3d& point : points.interior) EXPECT_EQ(triangles.winding_by_angles(point), 1);
@@ -159,7 +159,7 @@ TEST(InteriorPoints, LieInTheTrianglesOfACoarseShape) {
 
 TEST(InteriorPoints, TooDenseForMicrometresAreRefused) {
   const auto complaint = [](const Shape& shape, std::uint32_t count) {
-    return input_error_of([&] { points_of(shape, {count, 1, 0.1, 0.6}); });
+    return input_error_of([&] { points_of({shape, {count, 1, 0.1, 0.6}}); });
   };
   const auto tells =
       AllOf(HasSubstr(" m apart"), HasSubstr("larger body"), HasSubstr("fewer cells or points"));
@@ -171,19 +171,9 @@ TEST(InteriorPoints, TooDenseForMicrometresAreRefused) {
 
 TEST(InteriorPoints, FollowFromTheSeedAlone) {
   const BoxShape box{{1, 1, 1}, {3, 3, 3}};
-  const auto points = [&](std::uint32_t seed) { return points_of(box, {50, seed, 0.2, 0.6}).interior; };
+  const auto points = [&](std::uint32_t seed) { return points_of({box, {50, seed, 0.2, 0.6}}).interior; };
   EXPECT_EQ(points(5), points(5));
   EXPECT_NE(points(5), points(6));
-}
-
-TEST(InteriorPoints, ParametersOutOfRangeAreRefused) {
-  const auto complaint_about = [](const InteriorPoints& interior) {
-    return input_error_of([&] { points_of(BoxShape{{1, 1, 1}, {2, 2, 2}}, interior); });
-  };
-  EXPECT_THAT(complaint_about({2000000, 1, 0, 0.5}), HasSubstr("count of interior points is 2000000"));
-  EXPECT_THAT(complaint_about({10, 1, 0.6, 0.5}), HasSubstr("jitter of interior points is 0.6"));
-  EXPECT_THAT(complaint_about({10, 1, std::nan(""), 0.5}), HasSubstr("jitter of interior points is nan"));
-  EXPECT_THAT(complaint_about({10, 1, 0.1, -1}), HasSubstr("margin of interior points is -1"));
 }
 
 /// A sphere of radius 1 without the triangles that lie wholly above `height`, on one of the two sides.
@@ -195,15 +185,9 @@ Surface open_sphere(double height, double sign = 1) {
   });
   // Points of no triangle go, as a file's reader would have it.
   Surface used;
-  std::vector<std::uint32_t> number(surface.points.size(), UINT32_MAX);
+  PointNumbers<std::uint32_t> numbers(used);
   for (auto& triangle : surface.triangles)
-    for (std::uint32_t& point : triangle) {
-      if (number[point] == UINT32_MAX) {
-        number[point] = static_cast<std::uint32_t>(used.points.size());
-        used.points.push_back(surface.points[point]);
-      }
-      point = number[point];
-    }
+    for (std::uint32_t& point : triangle) point = numbers.of(point, [&] { return surface.points[point]; });
   used.triangles = surface.triangles;
   return used;
 }

@@ -194,23 +194,16 @@ class TableTwoBody : public MeshTest, public testing::WithParamInterface<const c
     const auto bodies = published_bodies();
     published_ = *std::ranges::find(bodies, GetParam(), &PublishedBody::scene);
     const SceneSpec spec = find_scene(GetParam());
-    const auto take = [&](const auto& shape) {
-      if constexpr (requires { shape.interior; }) {
-        shape_ = shape.solid;
-        interior_ = shape.interior;
-      }
-    };
-    std::visit(take, std::get<BodiesSpec>(spec.content).list.at(0).shape);
+    shape_ = std::get<GeneratedShape>(std::get<BodiesSpec>(spec.content).list.at(0).shape);
   }
-  TetMesh mesh() const { return shape_mesh(shape_, interior_); }
+  TetMesh mesh() const { return shape_mesh(shape_); }
 
   PublishedBody published_;
-  Shape shape_;
-  InteriorPoints interior_;
+  GeneratedShape shape_;
 };
 
 TEST_P(TableTwoBody, HasThePublishedNodesAndAThirdOfThePublishedSprings) {
-  const ShapePoints points = points_of(shape_, interior_);
+  const ShapePoints points = points_of(shape_);
   const TetMesh mesh = this->mesh();
   EXPECT_EQ(mesh.nodes.size(), published_.nodes);
   EXPECT_EQ(3 * edges_of(mesh).size(), published_.springs);
@@ -218,7 +211,7 @@ TEST_P(TableTwoBody, HasThePublishedNodesAndAThirdOfThePublishedSprings) {
   EXPECT_FALSE(find_defect(mesh));
   EXPECT_NEAR(volume_of(mesh), volume_of(points.surface), 1e-9 * volume_of(points.surface));
 
-  EXPECT_EQ(point_count(shape_, interior_), published_.nodes);
+  EXPECT_EQ(point_count(shape_), published_.nodes);
 
   // The order of the nodes: surface points, then interior points.
   ASSERT_EQ(points.surface.points.size() + points.interior.size(), published_.nodes);
@@ -253,8 +246,8 @@ TEST_P(TableTwoBody, HasNearlyTheVolumeOfItsShape) {
              torus.minor_radius_m;
     }
   };
-  const double volume = std::visit(Volume{}, shape_);
-  const double meshed = volume_of(points_of(shape_, interior_).surface);
+  const double volume = std::visit(Volume{}, shape_.solid);
+  const double meshed = volume_of(points_of(shape_).surface);
   EXPECT_LE(meshed, volume * (1 + 1e-9));
   EXPECT_GT(meshed, 0.9 * volume);
 }
@@ -266,14 +259,13 @@ INSTANTIATE_TEST_SUITE_P(HongEtAl, TableTwoBody,
                          ByName());
 
 TEST(ShapeMesh, OfACoarseShapeHasAllItsPoints) {
-  const Shape shape = SphereShape{0.09, 1};
-  const InteriorPoints interior{200, 1453, 0.1, 0};
-  EXPECT_EQ(shape_mesh(shape, interior).nodes.size(), point_count(shape, interior));
+  const GeneratedShape shape{SphereShape{0.09, 1}, {200, 1453, 0.1, 0}};
+  EXPECT_EQ(shape_mesh(shape).nodes.size(), point_count(shape));
 }
 
 TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
   const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {
-    return input_error_of([&] { shape_mesh(shape, interior); });
+    return input_error_of([&] { shape_mesh({shape, interior}); });
   };
   EXPECT_THAT(complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),
               StartsWith("its mesh would have 6000007 points or more, for which TetGen needs more than"));

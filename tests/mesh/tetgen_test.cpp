@@ -150,7 +150,7 @@ TEST_F(TetgenTest, NoFolderForTemporaryFilesIsAnErrorThatNamesIt) {
 
 class MeshCacheTest : public MeshTest {
  protected:
-  TetMesh mesh() const { return shape_mesh(BoxShape{{1, 1, 1}, {3, 3, 3}}, {20, 1, 0.1, 0.6}); }
+  TetMesh mesh() const { return shape_mesh({BoxShape{{1, 1, 1}, {3, 3, 3}}, {20, 1, 0.1, 0.6}}); }
   /// The only entry of the cache.
   fs::path entry() const {
     const std::vector<fs::path> files(fs::directory_iterator(cache()), fs::directory_iterator{});

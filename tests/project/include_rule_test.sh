@@ -45,7 +45,7 @@ backends/implicit/local_global platform geometry laws integrators model backends
 backends/implicit/constraints  geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
 backends/implicit     integrators backends/interface backends/implicit/nodes
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts
-backends/opencl       kernels integrators model backends/interface backends/layouts backends/devices
+backends/opencl       text kernels integrators model backends/interface backends/layouts backends/devices
 backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices
 backends/process      text platform hdf5 integrators model backends/interface
 backends/described    text platform integrators scene/fields backends/process

@@ -332,6 +332,34 @@ INSTANTIATE_TEST_SUITE_P(
                     BadBodies{"\"density_kg_per_m3\": 1000", "\"density_kg_per_m3\": 0",
                               "/bodies/density_kg_per_m3", "is 0"}));
 
+TEST_F(BodiesFile, OfAShapeOutOfRangeIsRefused) {
+  struct BadShape {
+    const char *kind, *good, *bad, *problem;
+  };
+  const std::string interior = R"("interior": {"points": 10, "seed": 1, "jitter": 0.1, "margin": 0.5}})";
+  const std::map<std::string, std::string> objects{
+      {"box", R"({"size_m": [1, 1, 1], "cells_x": 2, "cells_y": 2, "cells_z": 2, )" + interior},
+      {"sphere", R"({"radius_m": 1, "frequency": 2, )" + interior},
+      {"torus",
+       R"({"major_radius_m": 2, "minor_radius_m": 1, "cells_around": 4, "cells_across": 3, )" + interior},
+      {"surface", R"({"file": "a.obj", "unit_m": 1, "largest_tetrahedron_m3": 0})"}};
+  for (const auto& [kind, good, bad, problem] : std::to_array<BadShape>({
+           {"box", "\"cells_y\": 2", "\"cells_y\": 0", "box/cells_y is 0: give an integer from 1 to 1000"},
+           {"box", "\"points\": 10", "\"points\": 2000000",
+            "points is 2000000: give an integer from 0 to 1000000"},
+           {"box", "\"jitter\": 0.1", "\"jitter\": 0.6", "jitter is 0.6: give a number from 0 to 0.5"},
+           {"box", "\"margin\": 0.5", "\"margin\": -1", "margin is -1: give a number from 0 to 1"},
+           {"sphere", "\"frequency\": 2", "\"frequency\": 0",
+            "frequency is 0: give an integer from 1 to 1000"},
+           {"torus", "\"cells_across\": 3", "\"cells_across\": 2",
+            "cells_across is 2: give an integer from 3"},
+           {"surface", "\"unit_m\": 1", "\"unit_m\": 0", "unit_m is 0: give a number above 0"},
+           {"surface", "_m3\": 0", "_m3\": -1", "largest_tetrahedron_m3 is -1: give a number from 0"},
+       }))
+    EXPECT_THAT(error_of(scene(with_shape(kind, with_change(objects.at(kind), good, bad)))),
+                HasSubstr(problem));
+}
+
 TEST_F(BodiesFile, MayTurnAboutAnAxisOfAnyLength) {
   const System usual = build_system(load_scene(scene(good_)));
   const System shorter = build_system(load_scene(scene(with_change(good_, "[0, 0, 0.5]", "[0, 0, 1e-300]"))));

@@ -46,53 +46,36 @@ struct Masks {
 };
 
 /// One work-item per node (kernels/grid_nodes.cl).
-struct NodeShape {
-  GridPatch grid;
-  std::array<std::size_t, 2> local;   // along a row, rows
-  std::array<std::size_t, 2> global;  // multiples of `local`
-  std::size_t stride, plane;          // floats
-
-  static constexpr std::size_t halo_rows = 2;   // above and below, as far as the stencil reaches
-  static constexpr std::size_t left_halo = 16;  // floats; keeps every row aligned to what hardware reads
-
-  // A tile, so that most neighbours of a group's nodes are its own; 64 wide, at least as wide as the SIMD
-  // groups of any hardware.
-  NodeShape(const GridPatch& patch, const OpenclDevice& device) : grid(patch) {
-    const std::size_t largest = cl::Device(device.id, true).getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
-    local = {std::min<std::size_t>(64, largest), std::clamp<std::size_t>(largest / 64, 1, 4)};
-    global = {round_up(grid.columns, local[0]), round_up(grid.rows, local[1])};
-    stride = left_halo + round_up(global[0], left_halo);
-    plane = (global[1] + 2 * halo_rows) * stride + left_halo;
-    if (6 * plane > std::numeric_limits<cl_int>::max())
-      throw Unsupported(
-          "the cloth needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit offsets reach");
-  }
-
-  PairLayout pair_layout() const {
-    PairLayout pair(6 * plane, plane);
-    for (std::size_t node = 0; node < grid.nodes(); ++node)
-      pair.node.push_back((node / grid.columns + halo_rows) * stride + left_halo + node % grid.columns);
-    return pair;
-  }
-};
-
-std::unique_ptr<Backend> make_grid_nodes(const System& system, const NodeShape& shape,
+std::unique_ptr<Backend> make_grid_nodes(const System& system, const GridPatch& grid,
                                          const Integrator& integrator, double dt_s,
                                          const OpenclDevice& device, DeviceMemory memory) {
-  GridParameters parameters = grid_parameters_of(system, shape.grid);
-  parameters.stride = static_cast<int>(shape.stride);
-  parameters.plane = static_cast<int>(shape.plane);
-  Masks pinned(shape.grid.rows, shape.stride);
-  const std::vector<cl_int> none(shape.stride, 0);
-  for (const std::uint32_t pin : system.pins)
-    pinned.mask(pin / shape.grid.columns, none)[pin % shape.grid.columns] = -1;
+  constexpr std::size_t left_halo = 16;  // floats; keeps every row aligned to what hardware reads
+  // A group is a tile, along a row and rows, so that most neighbours of its nodes are its own; 64 wide, at
+  // least as wide as the SIMD groups of any hardware.
+  const std::size_t largest = cl::Device(device.id, true).getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+  const std::array<std::size_t, 2> local{std::min<std::size_t>(64, largest),
+                                         std::clamp<std::size_t>(largest / 64, 1, 4)};
+  const std::array global{round_up(grid.columns, local[0]), round_up(grid.rows, local[1])};
+  const std::size_t stride = left_halo + round_up(global[0], left_halo);
+  const std::size_t plane = (global[1] + 2 * halo) * stride + left_halo;
+  if (6 * plane > std::numeric_limits<cl_int>::max())
+    throw Unsupported(
+        "the cloth needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit offsets reach");
+  PairLayout pair(6 * plane, plane);
+  for (std::size_t node = 0; node < grid.nodes(); ++node)
+    pair.node.push_back((node / grid.columns + halo) * stride + left_halo + node % grid.columns);
+  GridParameters parameters = grid_parameters_of(system, grid);
+  parameters.stride = static_cast<int>(stride);
+  parameters.plane = static_cast<int>(plane);
+  Masks pinned(grid.rows, stride);
+  const std::vector<cl_int> none(stride, 0);
+  for (const std::uint32_t pin : system.pins) pinned.mask(pin / grid.columns, none)[pin % grid.columns] = -1;
   return std::make_unique<OpenclStages>(
       system, integrator, dt_s, device, memory,
-      StageKernels{
-          shape.pair_layout(),
-          {bytes_of(parameters), bytes_of(pinned.mask_of), bytes_of(pinned.numbers)},
-          grid_program_text(integrator, 1),
-          {cl::NDRange(shape.global[0], shape.global[1]), cl::NDRange(shape.local[0], shape.local[1])}});
+      StageKernels{std::move(pair),
+                   {bytes_of(parameters), bytes_of(pinned.mask_of), bytes_of(pinned.numbers)},
+                   grid_program_text(integrator, 1),
+                   {cl::NDRange(global[0], global[1]), cl::NDRange(local[0], local[1])}});
 }
 
 /// A cloth in bands, with several steps per launch.
@@ -130,8 +113,8 @@ class OpenclBands final : public OpenclBackend {
     add_argument(bytes_of(free.mask_of));
     add_argument(bytes_of(free.numbers));
     // Zeros in the padding too, so that no arithmetic meets a denormal number, which can be slow.
-    arguments_.push_back(queue_.zeros<std::byte>(ring_bytes(shape, integrator)));
-    arguments_.push_back(queue_.array<std::byte>(sum_bytes(shape)));
+    arguments_.push_back(queue_.zeros<char>(ring_bytes(shape, integrator)));
+    arguments_.push_back(queue_.array<char>(sum_bytes(shape)));
     const cl::Program program = queue_.build(grid_program_text(integrator, static_cast<int>(bands.lanes)));
     for (const bool swapped : {false, true})
       for (int steps = 1; steps <= steps_per_launch_; ++steps) {
@@ -184,7 +167,7 @@ std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch&
                                           const Integrator& integrator, double dt_s,
                                           const OpenclDevice& device, DeviceMemory memory, int lanes,
                                           std::optional<std::size_t> steps_in_a_launch) {
-  if (lanes == 1) return make_grid_nodes(system, NodeShape(grid, device), integrator, dt_s, device, memory);
+  if (lanes == 1) return make_grid_nodes(system, grid, integrator, dt_s, device, memory);
   const auto cache_bytes = cl::Device(device.id, true).getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   return std::make_unique<OpenclBands>(system, grid, integrator, dt_s, device, memory,
                                        BandShape(grid, integrator, static_cast<std::size_t>(lanes),

@@ -16,7 +16,7 @@ constexpr Storage storage = Storage::separate;
 std::vector<std::uint64_t> buffers_of(const Integrator& integrator, const StageKernels& kernels) {
   std::vector<std::uint64_t> bytes(stored_pairs(integrator, storage).size(),
                                    kernels.layout.floats * sizeof(float));
-  for (const std::span<const std::byte> argument : kernels.arguments) bytes.push_back(argument.size());
+  for (const std::string_view argument : kernels.arguments) bytes.push_back(argument.size());
   return bytes;
 }
 
@@ -77,7 +77,7 @@ OpenclStages::OpenclStages(const System& system, const Integrator& integrator, d
   // Zeros in the padding too, so that no arithmetic there meets a denormal number, which can be slow.
   for (const Pair pair : stored_pairs(integrator, storage))
     pairs_[index(pair)] = queue_.zeros<float>(layout_.floats);
-  for (const std::span<const std::byte> argument : kernels.arguments) add_argument(argument);
+  for (const std::string_view argument : kernels.arguments) add_argument(argument);
   const cl::Program program = queue_.build(kernels.program);
   for (const bool swapped : {false, true})
     for (std::size_t stage = 0; stage < integrator.stage_count; ++stage) {

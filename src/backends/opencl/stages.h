@@ -7,24 +7,16 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "backends/devices/device.h"
 #include "backends/devices/device_queue.h"
 #include "backends/interface/backend.h"
+#include "text/text.h"
 
 namespace mssim {
-
-/// The bytes of an array or of one object.
-template <class T>
-std::span<const std::byte> bytes_of(const std::vector<T>& values) {
-  return std::as_bytes(std::span(values));
-}
-template <class T>
-std::span<const std::byte> bytes_of(const T& value) {
-  return std::as_bytes(std::span(&value, 1));
-}
 
 /// Layout of a topology's nodes in the buffer of a pair.
 struct PairLayout {
@@ -54,7 +46,7 @@ class OpenclBackend : public Backend {
                 DeviceMemory memory, const PairLayout& layout, std::span<const std::uint64_t> buffers);
 
   /// Adds an argument to every kernel: a buffer with a copy of these bytes.
-  void add_argument(std::span<const std::byte> bytes) { arguments_.push_back(queue_.copy_of(bytes)); }
+  void add_argument(std::string_view bytes) { arguments_.push_back(queue_.copy_of(std::span(bytes))); }
   /// Adds a launch whose kernel object keeps its arguments: the common ones from `argument` on.
   void add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items);
 
@@ -67,7 +59,7 @@ class OpenclBackend : public Backend {
 
   PairLayout layout_;  ///< of the state
   DeviceQueue queue_;
-  std::vector<OpenclBuffer<std::byte>> arguments_;
+  std::vector<OpenclBuffer<char>> arguments_;
   std::array<std::vector<Launch>, 2> launches_;  ///< [swapped]
   /// Whether the next launch is swapped: the state is in the pair `next`, or ghosts are read from the second
   /// half of theirs.
@@ -78,7 +70,7 @@ class OpenclBackend : public Backend {
 struct StageKernels {
   PairLayout layout;
   /// Arguments of every kernel after its pairs (stage_arguments) and the step parameters. They are copied.
-  std::vector<std::span<const std::byte>> arguments;
+  std::vector<std::string_view> arguments;
   std::string program;  ///< text
   WorkItems items;
   std::optional<std::uint64_t> stored_springs = {};  ///< Backend::stored_springs

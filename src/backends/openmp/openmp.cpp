@@ -13,7 +13,8 @@ std::vector<std::string_view> openmp_instruction_sets() {
 }
 
 bool has_exact_roots(std::string_view instruction_set) {
-  return kernel_named(step_kernels<SlicedBodies>(integrators.front()), instruction_set).exact_roots;
+  return best_kernel(step_kernels<SlicedBodies>(integrators.front()), Roots::fast, instruction_set)
+      .exact_roots;
 }
 
 namespace {
@@ -35,41 +36,33 @@ StepKernel<BodyLanesOf<Real>> narrowest_kernel(const std::vector<StepKernel<Body
   return narrowest;
 }
 
-/// `roots`: empty to use only this instruction set.
 template <class Real>
-std::unique_ptr<Backend> openmp_for_set(const System& system, const Integrator& integrator, double dt_s,
-                                        std::size_t threads, std::string_view instruction_set,
-                                        std::optional<Roots> roots) {
+std::unique_ptr<Backend> openmp_of(const System& system, const Integrator& integrator, double dt_s,
+                                   const ExecutionOptions& options) {
   using Bands = BandGridOf<Real>;
   using Slices = SlicedBodiesOf<Real>;
   using Abreast = BodyLanesOf<Real>;
+  const auto best = [&](const auto& kernels) {
+    return best_kernel(kernels, options.roots, options.instruction_set);
+  };
+  const auto threads = static_cast<std::size_t>(options.threads);
   if (const auto* grid = std::get_if<GridPatch>(&system.topology)) {
-    const StepKernel<Bands> kernel = kernel_named(step_kernels<Bands>(integrator), instruction_set);
+    const StepKernel<Bands> kernel = best(step_kernels<Bands>(integrator));
     return std::make_unique<VectorBackend<Bands>>(kernel, system, *grid, integrator, dt_s, kernel.lanes,
                                                   threads);
   }
   const std::vector<StepKernel<Abreast>> kernels = step_kernels<Abreast>(integrator);
-  StepKernel<Abreast> abreast = kernel_named(kernels, instruction_set);
+  StepKernel<Abreast> abreast = best(kernels);
   // A vector of springs takes a third of the time of two entries of slices, which compute each spring twice
   // but leave no lane empty.
   constexpr double lanes_per_body = 3;
   if (const auto alike = alike_bodies_for<Real>(system, abreast.lanes, lanes_per_body)) {
-    if (roots) abreast = narrowest_kernel(kernels, abreast, *alike, *roots);
+    if (options.instruction_set.empty()) abreast = narrowest_kernel(kernels, abreast, *alike, options.roots);
     return std::make_unique<VectorBackend<Abreast>>(abreast, system, *alike, integrator, dt_s, abreast.lanes,
                                                     threads);
   }
-  const StepKernel<Slices> kernel = kernel_named(step_kernels<Slices>(integrator), instruction_set);
+  const StepKernel<Slices> kernel = best(step_kernels<Slices>(integrator));
   return std::make_unique<VectorBackend<Slices>>(kernel, system, integrator, dt_s, kernel.lanes, threads);
-}
-
-template <class Real>
-std::unique_ptr<Backend> openmp_of(const System& system, const Integrator& integrator, double dt_s,
-                                   const ExecutionOptions& options) {
-  const auto best =
-      best_kernel(step_kernels<SlicedBodiesOf<Real>>(integrator), options.roots, options.instruction_set);
-  return openmp_for_set<Real>(system, integrator, dt_s, static_cast<std::size_t>(options.threads),
-                              best.instruction_set,
-                              options.instruction_set.empty() ? std::optional(options.roots) : std::nullopt);
 }
 
 }  // namespace
@@ -82,12 +75,6 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
 std::unique_ptr<Backend> make_openmp_in_double(const System& system, const Integrator& integrator,
                                                double dt_s, const ExecutionOptions& options) {
   return openmp_of<double>(system, integrator, dt_s, options);
-}
-
-std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
-                                     const ExecutionOptions& options, std::string_view instruction_set) {
-  return openmp_for_set<float>(system, integrator, dt_s, static_cast<std::size_t>(options.threads),
-                               instruction_set, std::nullopt);
 }
 
 }  // namespace mssim

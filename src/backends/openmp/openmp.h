@@ -31,9 +31,4 @@ std::vector<std::string_view> openmp_instruction_sets();
 /// estimate.
 bool has_exact_roots(std::string_view instruction_set);
 
-/// make_openmp with the vector code for one of those instruction sets, however wide. Throws
-/// std::invalid_argument if it is not among them.
-std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
-                                     const ExecutionOptions& options, std::string_view instruction_set);
-
 }  // namespace mssim

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -67,16 +66,6 @@ StepKernel<Data> best_kernel(const std::vector<StepKernel<Data>>& kernels, Roots
                     (roots == Roots::exact ? " has no exact roots" : " is not for this CPU"));
 }
 
-/// The kernel for an instruction set. Throws std::invalid_argument if it is not among these.
-template <class Data>
-StepKernel<Data> kernel_named(const std::vector<StepKernel<Data>>& kernels,
-                              std::string_view instruction_set) {
-  for (const StepKernel<Data>& kernel : kernels)
-    if (kernel.instruction_set == instruction_set) return kernel;
-  throw std::invalid_argument("openmp has no vector code for " + std::string(instruction_set) +
-                              " that this CPU can run");
-}
-
 /// The names of the kernels' instruction sets.
 template <class Data>
 std::vector<std::string_view> instruction_sets_of(const std::vector<StepKernel<Data>>& kernels) {
@@ -120,28 +109,20 @@ class VectorBackend final : public Backend {
   Data data_;
 };
 
-/// Steps a cloth or bodies with the vector code for an instruction set: a `Cloth` or `Bodies`, constructed
-/// from the system, dt in s, lanes, the maximum number of threads and `more`.
-template <class Cloth, class Bodies, class... More>
-std::unique_ptr<Backend> make_vector_backend(const System& system, double dt_s, int threads,
-                                             std::string_view instruction_set, const More&... more) {
-  const auto make = [&]<class Data>(std::type_identity<Data>) -> std::unique_ptr<Backend> {
-    const StepKernel<Data> kernel = kernel_named(compiled_kernels<Data>(), instruction_set);
-    return std::make_unique<VectorBackend<Data>>(kernel, system, dt_s, kernel.lanes,
-                                                 static_cast<std::size_t>(threads), more...);
-  };
-  if (std::holds_alternative<GridPatch>(system.topology)) return make(std::type_identity<Cloth>());
-  return make(std::type_identity<Bodies>());
-}
-
-/// make_vector_backend with the best instruction set that has options.roots, or with options.instruction_set.
+/// Steps a cloth or bodies with the best instruction set that has options.roots, or with
+/// options.instruction_set: a `Cloth` or `Bodies`, constructed from the system, dt in s, lanes, the maximum
+/// number of threads and `more`.
 template <class Cloth, class Bodies, class... More>
 std::unique_ptr<Backend> make_vector_backend(const System& system, double dt_s,
                                              const ExecutionOptions& options, const More&... more) {
-  return make_vector_backend<Cloth, Bodies>(
-      system, dt_s, options.threads,
-      best_kernel(compiled_kernels<Cloth>(), options.roots, options.instruction_set).instruction_set,
-      more...);
+  const auto make = [&]<class Data>(std::type_identity<Data>) -> std::unique_ptr<Backend> {
+    const StepKernel<Data> kernel =
+        best_kernel(compiled_kernels<Data>(), options.roots, options.instruction_set);
+    return std::make_unique<VectorBackend<Data>>(kernel, system, dt_s, kernel.lanes,
+                                                 static_cast<std::size_t>(options.threads), more...);
+  };
+  if (std::holds_alternative<GridPatch>(system.topology)) return make(std::type_identity<Cloth>());
+  return make(std::type_identity<Bodies>());
 }
 
 }  // namespace mssim

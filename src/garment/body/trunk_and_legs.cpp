@@ -254,20 +254,12 @@ std::string shown(const HeightRange& range) {
 
 /// The triangles that stay, with their points.
 Surface part_of(const Surface& surface, const std::vector<bool>& stays) {
-  constexpr std::uint32_t unknown = UINT32_MAX;
-  std::vector<std::uint32_t> number(surface.points.size(), unknown);
   Surface part;
+  PointNumbers<std::uint32_t> numbers(part);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     if (!stays[t]) continue;
-    auto& triangle = part.triangles.emplace_back(surface.triangles[t]);
-    for (std::uint32_t& corner : triangle) {
-      std::uint32_t& to = number[corner];
-      if (to == unknown) {
-        to = static_cast<std::uint32_t>(part.points.size());
-        part.points.push_back(surface.points[corner]);
-      }
-      corner = to;
-    }
+    for (std::uint32_t& corner : part.triangles.emplace_back(surface.triangles[t]))
+      corner = numbers.of(corner, [&] { return surface.points[corner]; });
   }
   return part;
 }

@@ -40,7 +40,7 @@ std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, c
 /// Algorithm 1 in vectors along the rows of the panels, with `threads` and `instruction_set` of the options;
 /// bitwise identical for every number of threads. The instruction set is one of openmp_instruction_sets();
 /// empty: the best. Throws Unsupported for an integrator other than semi-euler and for springs of one row and
-/// direction that differ in stiffness, and std::invalid_argument for another instruction set.
+/// direction that differ in stiffness, and Unavailable for another instruction set.
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, const ExecutionOptions& options);
 

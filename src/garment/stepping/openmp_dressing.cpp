@@ -93,10 +93,9 @@ void close_sewn_joints(PanelDressing& dressing) {
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, const ExecutionOptions& options) {
   require_semi_euler(integrator);
-  const std::vector<StepKernel<PanelDressing>> kernels = compiled_kernels<PanelDressing>();
   return std::make_unique<OpenMpDressing>(
       system, dt_s, static_cast<std::size_t>(std::max(1, options.threads)),
-      options.instruction_set.empty() ? kernels.front() : kernel_named(kernels, options.instruction_set));
+      best_kernel(compiled_kernels<PanelDressing>(), Roots::fast, options.instruction_set));
 }
 
 }  // namespace mssim

@@ -18,6 +18,8 @@
 namespace mssim {
 
 class FieldVisitor;
+struct FieldValue;
+struct PlacedJson;
 
 /// Names the fields of one JSON object, each once, to a visitor: the reader sets their targets from a file,
 /// the schema writer describes them. The lists are the only place with the keys of scene files.
@@ -60,36 +62,40 @@ class FieldVisitor {
   FieldVisitor& operator=(const FieldVisitor&) = delete;
   virtual ~FieldVisitor() = default;
 
-  virtual void number(const Field& field, double& target, const Range& range) = 0;
-  virtual void optional_number(const Field& field, std::optional<double>& target, const Range& range) = 0;
+  void number(const Field& field, double& target, const Range& range);
+  void optional_number(const Field& field, std::optional<double>& target, const Range& range);
   /// A number, or the text "auto", which leaves the target empty.
-  virtual void number_or_auto(const Field& field, std::optional<double>& target, const Range& range) = 0;
-  virtual void integer(const Field& field, std::uint32_t& target, std::uint32_t minimum,
-                       std::uint32_t maximum) = 0;
+  void number_or_auto(const Field& field, std::optional<double>& target, const Range& range);
+  void integer(const Field& field, std::uint32_t& target, std::uint32_t minimum, std::uint32_t maximum);
   /// One line of at most `longest_text` characters.
-  virtual void text(const Field& field, Presence presence, std::string& target) = 0;
+  void text(const Field& field, Presence presence, std::string& target);
   /// A list of `least` to `most` lines of at most `longest` characters.
-  virtual void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
-                     std::size_t longest, std::vector<std::string>& target) = 0;
+  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most, std::size_t longest,
+             std::vector<std::string>& target);
   /// An object of at most `most` such lines, with arbitrary keys.
-  virtual void named_texts(const Field& field, std::size_t most, std::size_t longest,
-                           std::vector<std::pair<std::string, std::string>>& target) = 0;
+  void named_texts(const Field& field, std::size_t most, std::size_t longest,
+                   std::vector<std::pair<std::string, std::string>>& target);
   /// One of several words; the target becomes its index.
-  virtual void choice(const Field& field, Presence presence, std::span<const std::string_view> words,
-                      std::uint32_t& target) = 0;
+  void choice(const Field& field, Presence presence, std::span<const std::string_view> words,
+              std::uint32_t& target);
   /// Three numbers, [x, y, z].
-  virtual void vector(const Field& field, Presence presence, Vec3d& target, const Range& each) = 0;
+  void vector(const Field& field, Presence presence, Vec3d& target, const Range& each);
   /// A list of `least` to `most` points of a plane, each two numbers, [x, y]; z becomes 0.
-  virtual void points(const Field& field, std::size_t least, std::size_t most, const Range& each,
-                      std::vector<Vec3d>& target) = 0;
+  void points(const Field& field, std::size_t least, std::size_t most, const Range& each,
+              std::vector<Vec3d>& target);
   /// One of several sections: the field's text names it, and the object of that name contains it.
   virtual void one_of(const Field& field, std::span<const Section> sections) = 0;
   /// A list of 1 to `most` objects. `description` describes one object; `fields` is called for each, or once
   /// if there is no file.
-  virtual void list(const Field& field, Presence presence, std::size_t most, std::string_view description,
-                    const FieldList& fields) = 0;
+  void list(const Field& field, Presence presence, std::size_t most, std::string_view description,
+            const FieldList& fields);
   /// A nested object; `fields` is called only if it is present.
-  virtual void object(const Field& field, Presence presence, const FieldList& fields) = 0;
+  void object(const Field& field, Presence presence, const FieldList& fields);
+
+ private:
+  /// Any field: `take` assigns the value of a file.
+  virtual void visit(const Field& field, Presence presence, const FieldValue& value,
+                     const std::function<void(const PlacedJson& found)>& take) = 0;
 };
 
 /// One of several words; the target, an enumeration or a bool, becomes its index.

@@ -19,15 +19,6 @@
 
 namespace mssim {
 
-/// A box, sphere or torus; mssim generates its surface and inner points.
-template <class Solid>
-struct GeneratedShape {
-  Solid solid;
-  InteriorPoints interior;
-
-  bool operator==(const GeneratedShape&) const = default;
-};
-
 /// TetGen's files. Relative paths are relative to the scene file's folder.
 struct MeshFiles {
   std::string node_file;
@@ -35,16 +26,6 @@ struct MeshFiles {
   double unit_m = 1;  ///< metres in one unit of the files
 
   bool operator==(const MeshFiles&) const = default;
-};
-
-/// A closed surface in an OBJ or STL file, to be filled with tetrahedra. Relative paths are relative to the
-/// scene file's folder.
-struct SurfaceFile {
-  std::string file;
-  double unit_m = 1;                  ///< metres in one unit of the file
-  double largest_tetrahedron_m3 = 0;  ///< maximum volume; 0: no limit
-
-  bool operator==(const SurfaceFile&) const = default;
 };
 
 /// The shape of another scene's first body: the scene's name, or the path of its file, relative to the scene
@@ -55,9 +36,9 @@ struct ShapeOfScene {
   bool operator==(const ShapeOfScene&) const = default;
 };
 
-/// One alternative per kind of shape, in the order of their table (scene/bodies.cpp).
-using BodyShape = std::variant<GeneratedShape<BoxShape>, GeneratedShape<SphereShape>,
-                               GeneratedShape<TorusShape>, MeshFiles, SurfaceFile, ShapeOfScene>;
+/// The shape of a body (scene/bodies.cpp has the table of its kinds). A relative path of a SurfaceFile is
+/// relative to the scene file's folder.
+using BodyShape = std::variant<GeneratedShape, MeshFiles, SurfaceFile, ShapeOfScene>;
 
 /// One body: its shape and its start.
 struct BodySpec {

@@ -83,7 +83,8 @@ TEST(BodyLanes, HaveTheNarrowestVectorsOfWhichNoMoreAreNeeded) {
     const auto backend = make_openmp(system, method, 1e-4, {1, ""});
     EXPECT_EQ(backend->device(), std::string("cpu ") + expected->instruction_set) << count;
     EXPECT_TRUE(agrees(*backend, system, method, 1e-4)) << count;
-    const auto named = make_openmp(system, method, 1e-4, {1, ""}, best.instruction_set);
+    const auto named =
+        make_openmp(system, method, 1e-4, {.threads = 1, .instruction_set = best.instruction_set});
     EXPECT_EQ(named->device(), std::string("cpu ") + best.instruction_set) << count;
   }
 }
@@ -109,7 +110,8 @@ void expect_openmp_near_serial(const System& system) {
   serial->step(50);
   const State expected = serial->state();
   for (const std::string_view set : openmp_instruction_sets()) {
-    const auto openmp = make_openmp(system, euler, backend_dt_s, {2, ""}, set);
+    const auto openmp =
+        make_openmp(system, euler, backend_dt_s, {.threads = 2, .instruction_set = std::string(set)});
     openmp->step(50);
     const State state = openmp->state();
     for (std::size_t i = 0; i < state.position.size(); ++i)

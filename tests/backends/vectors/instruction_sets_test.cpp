@@ -57,9 +57,12 @@ TEST(InstructionSets, AreTakenAsNamed) {
   for (const System& system : {cloth_system(9, 11), solid_block(3, 4, 5)}) {
     const auto sets = openmp_instruction_sets();
     for (const std::string_view set : sets)
-      EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s, {1, ""}, set)->device(),
+      EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s,
+                            {.threads = 1, .instruction_set = std::string(set)})
+                    ->device(),
                 "cpu " + std::string(set));
-    EXPECT_THROW(make_openmp(system, integrators[0], backend_dt_s, {1, ""}, "MMX"), std::invalid_argument);
+    EXPECT_THROW(make_openmp(system, integrators[0], backend_dt_s, {.threads = 1, .instruction_set = "MMX"}),
+                 Unavailable);
   }
 }
 
@@ -100,8 +103,8 @@ TEST_P(EachInstructionSetAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShap
   std::vector<System> systems = odd_systems();
   systems.push_back(block_and_lone_node());
   for (const System& system : systems) {
-    const auto simulation =
-        make_openmp(system, integrator(), backend_dt_of(integrator()), {2, ""}, instruction_set());
+    const auto simulation = make_openmp(system, integrator(), backend_dt_of(integrator()),
+                                        {.threads = 2, .instruction_set = std::string(instruction_set())});
     EXPECT_TRUE(agrees(*simulation, system, integrator(), backend_dt_of(integrator())));
   }
 }
@@ -114,9 +117,10 @@ TEST_P(EachInstructionSetAndIntegrator, GivesTheSameBitsAsTheBestThatRoundsAlike
   });
   for (System system : odd_systems()) {
     system.floor.height = system.start.position[0].y - 0.001;  // it is met on the way
-    const auto expected = make_openmp(system, integrator(), backend_dt_of(integrator()), {1, ""}, best);
-    const auto simulation =
-        make_openmp(system, integrator(), backend_dt_of(integrator()), {2, ""}, instruction_set());
+    const auto expected = make_openmp(system, integrator(), backend_dt_of(integrator()),
+                                      {.threads = 1, .instruction_set = std::string(best)});
+    const auto simulation = make_openmp(system, integrator(), backend_dt_of(integrator()),
+                                        {.threads = 2, .instruction_set = std::string(instruction_set())});
     expected->step(300);
     simulation->step(300);
     const State one = expected->state(), other = simulation->state();

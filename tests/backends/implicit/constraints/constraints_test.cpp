@@ -260,8 +260,9 @@ std::vector<StepKernel<QuarteredRows>> cloth_kernels() { return compiled_kernels
 class EachXpbdKernel : public testing::TestWithParam<std::size_t> {
  protected:
   static std::unique_ptr<Backend> make(const System& system, int threads, std::size_t kernel) {
-    return make_vector_backend<QuarteredRows, SpringBatches>(system, backend_dt_s, threads,
-                                                             cloth_kernels()[kernel].instruction_set);
+    return make_vector_backend<QuarteredRows, SpringBatches>(
+        system, backend_dt_s,
+        {.threads = threads, .instruction_set = cloth_kernels()[kernel].instruction_set});
   }
   static std::unique_ptr<Backend> make(const System& system, int threads) {
     return make(system, threads, GetParam());
@@ -315,7 +316,7 @@ TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
     system.floor.height = -100;
     const auto reference = make_reference(system, xpbd, long_s);
     const auto backend = make_vector_backend<QuarteredRows, SpringBatches>(
-        system, long_s, 2, cloth_kernels()[GetParam()].instruction_set);
+        system, long_s, {.threads = 2, .instruction_set = cloth_kernels()[GetParam()].instruction_set});
     reference->step(1);
     backend->step(1);
     // Roundings come to 7e-5 m/s, two colours in another order to 5e-3 or more.

@@ -138,8 +138,8 @@ TEST(FastSprings, DoesTheSameWithEachInstructionSet) {
   for (const System& system : systems_to_follow()) {
     const State expected = state_after(*make_reference(system, fast_springs, dt_s), 10);
     for (const std::string_view set : instruction_sets_of(compiled_kernels<LocalGlobalNodes<NodeRows>>())) {
-      const auto vectors =
-          make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(system, dt_s, 2, set);
+      const auto vectors = make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(
+          system, dt_s, {.threads = 2, .instruction_set = std::string(set)});
       vectors->step(10);
       EXPECT_EQ(vectors->device(), "cpu " + std::string(set));
       EXPECT_LT(largest_distance(vectors->state().position, expected.position),

@@ -23,7 +23,9 @@ class EachNewtonKernelAndIntegrator
   std::unique_ptr<Backend> make(const System& system, int threads = 2, double dt_s = backend_dt_s,
                                 std::size_t most_kept = most_slope_bytes) const {
     return make_vector_backend<VectorEquation<NodeRows>, VectorEquation<NodeSlices>>(
-        system, dt_s, threads, newton_sets()[std::get<0>(GetParam())], integrator(), most_kept);
+        system, dt_s,
+        {.threads = threads, .instruction_set = std::string(newton_sets()[std::get<0>(GetParam())])},
+        integrator(), most_kept);
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNewtonKernelAndIntegrator,
