@@ -1,20 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <csignal>
-#include <filesystem>
 
 #include "application/console.h"
 #include "application/outputs.h"
 #include "tests/support/output_fixture.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 const Progress half{"cloth2500", 1, 2, "round 8/15: midpoint openmp", 0.5, 65.2};

@@ -1,5 +1,3 @@
-
-
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
 #include "output/tables/suite_tables.h"

@@ -1,4 +1,3 @@
-
 #include <span>
 
 #include "application/bench/suites.h"

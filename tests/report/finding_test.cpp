@@ -1,5 +1,3 @@
-
-
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "scene/fields/fields.h"

@@ -1,11 +1,7 @@
 #include "web/web.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <string>
 
 #include "output/folders/provenance_file.h"
 #include "output/tables/results.h"

@@ -1,23 +1,17 @@
 #include "application/bench/bench_plan.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "application/bench/suites.h"
 #include "bench/results/result.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 
 namespace mssim {
 namespace {
-
-using testing::SizeIs;
 
 class BenchPlanTest : public TemporaryFolderTest {
  protected:

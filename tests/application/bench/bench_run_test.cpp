@@ -1,20 +1,15 @@
 #include "application/bench/bench_run.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <thread>
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
+#include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 ResultRow row(const std::string& scene, const std::string& backend, int rounds = 3) {
   ResultRow row;

@@ -1,9 +1,5 @@
 #include "bench/results/history.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <span>
 
 #include "output/folders/history_file.h"
@@ -12,15 +8,11 @@
 #include "scene/fields/fields.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr std::size_t recent = 10;
 

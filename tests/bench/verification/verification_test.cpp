@@ -1,17 +1,8 @@
 // A check that could not fail would be none: backends that are wrong on purpose must be found.
 #include "bench/verification/verification.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "backends/backends.h"
 #include "backends/openmp/openmp.h"
@@ -22,6 +13,7 @@
 #include "scene/scene_file.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

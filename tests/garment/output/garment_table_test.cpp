@@ -1,5 +1,3 @@
-
-
 #include "garment/output/garment_tables.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
