@@ -67,8 +67,7 @@ ends 0 report result.json lost.json failed.json without.json "$2/results/table1/
 grep -q 'webgpu, ' report.html || fail "the report does not name the device"
 grep -q 'result.json' report.html || fail "the report does not name the file"
 grep -q '<td>wasm-threads<' report.html || fail "the report does not name the threads of the module"
-ends 0 compare result.json result.json
-says javascript
+saying javascript ends 0 compare result.json result.json
 says wasm-threads
 
 # damaged PATTERN EDIT: a result changed by a statement of Python on its document d is refused
