@@ -177,13 +177,7 @@ class BodiesFile : public TemporaryFolderTest {
 
   std::filesystem::path scene(const std::string& text) const { return put("scene.json", text); }
   static std::string error_of(const std::filesystem::path& file) {
-    try {
-      build_system(load_scene(file));
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    ADD_FAILURE() << "accepted:\n" << text_of(file);
-    return "";
+    return sentence_of<SceneError>([&] { build_system(load_scene(file)); });
   }
 
   /// The good scene with a body of another shape.

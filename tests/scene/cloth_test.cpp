@@ -11,7 +11,6 @@
 #include "scene/spec/scene_spec.h"
 #include "tests/support/address_space.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
 

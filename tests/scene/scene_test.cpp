@@ -4,7 +4,6 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 #include "text/text.h"
 
@@ -19,13 +18,7 @@ class SceneFile : public TemporaryFolderTest {
   std::filesystem::path file() const { return folder() / "bad.json"; }
 
   static std::string error_of(const std::filesystem::path& path) {
-    try {
-      load_scene(path);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    ADD_FAILURE() << path << " was accepted";
-    return {};
+    return sentence_of<SceneError>([&] { load_scene(path); });
   }
 };
 

@@ -5,7 +5,6 @@
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/opencl_variants.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

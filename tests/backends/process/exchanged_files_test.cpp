@@ -11,7 +11,6 @@
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/output_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"

@@ -8,7 +8,6 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
