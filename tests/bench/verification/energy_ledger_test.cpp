@@ -70,11 +70,7 @@ TEST_P(EnergyLedgerOf, BalancesABlockThatFallsSpinsBouncesAndSlides) {
 }
 
 TEST_P(EnergyLedgerOf, BalancesAClothThatFallsOnTheFloorAndSlides) {
-  SceneSpec spec = cloth_spec(12, 9);
-  auto& cloth = std::get<ClothSpec>(spec.content);
-  cloth.pins.reset();
-  cloth.ceiling_height_m = 0.03;
-  System system = build_system(spec);
+  System system = cloth_system(12, 9, 0.03, {});
   for (Vec3d& v : system.start.velocity) v += {0.5, 0, 0.25};
   const Balance balance = balance_of(system, system, integrator(), 6000);
   EXPECT_LT(std::abs(balance.imbalance), cloth_tolerance);
