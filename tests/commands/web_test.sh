@@ -3,10 +3,8 @@
 # and compare read what it saves, and refuse what is damaged.
 # $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 expect 2 --serve web
 expect 2 html web --out page.txt
