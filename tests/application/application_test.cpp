@@ -3,6 +3,7 @@
 #include "application/console.h"
 #include "application/outputs.h"
 #include "tests/support/output_fixture.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 #include "text/text.h"
 

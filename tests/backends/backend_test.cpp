@@ -75,9 +75,7 @@ TEST_P(EachOtherBackendAndIntegrator, StaysAsNearToTheReferenceAsTheSpringList) 
 }
 
 TEST_P(EachBackendAndIntegrator, HoldsPinsExactlyWhereverTheyAre) {
-  SceneSpec spec = cloth_spec(20, 23);
-  std::get<ClothSpec>(spec.content).pins = ClothPins{13, 5};
-  const System system = build_system(spec);
+  const System system = cloth_system(20, 23, 1, ClothPins{13, 5});
   ASSERT_GE(system.pins.size(), 5U);
   const auto simulation = make(system);
   simulation->step(50);
@@ -157,11 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorOnOpenMp, testing::ValuesIn(names_
 int steps_with_a_bounce(const Integrator& integrator) { return steps_in(integrator, 0.03); }
 
 /// A cloth that meets the floor in that time.
-System low_cloth(std::uint32_t rows, std::uint32_t columns) {
-  SceneSpec spec = cloth_spec(rows, columns);
-  std::get<ClothSpec>(spec.content).ceiling_height_m = 0.0035;
-  return build_system(spec);
-}
+System low_cloth(std::uint32_t rows, std::uint32_t columns) { return cloth_system(rows, columns, 0.0035); }
 
 /// Expects the same bits after a bounce with any number of threads.
 void expect_same_bits(const System& system, const Integrator& integrator) {

@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
@@ -9,6 +5,7 @@
 #include "platform/machine.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

@@ -1,5 +1,3 @@
-
-
 #include "charts/layout.h"
 #include "platform/files.h"
 #include "platform/process.h"

@@ -3,10 +3,8 @@
 # an escape sequence.
 # $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 command -v script >/dev/null || { echo "script (package bsdutils) is missing: there is no terminal to test on"; exit 77; }
 

@@ -4,10 +4,8 @@ set -euo pipefail
 . "$2/tests/support/command_line.sh"
 export XDG_CACHE_HOME=$work/cache
 
-check() { ends "$1" check "${@:2}"; }
-
 # A cloth: every combination, all of them stable and within a memory that bench is content with.
-check 0 cloth2500 --format csv
+ends 0 check cloth2500 --format csv
 [ ! -s "$work/err" ] || fail "a good scene has messages"
 cp "$work/out" "$work/cloth.csv"
 column() { column_of "$work/cloth.csv" "$1"; }
@@ -22,8 +20,8 @@ for integrator in semi-euler midpoint rk4; do
 done
 [ "$(grep -c ',\(implicit-euler\|newton-euler\|fast-springs\|xpbd\),,true,' "$work/cloth.csv")" -eq 8 ] || fail "implicit integrators have a limit"
 # In the other formats the same.
-check 0 cloth2500 --format json
-check 0 cloth2500 torus-small
+ends 0 check cloth2500 --format json
+ends 0 check cloth2500 torus-small
 grep -q '^cloth2500  *cloth  *2500  *14502  *-  *5e-05$' "$work/out" || fail "the table of a cloth"
 grep -q '^torus-small  *bodies  *620  *3690  *2800 ' "$work/out" || fail "the table of a body"
 [ "$(grep -c '^rk4  *[0-9.e-]*  *yes  *openmp ' "$work/out")" -eq 2 ] || fail "the tables of their combinations"
@@ -34,25 +32,25 @@ for factor in 0.9 2; do
   sed "s/\"dt_s\": 5e-5/\"dt_s\": $(awk -v l="$limit" -v f="$factor" 'BEGIN { printf "%.6e", l * f }')/" \
     "$source/scenes/cloth2500.json" >"$work/cloth-$factor.json"
 done
-check 0 "$work/cloth-0.9.json"
+ends 0 check "$work/cloth-0.9.json"
 grep -q 'limit of .*semi-euler' "$work/err" && fail "a dt below the limit is above it"
 ends 0 run --scene "$work/cloth-0.9.json" --duration 0.1 --backend serial
-check 0 "$work/cloth-2.json"
+ends 0 check "$work/cloth-2.json"
 grep -q '^mssim: cloth-2: dt_s [0-9.e-]* is above the stability limit of .*semi-euler.*: give at most [0-9.e-]*, or "auto"$' "$work/err" ||
   fail "a dt above the limit is not warned of"
 ends 1 run --scene "$work/cloth-2.json" --duration 0.1 --backend serial
 
 # A garment is dressed with one integrator, by every backend that can.
-check 0 jeans1k --format csv
+ends 0 check jeans1k --format csv
 [ "$(column_of "$work/out" backend)" = "$(backends_for garment)" ] || fail "backends of a garment: $(cat "$work/out")"
 [ "$(grep -c '^jeans1k,garment,1054,.*,semi-euler,' "$work/out")" -eq "$(backends_for garment | wc -l)" ] || fail "combinations of a garment"
 # Only some of them let its layers touch each other.
-check 0 outfit --format csv
+ends 0 check outfit --format csv
 [ "$(column_of "$work/out" backend)" = $'serial\nopenmp' ] || fail "backends of touching layers: $(cat "$work/out")"
 
 # Its "auto" is half of its own limit, not of that of methods that cannot dress it.
 sed 's/"dt_s": [^,]*/"dt_s": "auto"/' "$source/scenes/jeans1k.json" >"$work/jeans-auto.json"
-check 0 "$work/jeans-auto.json" --format csv
+ends 0 check "$work/jeans-auto.json" --format csv
 awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) place[$i] = i }
   NR == 2 { ratio = $place["dt_s"] / $place["largest_stable_dt_s"]; exit !(ratio > 0.499 && ratio < 0.501) }' "$work/out" ||
   fail "the automatic step of a garment: $(cat "$work/out")"
@@ -68,7 +66,7 @@ expect 2 'no scene is named "cloth2501"' check cloth2501
 # A file without .json is not meant by its bare name.
 cp "$source/scenes/cloth2500.json" "$work/cloth2501"
 expect 2 '"cloth2501" is a file.*\./cloth2501' check cloth2501
-check 0 ./cloth2501
+ends 0 check ./cloth2501
 
 # More than can be meshed or held is refused before it is.
 sed 's/"cells_\([xyz]\)": [0-9]*/"cells_\1": 1000/' "$source/scenes/box-small.json" >"$work/fine-box.json"

@@ -1,4 +1,3 @@
-
 #include <nlohmann/json.hpp>
 
 #include "commands/arguments/arguments.h"
@@ -10,7 +9,6 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/obj_text.h"
 #include "tests/support/open_count.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 #include "text/error.h"
 

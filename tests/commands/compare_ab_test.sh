@@ -44,8 +44,7 @@ ab() {
 # One that is no mssim and never says anything is given up, and named.
 printf '#!/bin/sh\nsleep 1000\n' >"$work/sleeper"
 chmod +x "$work/sleeper"
-ab 2 sleeper sleeper --time-budget 1
-warns 'sleeper bench --help has not ended within 11 s'
+warning 'sleeper bench --help has not ended within 11 s' ab 2 sleeper sleeper --time-budget 1
 
 # One whose help fails is no mssim, either.
 printf '#!/bin/sh\nexit 7\n' >"$work/stranger"
@@ -91,33 +90,27 @@ warns 'stranger bench --help exited with 7: give the path of an mssim program'
   program sleepy 'echo $$ >"$0.pid"; sleep 60'
 }
 
-ab 0 steady steady2
-says 'openmp .* same'
+saying 'openmp .* same' ab 0 steady steady2
 warns '10 rounds in'
 warns 'steady has no bench --verified: each process of both programs verifies again'
 [ "$(wc -l <"$work/steady.runs")" -eq 10 ] || fail "not 10 runs"
 grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 7 --out ' "$work/steady.runs" ||
   fail "the program is not given what was asked for: $(head -n 1 "$work/steady.runs")"
-ab 1 steady slow
-says 'openmp .* slower'
+saying 'openmp .* slower' ab 1 steady slow
 warns '^mssim: 10 rounds in [0-9]* s$'
-ab 0 steady slow --threshold 20
-says 'openmp .* same'
-ab 0 steady quick --format json
-says '"verdict": "faster"'
+saying 'openmp .* same' ab 0 steady slow --threshold 20
+saying '"verdict": "faster"' ab 0 steady quick --format json
 [ "$(grep -A 10 '"base_samples_ms"' "$work/out" | grep -c ' 1\.0')" -eq 10 ] || fail "not the ten samples of BASE: $(cat "$work/out")"
 
 # The budget: no round is begun that would not fit, and what is not known is not said.
 start=$(date +%s%N)
-ab 0 wild wild2 --time-budget 2 --backend openmp,serial --integrator rk4 --threads 2
-says 'undecided'
+saying 'undecided' ab 0 wild wild2 --time-budget 2 --backend openmp,serial --integrator rk4 --threads 2
 warns 'the time budget ended'
 (($(date +%s%N) - start < 4000000000)) || fail "the time budget of 2 s is exceeded by far"
 grep -q -- '--backend openmp,serial --integrator rk4 --rounds 7 --out [^ ]* --threads 2$' "$work/wild.runs" || fail "options"
 
 # Verified once: the first run of each verifies, all others rely on its folder, and every one is a process of its own.
-ab 0 new-steady new-steady2
-says 'openmp .* same'
+saying 'openmp .* same' ab 0 new-steady new-steady2
 warns '10 rounds in'
 if grep -q 'verifies again' "$work/err"; then fail "both know --verified"; fi
 for name in new-steady new-steady2; do
@@ -128,82 +121,58 @@ for name in new-steady new-steady2; do
   [ "$(grep -c -- "--rounds 7 --out [^ ]* --verified $folder\$" "$work/$name.runs")" -eq 10 ] ||
     fail "$name is not sampled ten times with what it has verified"
 done
-ab 0 new-meeting new-meeting2
-says 'openmp .* same'
-ab 1 new-steady new-slow
-says 'openmp .* slower'
+saying 'openmp .* same' ab 0 new-meeting new-meeting2
+saying 'openmp .* slower' ab 1 new-steady new-slow
 # One that is older: nobody is spared the verification, so that both are measured alike.
-ab 0 steady new-steady2
-warns 'steady has no bench --verified'
-ab 1 new-steady slow
-warns 'slow has no bench --verified'
+warning 'steady has no bench --verified' ab 0 steady new-steady2
+warning 'slow has no bench --verified' ab 1 new-steady slow
 says 'openmp .* slower'
 if grep -q -- --verified "$work/steady.runs" "$work/slow.runs" "$work/new-steady.runs" "$work/new-steady2.runs"; then
   fail "one of the two is not verified again"
 fi
 # What is wrong is found before anything is sampled; and what turns out not to be verified does not count.
-ab 1 new-steady new-wrong
-says 'lost  *failed: not verified'
+saying 'lost  *failed: not verified' ab 1 new-steady new-wrong
 warns '^mssim: 0 rounds in'
-ab 2 new-wrong new-steady
-warns 'nothing to compare'
-ab 1 new-steady new-unsure
-says 'lost  *failed: not verified'
-ab 2 new-unsure new-steady
-warns 'none in a later round (failed: not verified)'
+warning 'nothing to compare' ab 2 new-wrong new-steady
+saying 'lost  *failed: not verified' ab 1 new-steady new-unsure
+warning 'none in a later round (failed: not verified)' ab 2 new-unsure new-steady
 warns 'nothing is left to compare'
-ab 2 new-steady new-refusing
-warns '^what is wrong with it$'
+warning '^what is wrong with it$' ab 2 new-steady new-refusing
 warns 'new-refusing bench exited with 2'
 # What is settled is not measured any further.
-ab 1 new-two new-two2 --backend openmp,serial
-says 'openmp .* same'
+saying 'openmp .* same' ab 1 new-two new-two2 --backend openmp,serial
 says 'serial .* lost  *failed: late'
 [ "$(grep -c -- '--backend openmp,serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 10 ] ||
   fail "openmp is not sampled ten times"
 [ "$(grep -c -- '--backend serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 3 ] ||
   fail "serial is not gone on with alone"
 
-ab 0 new-steady new-both --backend openmp,serial
-says 'openmp .* same'
+saying 'openmp .* same' ab 0 new-steady new-both --backend openmp,serial
 warns 'only .*new-both has cloth2500, serial, semi-euler$'
-ab 0 new-partly new-both --backend openmp,serial
-says 'openmp .* same'
+saying 'openmp .* same' ab 0 new-partly new-both --backend openmp,serial
 warns 'new-partly has no time for .*serial.*: unsupported: no such method'
-ab 1 new-both new-partly --backend openmp,serial
-says 'openmp .* same'
+saying 'openmp .* same' ab 1 new-both new-partly --backend openmp,serial
 says 'serial .* lost  *unsupported: no such method'
-ab 0 new-losing new-both --backend openmp,serial
-says 'openmp .* same'
+saying 'openmp .* same' ab 0 new-losing new-both --backend openmp,serial
 if grep -q '^cloth2500 *serial' "$work/out"; then fail "a row stands that BASE has lost"; fi
 warns 'new-losing had a time for .*serial.* none in a later round (failed: late)'
 
-ab 1 new-two new-gone --backend openmp,serial
-says 'openmp .* same'
+saying 'openmp .* same' ab 1 new-two new-gone --backend openmp,serial
 says 'serial .* lost  *unavailable: no device'
 
 # Programs that fail.
-ab 1 steady wrong
-says 'lost  *failed: not verified'
-ab 2 wrong steady
-warns 'nothing to compare'
-ab 1 steady fickle
-says 'lost  *failed: step 3'
-ab 2 fickle steady
-warns 'none in a later round (failed: step 3)'
+saying 'lost  *failed: not verified' ab 1 steady wrong
+warning 'nothing to compare' ab 2 wrong steady
+saying 'lost  *failed: step 3' ab 1 steady fickle
+warning 'none in a later round (failed: step 3)' ab 2 fickle steady
 warns 'nothing is left to compare'
-ab 2 steady crash
-warns '^what went wrong$'
+warning '^what went wrong$' ab 2 steady crash
 warns 'crash bench was ended by signal 11'
-ab 3 steady deaf
-warns '^no such device$'
+warning '^no such device$' ab 3 steady deaf
 warns 'deaf bench exited with 3'
-ab 2 steady silent
-warns 'silent bench exited with 0 instead of measuring, without a message'
-ab 2 steady broken
-warns 'timings.csv, line 2, column ms_per_step_min: "not-a-number" is not a number'
-ab 3 steady missing
-warns 'cannot run .*missing: give the path'
+warning 'silent bench exited with 0 instead of measuring, without a message' ab 2 steady silent
+warning 'timings.csv, line 2, column ms_per_step_min: "not-a-number" is not a number' ab 2 steady broken
+warning 'cannot run .*missing: give the path' ab 3 steady missing
 expect 2 'needs a --scene' compare --ab "$work/steady" "$work/slow"
 expect 2 'scene needs --ab: add it' compare "$work" "$work" --scene cloth2500
 expect 2 'time-budget' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --time-budget 0
@@ -211,8 +180,7 @@ expect 2 'ab and --force exclude each other' compare --ab "$work/steady" "$work/
 
 # Interrupted: ends the program under way, leaves nothing.
 begins compare --ab "$work/sleepy" "$work/sleepy" --scene cloth2500
-soon 10 test -s "$work/sleepy.pid" || fail "no program is begun"
-is_ended 130 INT
+is_ended 130 INT 10 test -s "$work/sleepy.pid"
 is_gone "$(cat "$work/sleepy.pid")" || fail "the program under way goes on"
 [ -z "$(ls -A "$TMPDIR")" ] || fail "interrupted it leaves something in $TMPDIR"
 

@@ -3,86 +3,47 @@
 set -euo pipefail
 . "$2/tests/support/command_line.sh"
 
-# A folder in which nothing but the samples is made up.
-source_run=$2/results/table1/zen5
-
-# make NAME BACKEND=MS[:SPREAD][:COUNT]...: a result folder with samples of each backend, spread evenly about MS
-make() {
-  local folder=$work/$1 backend ms spread count pair
-  shift
-  mkdir "$folder"
-  cp "$source_run/provenance.json" "$folder"
-  head -n 1 "$source_run/timings.csv" >"$folder/timings.csv"
-  head -n 1 "$source_run/samples.csv" >"$folder/samples.csv"
-  for pair in "$@"; do
-    backend=${pair%%=*}
-    IFS=: read -r ms spread count <<<"${pair#*=}"
-    awk -F, -v OFS=, -v b="$backend" -v n="${count:-15}" 'NR == 1 { for (i = 1; i <= NF; ++i) place[$i] = i }
-      $1 == "cloth2500" && $place["backend"] == b && $place["integrator"] == "semi-euler" { $place["rounds"] = n; print }
-      ' "$source_run/timings.csv" >>"$folder/timings.csv"
-    awk -v b="$backend" -v ms="$ms" -v s="${spread:-0.02}" -v n="${count:-15}" 'BEGIN {
-        for (i = 1; i <= n; ++i) print "cloth2500," b ",semi-euler," i ",10," ms * (1 + s * (2 * (i - 1) / (n - 1) - 1)) ","
-      }' >>"$folder/samples.csv"
-  done
-}
-
-# compare STATUS ARGUMENTS...: mssim compare must exit with STATUS; its results are in $work/out, messages in $work/err
-compare() { ends "$1" compare "${@:2}"; }
-
-
-make base serial=1 openmp=0.1
-make slower serial=1 openmp=0.112
-make faster serial=1 openmp=0.09
-make noisy serial=1:0.3 openmp=0.1
-make few serial=1:0.02:3
-make few-slower serial=2:0.02:3
-make other hybrid=1
+make_run base serial=1 openmp=0.1
+make_run slower serial=1 openmp=0.112
+make_run faster serial=1 openmp=0.09
+make_run noisy serial=1:0.3 openmp=0.1
+make_run few serial=1:0.02:3
+make_run few-slower serial=2:0.02:3
+make_run other hybrid=1
 
 # Verdicts and exit codes.
-compare 0 "$work/base" "$work/base"
-says 'serial .* same'
+saying 'serial .* same' ends 0 compare "$work/base" "$work/base"
 says 'openmp .* same'
 says '^all  *2 '
 [ ! -s "$work/err" ] || fail "a comparison with itself has messages"
-compare 1 "$work/base" "$work/slower"
-says 'openmp .* 1\.12 .* slower'
+saying 'openmp .* 1\.12 .* slower' ends 1 compare "$work/base" "$work/slower"
 warns '^mssim: cloth2500, openmp, semi-euler: slower, 1\.12 times the time (1\.[01][0-9]* to 1\.1[0-9]*)$'
 says 'serial .* same'
-compare 0 "$work/base" "$work/slower" --threshold 15
-says 'openmp .* same'
-compare 0 "$work/base" "$work/faster"
-says 'openmp .* 0\.9 .* faster'
-compare 0 "$work/base" "$work/noisy"
-says 'serial .* undecided  [0-9]* samples per side would decide'
+saying 'openmp .* same' ends 0 compare "$work/base" "$work/slower" --threshold 15
+saying 'openmp .* 0\.9 .* faster' ends 0 compare "$work/base" "$work/faster"
+saying 'serial .* undecided  [0-9]* samples per side would decide' ends 0 compare "$work/base" "$work/noisy"
 warns '1 of 2 combinations is undecided'
-compare 0 "$work/few" "$work/few-slower"
-says 'serial .* undecided  at least 5 samples per side are needed'
-compare 0 "$work/few" "$work/few-slower" --format json
-says '"low": null'
+saying 'serial .* undecided  at least 5 samples per side are needed' ends 0 compare "$work/few" "$work/few-slower"
+saying '"low": null' ends 0 compare "$work/few" "$work/few-slower" --format json
 says '"high": null'
-compare 0 "$work/base" "$work/few"
-warns 'only BASE has: cloth2500, openmp, semi-euler$'
-compare 0 "$work/few" "$work/base/timings.csv"
-warns 'only NEW has: cloth2500, openmp, semi-euler$'
+warning 'only BASE has: cloth2500, openmp, semi-euler$' ends 0 compare "$work/base" "$work/few"
+warning 'only NEW has: cloth2500, openmp, semi-euler$' ends 0 compare "$work/few" "$work/base/timings.csv"
 
 # A row that is gone.
 cp -r "$work/base" "$work/lost"
 sed -i '/,openmp,/s/,true,ok,/,false,failed: step 7 is not finite,/' "$work/lost/timings.csv"
-compare 1 "$work/base" "$work/lost"
-says 'openmp .* lost  *failed: step 7 is not finite'
-compare 0 "$work/lost" "$work/base"
-warns 'without a verified time in BASE: cloth2500, openmp, semi-euler'
+saying 'openmp .* lost  *failed: step 7 is not finite' ends 1 compare "$work/base" "$work/lost"
+warning 'without a verified time in BASE: cloth2500, openmp, semi-euler' ends 0 compare "$work/lost" "$work/base"
 cp -r "$work/lost" "$work/all-lost"
 sed -i '/,serial,/s/,true,ok,/,false,failed: step 7 is not finite,/' "$work/all-lost/timings.csv"
-compare 2 "$work/all-lost" "$work/base"
-warns 'without a verified time in BASE: cloth2500, serial, semi-euler and 1 more'
+warning 'without a verified time in BASE: cloth2500, serial, semi-euler and 1 more' ends 2 compare "$work/all-lost" "$work/base"
 warns 'nothing to compare: .*all-lost has no verified time of what both have; measure it again'
 
 # Formats.
-compare 1 "$work/base" "$work/slower" --format markdown
+ends 1 compare "$work/base" "$work/slower" --format markdown
 # shellcheck disable=SC2016 # the backquotes are Markdown's
 says '^| cloth2500 | `openmp` | semi-euler | 0.100 | 0.112 | 1.12 | .* | \*\*slower\*\* |$'
-compare 1 "$work/base" "$work/slower" --format json
+ends 1 compare "$work/base" "$work/slower" --format json
 /usr/bin/python3 - "$work/out" <<'PYTHON' || fail "the JSON is not what it should be"
 import json, math, sys
 def refuse(constant):
@@ -95,12 +56,12 @@ assert math.isclose(result["geometric_means"][0]["geometric_mean_ratio"], math.s
 PYTHON
 
 # A folder keeps both.
-compare 1 "$work/base" "$work/slower" --format markdown --out "$work/kept/comparison"
+ends 1 compare "$work/base" "$work/slower" --format markdown --out "$work/kept/comparison"
 cmp "$work/out" "$work/kept/comparison/comparison.md" || fail "the kept page is not the printed one"
 expect 2 'kept/comparison/comparison.md already exists.*--overwrite' compare "$work/base" "$work/slower" --out "$work/kept/comparison"
 rm "$work/kept/comparison/comparison.md"
 expect 2 'comparison.json already exists.*--overwrite' compare "$work/base" "$work/slower" --out "$work/kept/comparison"
-compare 1 "$work/base" "$work/slower" --format json --out "$work/kept/comparison" --overwrite
+ends 1 compare "$work/base" "$work/slower" --format json --out "$work/kept/comparison" --overwrite
 cmp "$work/out" "$work/kept/comparison/comparison.json" || fail "the kept JSON is not the printed one"
 expect 4 'timings.csv' compare "$work/base" "$work/slower" --out "$work/base/timings.csv"
 expect 2 'not there' compare "$work/base" "$work/not there" --out "$work/unmade"
@@ -120,8 +81,7 @@ expect 2 'cut/samples.csv: cloth2500, openmp, semi-euler has [0-9]* samples*, bu
 cp -r "$work/base" "$work/cpu"
 sed -i 's/"model": "[^"]*"/"model": "Another CPU"/' "$work/cpu/provenance.json"
 expect 2 'not comparable: the CPU was .* and is Another CPU with 2 logical CPUs; .*--force' compare "$work/base" "$work/cpu"
-compare 0 "$work/base" "$work/cpu" --force
-warns 'compared anyway: the CPU was '
+warning 'compared anyway: the CPU was ' ends 0 compare "$work/base" "$work/cpu" --force
 says 'openmp .* same'
 cp -r "$work/base" "$work/threads"
 sed -i 's/"asked_for": 2/"asked_for": 1/; s/GNU 12/GNU 13/' "$work/threads/provenance.json"
@@ -129,8 +89,7 @@ expect 2 'the compiler was GNU 12.* and is GNU 13.*; the number of threads was 2
 
 # Nothing to compare is no success.
 mkdir "$work/empty"
-compare 2 "$work/base" "$work/other"
-warns 'only BASE has: cloth2500, serial, semi-euler and 1 more'
+warning 'only BASE has: cloth2500, serial, semi-euler and 1 more' ends 2 compare "$work/base" "$work/other"
 warns 'only NEW has: cloth2500, hybrid, semi-euler'
 warns 'nothing to compare: .* have no measured combination in common'
 [ ! -s "$work/out" ] || fail "nothing to compare, and a table: $(cat "$work/out")"

@@ -26,8 +26,7 @@ awk -F, 'NR > 1 && $2 == "ok" && $NF != "" { print }' out >surplus
 [ ! -s surplus ] || fail "remedies of what is there: $(cat surplus)"
 awk -F, 'NR > 1 && $2 != "ok" && $NF == "" { print }' out >bare
 [ ! -s bare ] || fail "no remedy: $(cat bare)"
-ends 0 doctor --format json
-says '"item": "TetGen"'
+saying '"item": "TetGen"' ends 0 doctor --format json
 
 # Without programs, drivers and places for caches the main job runs, and each is named with its package.
 mkdir none
@@ -62,8 +61,7 @@ else
   mkdir -p alone/bin
   cp "$mssim" alone/bin/mssim
   mssim=$work/alone/bin/mssim
-  ends 4 bench --scene cloth2500 --backend serial,openmp
-  warns '^mssim: .*alone/share/mssim'
+  warning '^mssim: .*alone/share/mssim' ends 4 bench --scene cloth2500 --backend serial,openmp
   ends 4 doctor
   is 'main job' missing
   says '^ok  *threads'

@@ -18,8 +18,7 @@ grep -q '^| .threads-mutex:each., \*\*measured\*\* | \*\*' one/table3.md || fail
 # What reads such rows.
 ends 0 "${bench[@]}" --rounds 1 --verified one --out two
 grep -q 'verified by an earlier process' two/timings.csv || fail "--verified: $(cat two/timings.csv)"
-ends 0 compare one one
-says 'serial:each'
+saying 'serial:each' ends 0 compare one one
 ends 0 report one --no-runs --out report.html
 grep '^{"name":"together-with-threads","outcome":"\(held\|not held\|undecided\)"' report.html >/dev/null ||
   fail "the report does not judge objects one after the other"

@@ -3,8 +3,6 @@
 set -euo pipefail
 . "$2/tests/support/command_line.sh"
 
-# bench STATUS ARGUMENTS...: mssim bench must exit with STATUS
-bench() { ends "$1" bench "${@:2}"; }
 # column FILE NAME BACKEND: of the rows of a backend, in one line
 column() { paste -d, <(column_of "$1" backend) <(column_of "$1" "$2") | sed -n "s/^$3,//p" | tr '\n' ' '; }
 # has FILE NAME BACKEND VALUE
@@ -12,7 +10,7 @@ has() { [ "$(column "$1" "$2" "$3")" = "$4 " ] || fail "$1: $2 of $3 is \"$(colu
 
 # A garment is dressed by each backend, verified and timed.
 jeans=(--scene jeans1k --backend "serial,openmp" --integrator semi-euler --threads 1)
-bench 0 "${jeans[@]}" --rounds 1 --out jeans
+ends 0 bench "${jeans[@]}" --rounds 1 --out jeans
 for backend in serial openmp; do
   for yes in verified settled largest_gap_mm_within deepest_node_mm_within deepest_face_mm_within elongation_99_within \
     elongation_999_within upper_edge_rise_mm_within crotch_rise_mm_within rows_astray_within side_distance_mm_within; do
@@ -36,15 +34,15 @@ has jeans/garment.csv dressing_iterations openmp "$(value iterations)"
 
 # --resume adds rounds and does not dress again; then nothing is left to do.
 dressed=$(column jeans/garment.csv dressing_s serial)$(column jeans/garment.csv dressing_s openmp)
-bench 0 "${jeans[@]}" --rounds 2 --out jeans --resume
+ends 0 bench "${jeans[@]}" --rounds 2 --out jeans --resume
 has jeans/timings.csv rounds serial 2
 [ "$(column jeans/garment.csv dressing_s serial)$(column jeans/garment.csv dressing_s openmp)" = "$dressed" ] || fail "--resume dresses again"
 before=$(cat jeans/garment.csv)
-bench 0 "${jeans[@]}" --rounds 2 --out jeans --resume
+ends 0 bench "${jeans[@]}" --rounds 2 --out jeans --resume
 [ "$(cat jeans/garment.csv)" = "$before" ] || fail "a finished folder is changed"
 
 # What cannot dress is a row that says why, and an error only where it was asked for.
-bench 0 --scene jeans1k --rounds 1 --format csv
+ends 0 bench --scene jeans1k --rounds 1 --format csv
 backends=$(backends_for cloth)
 others=$(comm -23 <(sort <<<"$backends") <(backends_for garment | sort))
 [ -n "$others" ] || fail "every backend dresses"
@@ -53,10 +51,10 @@ others=$(comm -23 <(sort <<<"$backends") <(backends_for garment | sort))
 [ "$(grep -Ec '^jeans1k,.*,('"${others//$'\n'/|}"'),.*,false,"?unsupported: .*garments' out)" -eq $((3 * $(wc -w <<<"$others"))) ] ||
   fail "backends that do not dress are not unsupported: $(cat out)"
 [ "$(grep -Ec '^jeans1k,.*,(midpoint|rk4),(serial|openmp),.*,false,"?unsupported: only semi-euler ' out)" -eq 4 ] || fail "four are not semi-euler: $(cat out)"
-bench 0 --scene jeans1k --backend openmp --rounds 1 --format github
+ends 0 bench --scene jeans1k --backend openmp --rounds 1 --format github
 grep -q '"jeans1k/openmp/semi-euler"' out || fail "github: $(cat out)"
-bench 3 --scene jeans1k --backend openmp,hybrid --rounds 1
-bench 3 --scene jeans1k --backend openmp --integrator rk4 --rounds 1 --format json
+ends 3 bench --scene jeans1k --backend openmp,hybrid --rounds 1
+ends 3 bench --scene jeans1k --backend openmp --integrator rk4 --rounds 1 --format json
 grep -q '"status": "unsupported: only semi-euler ' out || fail "rk4: $(cat out)"
 
 # Algorithm 1 as printed: four rows, each verified against itself and timed, whether it fits or not.
@@ -64,7 +62,7 @@ printed="algorithm1 algorithm1-simd algorithm1-threads algorithm1-threads-simd"
 "$mssim" list backends --format csv >out
 grep -q '^serial,cloth+bodies+garment,' out && grep -q '^hybrid,cloth+bodies,' out || fail "list backends: $(cat out)"
 for backend in $printed; do grep -q "^$backend,garment,,true," out || fail "list backends: $(cat out)"; done
-bench 0 --scene jeans1k --backend "serial,${printed// /,}" --integrator semi-euler --threads 2 --rounds 1 --out printed
+ends 0 bench --scene jeans1k --backend "serial,${printed// /,}" --integrator semi-euler --threads 2 --rounds 1 --out printed
 for backend in $printed; do
   has printed/timings.csv verified "$backend" true
   has printed/garment.csv status "$backend" ok
@@ -86,20 +84,20 @@ for claim in parallel-iterations simd-is-faster; do
   grep -Eo "\"name\": ?\"$claim\"[^}]*" printed.html >out || fail "the report has no claim $claim"
   ! grep -q 'not testable' out || fail "$claim is not judged: $(cat out)"
 done
-bench 3 --scene cloth2500 --backend serial,algorithm1 --integrator semi-euler --rounds 1 --out cloth
+ends 3 bench --scene cloth2500 --backend serial,algorithm1 --integrator semi-euler --rounds 1 --out cloth
 grep -q 'algorithm1.*unsupported: .*garments' cloth/timings.csv || fail "a cloth: $(cat cloth/timings.csv)"
 
 # What does not fit is no result.
 sed 's/"correction": "bounded"/"correction": "none"/; s/"bounded": {[^}]*}/"none": {}/; s/": 200,/": 60,/' \
   "$source/scenes/jeans1k.json" >slack.json
-bench 1 --scene slack.json --backend serial --integrator semi-euler --rounds 1 --out slack
+ends 1 bench --scene slack.json --backend serial --integrator semi-euler --rounds 1 --out slack
 grep -q 'failed: dressed, .*the 99th percentile of elongations is [0-9.]* %, beyond 6 %' slack/timings.csv || fail "slack: $(cat slack/timings.csv)"
 has slack/garment.csv ms_per_iteration serial ""
 has slack/garment.csv verified serial false
 head -n 1 slack/garment.csv | grep elongation_999_within >/dev/null || fail "the fit of what does not fit is not told"
 
 # Plans, budgets, and what does not go with a garment.
-bench 0 --suite garment --dry-run
+ends 0 bench --suite garment --dry-run
 [ "$(grep -c '^jeans[0-9]*k ' out)" -eq 6 ] || fail "the plan has not six jeans: $(cat out)"
 combinations() { awk -v scene="$1" '$1 == scene { print $4 }' out; }
 [ $(($(combinations jeans16k) - $(combinations jeans64k))) -eq "$(wc -w <<<"$printed")" ] ||
@@ -108,7 +106,7 @@ awk '/^about/ { exit !($2 > 20 && $2 < 600) }' out || fail "the suite is expecte
 expect 2 'time-budget is too short' bench --scene jeans1k --time-budget 0.1
 expect 2 '.--trace cannot be used with jeans1k, which is a garment: .*mssim run --trace' bench --scene jeans1k --trace --out traced
 [ ! -e traced ] || fail "a folder is made for what is refused"
-bench 0 --scene jeans1k --backend serial --integrator semi-euler --time-budget 20 --rounds 2 --format json
+ends 0 bench --scene jeans1k --backend serial --integrator semi-euler --time-budget 20 --rounds 2 --format json
 "$mssim" list scenes --format csv >out
 grep -q '^jeans1k,garment,[0-9]*,[0-9]*,,' out || fail "a garment has a published count"
 

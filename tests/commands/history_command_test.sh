@@ -4,42 +4,19 @@ set -euo pipefail
 . "$2/tests/support/command_line.sh"
 source_run=$2/results/table1/zen5
 
-# make FOLDER BACKEND=MS...: a result folder in which only the times are made up
-make() {
-  local folder=$1 pair
-  shift
-  rm -rf "$folder"
-  mkdir "$folder"
-  cp "$source_run/provenance.json" "$folder"
-  head -n 1 "$source_run/timings.csv" >"$folder/timings.csv"
-  head -n 1 "$source_run/samples.csv" >"$folder/samples.csv"
-  for pair in "$@"; do
-    awk -F, -v OFS=, -v b="${pair%%=*}" -v ms="${pair#*=}" '
-      NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next }
-      $c["scene"] == "cloth2500" && $c["backend"] == b && $c["integrator"] == "semi-euler" {
-        $c["ms_per_step"] = ms; $c["ms_per_step_low"] = 0.99 * ms; $c["ms_per_step_high"] = 1.01 * ms; print }' \
-      "$source_run/timings.csv" >>"$folder/timings.csv"
-    awk -v b="${pair%%=*}" -v ms="${pair#*=}" \
-      'BEGIN { for (i = 1; i <= 15; ++i) print "cloth2500," b ",semi-euler," i ",10," ms ","  }' >>"$folder/samples.csv"
-  done
-}
-
 # Twelve commits, and five that are 8 % slower with openmp.
 for number in {10..26}; do
   factor=1
   [ "$number" -lt 22 ] || factor=1.08
-  make run "serial=$(awk -v i="$number" 'BEGIN { print 1 + 0.002 * (i % 4) }')" \
+  make_run run "serial=$(awk -v i="$number" 'BEGIN { print 1 + 0.002 * (i % 4) }')" \
     "openmp=$(awk -v i="$number" -v f="$factor" 'BEGIN { print 0.1 * f * (1 + 0.001 * (i % 3)) }')"
-  ends 0 history add run --file h.jsonl --commit "commit-$number"
-  warns "h.jsonl has $((number - 9)) entr"
+  warning "h.jsonl has $((number - 9)) entr" ends 0 history add run --file h.jsonl --commit "commit-$number"
 done
 [ "$(wc -l <h.jsonl)" -eq 17 ] || fail "the file has not a line per folder: $(cat h.jsonl)"
-ends 1 history show --file h.jsonl
-says 'openmp .* cpu AVX3  *2500 .* commit-22 .* slower'
+saying 'openmp .* cpu AVX3  *2500 .* commit-22 .* slower' ends 1 history show --file h.jsonl
 warns '^mssim: cloth2500, openmp, semi-euler: slower since commit commit-22, 1\.0[78]'
 [ "$(grep -c . err)" -eq 1 ] || fail "more than the one slowdown is told: $(cat err)"
-ends 0 history show --file h.jsonl --threshold 10
-says 'within 10 %'
+saying 'within 10 %' ends 0 history show --file h.jsonl --threshold 10
 ends 0 history show --file h.jsonl --last 4
 ends 1 history show --file h.jsonl --last 5 --format json
 /usr/bin/python3 - out <<'END' || fail "the JSON is not what it should be: $(cat out)"
@@ -62,29 +39,26 @@ grep -q "\"commit\":\"$(grep -o '"commit": "[0-9a-f]*' run/provenance.json | cut
 
 # Another machine is another series: its times, ten times as long, change nothing.
 cp h.jsonl mixed.jsonl
-make other serial=10 openmp=1
+make_run other serial=10 openmp=1
 sed -i 's/"model": "[^"]*"/"model": "Another CPU"/' other/provenance.json
 ends 0 history add other --file mixed.jsonl --commit commit-26
-ends 1 history show --file mixed.jsonl
-says '^Another CPU.*: 1 commit$'
+saying '^Another CPU.*: 1 commit$' ends 1 history show --file mixed.jsonl
 says '^[^ ].*: 17 commits$'
 [ "$(grep -c . err)" -eq 1 ] || fail "machines are mixed: $(cat err)"
 
 # A row that vanishes is an error, named; and so is one that is no longer verified.
 head -n 12 h.jsonl >gone.jsonl
-make run serial=1
+make_run run serial=1
 ends 0 history add run --file gone.jsonl --commit without
-ends 1 history show --file gone.jsonl
-warns 'cloth2500, openmp, semi-euler.*without'
+warning 'cloth2500, openmp, semi-euler.*without' ends 1 history show --file gone.jsonl
 says 'openmp .* without .* vanished'
-make run serial=1 openmp=0.1
+make_run run serial=1 openmp=0.1
 sed -i '/,openmp,/s/,true,ok,/,false,failed: step 7 is not finite,/' run/timings.csv
 ends 0 history add run --file gone.jsonl --commit without --replace
-ends 1 history show --file gone.jsonl
-warns 'cloth2500, openmp, semi-euler.*without'
+warning 'cloth2500, openmp, semi-euler.*without' ends 1 history show --file gone.jsonl
 ends 0 history add other --file gone.jsonl --commit later
 ends 1 history show --file gone.jsonl --last 1
-make run serial=1 openmp=0.1
+make_run run serial=1 openmp=0.1
 ends 0 history add run --file gone.jsonl --commit back
 ends 0 history show --file gone.jsonl
 
@@ -97,7 +71,7 @@ ends 0 report "$source_run" --no-runs --out plain.html
 ! grep -q 'id="history"' plain.html || fail "a report without a history has its section"
 
 # A machine without any verified row has no lines, and takes no column from the others.
-make run serial=1
+make_run run serial=1
 sed -i 's/,true,ok,/,false,ok,/' run/timings.csv
 ends 0 history add run --file unverified.jsonl --commit first
 ends 0 history show --file unverified.jsonl --format csv
@@ -105,8 +79,7 @@ says '^machine,scene,backend,integrator,device,nodes,since,commits,ms,ratio,low,
 ends 0 history add other --file unverified.jsonl --commit first
 ends 0 history show --file unverified.jsonl --format csv
 says '^machine,scene,backend,integrator,device,nodes,since,commits,ms,ratio,low,high,verdict$'
-ends 0 history show --file unverified.jsonl --format json
-says '"scene": "cloth2500"'
+saying '"scene": "cloth2500"' ends 0 history show --file unverified.jsonl --format json
 
 # Bad files and bad usage.
 cat h.jsonl h.jsonl >bad.jsonl

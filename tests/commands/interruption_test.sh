@@ -33,8 +33,7 @@ is_ended 143 TERM
 
 # SIGINT: what is measured stands in whole files and on stdout, and the exit status says it.
 begins "${bench[@]}" --out int
-soon 60 test -e int/timings.csv || fail "nothing is measured"
-is_ended 130 INT
+is_ended 130 INT 60 test -e int/timings.csv
 grep -q 'results so far are in int; --resume continues' err || fail "SIGINT: $(cat err)"
 grep -q '^cloth2500: ' out && grep -q '^  [a-z0-9-]*  *serial ' out || fail "after SIGINT nothing is printed"
 whole int
@@ -60,8 +59,7 @@ sed -n '/^cloth4900: /,$p' out | grep -q ' openmp ' || fail "--resume of a finis
 # Results are neither replaced nor mixed unawares.
 expect 2 'int already holds results: give another --out, --resume .*or --overwrite' "${bench[@]}" --out int
 cmp -s kept int/samples.csv || fail "a refused bench has changed the folder"
-ends 2 "${scenes[@]}" --backend serial --rounds 6 --out int --resume
-warns 'int has other backends or integrators of cloth2500'
+warning 'int has other backends or integrators of cloth2500' ends 2 "${scenes[@]}" --backend serial --rounds 6 --out int --resume
 # Also before a scene that comes first is measured.
 ends 2 bench --scene cloth10k,cloth2500,cloth4900 --integrator semi-euler --threads 1 --backend serial --rounds 1 --out int --resume
 warns 'int has other backends or integrators of cloth2500'
@@ -91,14 +89,12 @@ expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
 cp -r int before
 for signal in INT:130 KILL:137; do
   begins bench --scene cloth350k --backend serial --out int --overwrite
-  soon 60 grep -q 'cloth350k (1 of 1)' err || fail "no scene is begun"
-  is_ended "${signal#*:}" "${signal%:*}"
+  is_ended "${signal#*:}" "${signal%:*}" 60 grep -q 'cloth350k (1 of 1)' err
   [ "$signal" = KILL:137 ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
   diff -r before int || fail "--overwrite that is ended by SIG$signal before it has a row changes what is there"
 done
 begins bench --scene cloth350k --backend serial --out new --overwrite
-soon 60 grep -q 'cloth350k (1 of 1)' err || fail "no scene is begun"
-is_ended 130 INT
+is_ended 130 INT 60 grep -q 'cloth350k (1 of 1)' err
 grep -q 'nothing was measured yet; --resume continues' err || fail "--overwrite of a new folder: $(cat err)"
 ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite
 [ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"
@@ -110,8 +106,7 @@ expect 2 'tables already holds results' bench --scene cloth2500 --out tables
 expect 2 'cannot continue in tables: it has results of box-large, box-medium, .*, torus-small, which this command leaves out' bench --scene cloth2500 --out tables --resume
 cp -r tables before-tables
 begins bench --suite tables --scene cloth350k --backend serial --out tables --overwrite
-soon 60 grep -q '(1 of ' err || fail "no scene is begun"
-is_ended 130 INT
+is_ended 130 INT 60 grep -q '(1 of ' err
 diff -r before-tables tables || fail "--overwrite of a table that is ended before it has a row changes what is there"
 ends 0 bench --scene jeans1k --backend openmp --rounds 1 --out tables --overwrite
 [ ! -e tables/table2.md ] && [ -s tables/figure6.md ] || fail "--overwrite leaves $(ls tables)"
@@ -160,16 +155,14 @@ whole full
 
 # SIGINT while a simulation is traced: the frames so far are in whole files.
 begins run --scene cloth2500 --threads 1 --duration 100 --trace fall.h5 --energy-curve fall.csv
-soon 60 test -e fall.h5.part || fail "no trace is begun"
-is_ended 130 INT
+is_ended 130 INT 60 test -e fall.h5.part
 [ -s fall.h5 ] && [ ! -e fall.h5.part ] || fail "SIGINT loses a trace"
 [ "$(wc -l <fall.csv)" -ge 2 ] || fail "SIGINT loses the energies"
 h5dump -d /particles/cloth/position/step fall.h5 >frames || fail "the trace cannot be read"
 
 # The same while a garment is dressed.
 begins run --scene jeans16k --backend serial --trace dress.h5 --energy-curve dress.csv
-soon 60 test -e dress.h5.part || fail "no trace is begun"
-is_ended 130 INT
+is_ended 130 INT 60 test -e dress.h5.part
 [ -s dress.h5 ] && [ -s dress.xdmf ] && [ ! -e dress.h5.part ] || fail "SIGINT loses the trace of a dressing"
 h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"
 frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)
@@ -179,6 +172,5 @@ frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)
 begins run --scene cloth40k --backend serial --duration 100 --fps 1 --trace twice.h5
 soon 60 test -e twice.h5.part || fail "no trace is begun"
 kill -INT "$process"
-soon 10 grep -q 'a second signal stops at once' err || fail "SIGINT: $(cat err)"
-is_ended 143 TERM
+is_ended 143 TERM 10 grep -q 'a second signal stops at once' err
 [ "$(grep -c 'a second signal stops at once' err)" -eq 1 ] || fail "a second signal is only noted: $(cat err)"

@@ -56,13 +56,11 @@ PYTHON
 # of_listing FILE MEASURE: its value in a CSV listing
 of_listing() { awk -F, -v name="$2" '$1 == name { print $2 }' "$1"; }
 near() { awk -v a="$1" -v b="$2" -v d="$3" 'BEGIN { exit !(a - b <= d && b - a <= d) }'; }
-# measure STATUS ARGUMENTS...: mssim measure must exit with STATUS
-measure() { ends "$1" measure "${@:2}"; }
 
 # What is found, in another unit, with z up, facing -y; and in the formats.
 person 1 +x+y+z >"$work/person.obj"
 person 0.001 +x-z+y >"$work/scan.obj"
-measure 0 "$work/scan.obj" --format csv
+ends 0 measure "$work/scan.obj" --format csv
 ! grep -q 'not certain' "$work/err" || fail "a person is not certain: $(cat "$work/err")"
 warns 'garments ignore all but trunk and legs'
 [ "$(of_listing "$work/out" unit) $(of_listing "$work/out" up) $(of_listing "$work/out" facing)" = "0.001 z -y" ] ||
@@ -72,43 +70,41 @@ for measure in height:1.68:.001 waist_height:1.04:.02 waist_girth:.74:.02 hip_he
   IFS=: read -r name expected within <<<"$measure"
   near "$(of_listing "$work/out" "$name")" "$expected" "$within" || fail "$name: $(cat "$work/out")"
 done
-measure 0 "$work/scan.obj" --format json
+ends 0 measure "$work/scan.obj" --format json
 /usr/bin/python3 -c 'import json, sys; rows = json.load(sys.stdin); assert any(r["measure"] == "hip_girth" and r["unit"] == "m" for r in rows)' \
   <"$work/out" || fail "the JSON of a body"
-measure 0 jeans4k
+ends 0 measure jeans4k
 grep -q '^hip_girth  *0.98 ' "$work/out" || fail "the mannequin of a scene: $(cat "$work/out")"
 
 person 0.1 +x+y+z >"$work/makehuman.obj"
-measure 0 "$work/makehuman.obj" --format csv
+ends 0 measure "$work/makehuman.obj" --format csv
 [ "$(of_listing "$work/out" unit)" = 0.1 ] || fail "decimetres: $(cat "$work/out")"
 ! grep -q 'not certain' "$work/err" || fail "decimetres are not certain: $(cat "$work/err")"
 
 # What is not found is said, and why.
 person 1 +x+y+z hip >"$work/hip.obj"
-measure 0 "$work/hip.obj" --unit m
+ends 0 measure "$work/hip.obj" --unit m
 grep -q '^waist_height .*estimated by proportion$' "$work/out" || fail "the waist of a body without: $(cat "$work/out")"
 grep -q '^waist_girth .*the body ends below that height$' "$work/out" || fail "its girth: $(cat "$work/out")"
 person 1 +x+y+z thighs >"$work/thighs.obj"
-measure 0 "$work/thighs.obj" --format csv
+ends 0 measure "$work/thighs.obj" --format csv
 near "$(of_listing "$work/out" crotch_height)" .62 .001 || fail "thighs that touch: $(cat "$work/out")"
 warns 'not certain of crotch_height: it is 0.37 of the height, .* thighs apart'
 
 # What is given beats what is found.
-measure 0 "$work/scan.obj" --unit mm --up z --facing -y --format csv
+ends 0 measure "$work/scan.obj" --unit mm --up z --facing -y --format csv
 [ "$(of_listing "$work/out" facing)" = -y ] || fail "a facing that is given"
 for value in unit up facing; do grep -q "^$value,.*given" "$work/out" || fail "$value is not called given: $(cat "$work/out")"; done
-measure 0 "$work/person.obj" --facing=-z --format csv
+ends 0 measure "$work/person.obj" --facing=-z --format csv
 [ "$(of_listing "$work/out" facing)" = -z ] || fail "a facing that is given wrongly"
-measure 0 "$work/person.obj" --unit 0.5 --format csv
+ends 0 measure "$work/person.obj" --unit 0.5 --format csv
 [ "$(of_listing "$work/out" unit)" = 0.5 ] || fail "a unit in metres"
 warns 'not certain of unit: the body is 0.84 m high'
 
 # The scene that is written names the body from where it stands, is valid, and dresses it.
 mkdir "$work/scenes"
-measure 0 "$work/scan.obj" --scene "$work/scenes/my own.json"
-warns "mssim run --scene '$work/scenes/my own.json' dresses it"
-measure 0 "$work/scan.obj" --scene "$work/scenes/my.json"
-warns "wrote $work/scenes/my.json; mssim run --scene"
+warning "mssim run --scene '$work/scenes/my own.json' dresses it" ends 0 measure "$work/scan.obj" --scene "$work/scenes/my own.json"
+warning "wrote $work/scenes/my.json; mssim run --scene" ends 0 measure "$work/scan.obj" --scene "$work/scenes/my.json"
 grep -q '"file": "../scan.obj"' "$work/scenes/my.json" || fail "the path of the body: $(cat "$work/scenes/my.json")"
 /usr/bin/python3 -c 'import json, jsonschema, sys
 jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(json.load(open(sys.argv[2])))' \
@@ -117,18 +113,17 @@ jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(json.load(open
   fail "the body is not dressed: $? $(cat "$work/err" "$work/out")"
 
 ln -s ../scan.obj "$work/scenes/today.obj"
-measure 0 "$work/scenes/today.obj" --scene "$work/scenes/today.json"
+ends 0 measure "$work/scenes/today.obj" --scene "$work/scenes/today.json"
 grep -q '"file": "today.obj"' "$work/scenes/today.json" || fail "a link to a body: $(cat "$work/scenes/today.json")"
 
 # Nothing is replaced unasked, and nothing is written where something is wrong.
 echo mine >"$work/mine.json"
 expect 2 'already exists: give another --scene, or --overwrite' measure "$work/scan.obj" --scene "$work/mine.json"
 [ "$(cat "$work/mine.json")" = mine ] || fail "a scene was replaced unasked"
-measure 0 "$work/scan.obj" --scene "$work/mine.json" --overwrite
+ends 0 measure "$work/scan.obj" --scene "$work/mine.json" --overwrite
 grep -q surface_file "$work/mine.json" || fail "--overwrite does not replace"
 expect 2 'give a file that ends in .json' measure "$work/scan.obj" --scene "$work/scan.obj" --overwrite
-measure 4 "$work/scan.obj" --scene "$work/none/my.json"
-warns 'cannot write'
+warning 'cannot write' ends 4 measure "$work/scan.obj" --scene "$work/none/my.json"
 expect 2 'b.obj: there is no such file' measure "$work/b.obj"
 expect 2 'no scene is named' measure jeans4
 echo binary >"$work/t.h5"
@@ -138,8 +133,7 @@ expect 2 'leave out --unit' measure jeans4k --unit mm
 expect 2 '--unit is "mile": give m, dm, cm, mm, inch, foot, or the metres' measure "$work/scan.obj" --unit mile
 expect 2 'cannot look along z' measure "$work/scan.obj" --up z --facing +z
 # The axes of a remedy are the file's, and the file is named once.
-measure 2 "$work/scan.obj" --facing +x
-warns 'scan.obj cannot be measured: .*upright in z and faces +x: .*--up and --facing'
+warning 'scan.obj cannot be measured: .*upright in z and faces +x: .*--up and --facing' ends 2 measure "$work/scan.obj" --facing +x
 echo 'v 0 0 zero' >"$work/word.obj"
 for name in none word; do
   ends 2 measure "$work/$name.obj"
@@ -149,14 +143,13 @@ done
 # Openings: a neck is closed, a waist is not.
 person 0.01 +x+y+z neck >"$work/neck.obj"
 person 0.01 +x+y+z waist >"$work/waist.obj"
-measure 2 "$work/neck.obj" --scene "$work/neck.json"
-warns 'it has 1 opening: close it where the surface was made, or give --close-holes'
+warning 'it has 1 opening: close it where the surface was made, or give --close-holes' ends 2 measure "$work/neck.obj" --scene "$work/neck.json"
 grep -q '^opening_1 .*24 edges around (.*, open' "$work/out" || fail "the opening: $(cat "$work/out")"
 [ ! -e "$work/neck.json" ] || fail "a scene of an open body is written"
-measure 0 "$work/neck.obj" --close-holes --scene "$work/neck.json"
+ends 0 measure "$work/neck.obj" --close-holes --scene "$work/neck.json"
 grep -q '^opening_1 .*24 edges around (.*, closed' "$work/out" || fail "the closed opening: $(cat "$work/out")"
 grep -q '"close_holes_m": 0.2' "$work/neck.json" || fail "the scene does not close the hole: $(cat "$work/neck.json")"
-measure 2 "$work/waist.obj" --close-holes --unit cm
+ends 2 measure "$work/waist.obj" --close-holes --unit cm
 warns 'the opening of 24 edges around (.* is 0.2[0-9]* m across, and at most 0.2 m are closed'
 
 # Triangles of an STL file whose corners differ in their last digits join; farther apart they are no openings to close.
@@ -180,18 +173,16 @@ print("endsolid person")
 PYTHON
 }
 loose "$work/person.obj" 1e-6 >"$work/loose.stl"
-measure 0 "$work/person.obj" --format csv
+ends 0 measure "$work/person.obj" --format csv
 cp "$work/out" "$work/whole"
-measure 0 "$work/loose.stl" --format csv --scene "$work/scenes/loose.json"
-warns 'loose.stl: [0-9]* points were merged with others'
+warning 'loose.stl: [0-9]* points were merged with others' ends 0 measure "$work/loose.stl" --format csv --scene "$work/scenes/loose.json"
 for measure in waist_girth hip_girth crotch_height knee_girth; do
   near "$(of_listing "$work/out" "$measure")" "$(of_listing "$work/whole" "$measure")" .0002 || fail "$measure of loose triangles: $(cat "$work/out")"
 done
 loose "$work/person.obj" 1e-4 >"$work/apart.stl"
 for close in '' --close-holes; do
   # shellcheck disable=SC2086
-  measure 2 "$work/apart.stl" $close
-  warns 'its triangles do not join: '
+  warning 'its triangles do not join: ' ends 2 measure "$work/apart.stl" $close
   ! grep -q 'close-holes' "$work/err" || fail "closing is recommended: $(cat "$work/err")"
 done
 

@@ -139,8 +139,7 @@ ends 0 list backends --backend-folder backends --format csv
 grep -q '^here,bodies,,true,a list of springs,$' "$work/out" && grep -q '^mine,bodies,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
 XDG_CONFIG_HOME=config HOME=$work ends 0 list backends --format csv
 ! grep '^mine,' "$work/out" || fail "a relative XDG_CONFIG_HOME counts"
-ends 3 "${bench[@]}" --backend mine
-warns 'mine, semi-euler: unsupported: it steps bodies only$'
+warning 'mine, semi-euler: unsupported: it steps bodies only$' ends 3 "${bench[@]}" --backend mine
 cp "$2/scenes/cloth2500.json" small.json
 printf '{"command": ["./spring_list"]}' >beside.json
 ends 0 bench --scene ./small.json --backend beside --integrator semi-euler --rounds 2
@@ -155,8 +154,7 @@ done
 # One that cannot be used costs no other its place in a list, nor in a message.
 cp wrong.json odd/broken.json
 cp backends/here.json odd
-ends 0 list backends --backend-folder odd
-says '^here '
+saying '^here ' ends 0 list backends --backend-folder odd
 for reason in 'broken.json: /comand is not a known key' 'openmp:1.json: in the name of a backend' 'x,y.json: in the name of a backend'; do
   warns "a backend is not shown: .*$reason"
 done

@@ -1,4 +1,3 @@
-
 #include "commands/arguments/arguments.h"
 #include "commands/arguments/program_parser.h"
 #include "tests/support/testing.h"

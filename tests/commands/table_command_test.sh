@@ -236,12 +236,10 @@ grep -F 'cloth4900' "$work/odd-paper/times.tex" | grep 'openmp & rk4' | grep -q 
 typeset "$work/odd-paper"
 
 # What is printed.
-ends 0 table "$results/garment/zen4"
-says '^# Figure 6 of Vassilev'
+saying '^# Figure 6 of Vassilev' ends 0 table "$results/garment/zen4"
 ms=$(awk -F, '$1 == "jeans1k" && $5 == "serial" { printf "%.3g", $11 }' "$results/garment/zen4/timings.csv")
 says "^| jeans1k | $ms | serial |"
-ends 0 table "$results/garment/zen4" --format latex
-says '\\label{tab:figure6-1}'
+saying '\\label{tab:figure6-1}' ends 0 table "$results/garment/zen4" --format latex
 [ "$(grep -c 'caption.*rounds' "$work/out")" -eq "$(grep -c caption "$work/out")" ] || fail "a caption has no rounds"
 
 # Bad input.
@@ -254,16 +252,13 @@ expect 2 '--format latex' table "$results/table1/zen4" --out "$work/never"
 expect 2 '--format' table "$results/table1/zen4" --format word
 cp -r "$results/table1/zen4" "$work/unknown"
 rm "$work/unknown/provenance.json"
-ends 2 table "$work/unknown" --format latex --out "$work/never"
-warns 'unknown has no provenance.json'
+warning 'unknown has no provenance.json' ends 2 table "$work/unknown" --format latex --out "$work/never"
 cp "$results/table1/zen4/provenance.json" "$work/unknown"
 head -n 1 "$results/table1/zen4/timings.csv" >"$work/unknown/timings.csv"
-ends 2 table "$work/unknown" --format latex --out "$work/never"
-warns 'unknown has no row .*give'
+warning 'unknown has no row .*give' ends 2 table "$work/unknown" --format latex --out "$work/never"
 [ ! -e "$work/never" ] || fail "something was written"
 : >"$work/file"
-ends 4 table "$results/table1/zen4" --format latex --out "$work/file/paper"
-warns 'file'
+warning 'file' ends 4 table "$results/table1/zen4" --format latex --out "$work/file/paper"
 echo mine >"$work/table1/notes.tex"
 ends 0 table "$results/table1/zen4" --format latex --out "$work/table1" --overwrite
 [ "$(cat "$work/table1/notes.tex")" = mine ] || fail "--overwrite removes a file of the user's"

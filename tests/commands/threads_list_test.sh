@@ -17,8 +17,7 @@ says 'openmp:1 .*✓\|openmp:1 .*yes'
 # Goes on with the same list in another order only, and one number makes no table.
 ends 0 "${bench[@]}" --threads 2,1 --rounds 3 --resume --out list
 [ "$(column_of list/timings.csv rounds | sort -u)" = 3 ] || fail "after --resume: $(cat list/timings.csv)"
-ends 2 "${bench[@]}" --threads 2 --rounds 3 --resume --out list
-warns 'list has other backends or integrators'
+warning 'list has other backends or integrators' ends 2 "${bench[@]}" --threads 2 --rounds 3 --resume --out list
 ends 0 "${bench[@]}" --threads 2 --rounds 1 --overwrite --out list
 [ ! -e list/threads.csv ] || fail "there is a table of one number of threads"
 ends 0 compare list list

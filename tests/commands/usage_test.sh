@@ -11,8 +11,7 @@ page() {
 }
 
 # Commands.
-ends 2
-warns '^Usage: mssim COMMAND'
+warning '^Usage: mssim COMMAND' ends 2
 [ ! -s out ] || fail "mssim alone writes to stdout: $(cat out)"
 mv err alone
 page --help
@@ -54,8 +53,7 @@ expect 2 '^mssim: --integrator: "" is empty: give a value' bench --scene cloth25
 expect 2 '^mssim: --threads: "" is not a whole number' run --scene cloth2500 --threads= --losses
 expect 2 'mssim bench has no option "--fsp" (did you mean --fps?)' bench --scene cloth2500 --fsp= --dry-run
 expect 2 'there is no folder --out=' report -- --out=
-ends 0 help report
-says '^Usage: mssim report DIR\.\.\. \['
+saying '^Usage: mssim report DIR\.\.\. \[' ends 0 help report
 expect 2 '^mssim: --scene is given 2 times: give it once;' run --scene cloth2500 --scene cloth4900
 expect 2 '^mssim: --dry-run takes no value: leave it out;' bench --scene cloth2500 --dry-run=perhaps
 expect 2 'mssim bench has no option "--output" (did you mean --out?)' bench --scene cloth2500 --output x

@@ -3,10 +3,8 @@
 # and compare read what it saves, and refuse what is damaged.
 # $1: mssim, $2: the source folder
 set -euo pipefail
-mssim=$1
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-cd "$work"
 
 expect 2 --serve web
 expect 2 html web --out page.txt
@@ -67,8 +65,7 @@ ends 0 report result.json lost.json failed.json without.json "$2/results/table1/
 grep -q 'webgpu, ' report.html || fail "the report does not name the device"
 grep -q 'result.json' report.html || fail "the report does not name the file"
 grep -q '<td>wasm-threads<' report.html || fail "the report does not name the threads of the module"
-ends 0 compare result.json result.json
-says javascript
+saying javascript ends 0 compare result.json result.json
 says wasm-threads
 
 # damaged PATTERN EDIT: a result changed by a statement of Python on its document d is refused

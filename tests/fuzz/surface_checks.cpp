@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <tuple>
 #include <vector>
 
@@ -11,22 +10,10 @@
 #include "garment/body/stance.h"
 #include "geometry/surface.h"
 #include "mesh/surface_file.h"
+#include "tests/support/obj_text.h"
 #include "text/error.h"
-#include "text/text.h"
 
 namespace mssim {
-namespace {
-
-std::string obj_text(const Surface& surface) {
-  std::string text;
-  for (const Vec3d& point : surface.points)
-    text += "v " + decimal(point.x) + ' ' + decimal(point.y) + ' ' + decimal(point.z) + '\n';
-  for (const auto& [a, b, c] : surface.triangles)
-    text += "f " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + ' ' + std::to_string(c + 1) + '\n';
-  return text;
-}
-
-}  // namespace
 
 void check_surface(const Surface& surface) {
   require(!surface.triangles.empty(), "a surface has triangles");
@@ -45,7 +32,7 @@ void check_surface(const Surface& surface) {
   std::sort(places.begin(), places.end());
   require(std::adjacent_find(places.begin(), places.end()) == places.end(), "points stand apart");
 
-  const Surface again = parse_obj("again.obj", obj_text(surface));
+  const Surface again = parse_obj("again.obj", obj_text(surface, 17));
   const auto corner = [](const Surface& of, std::size_t t, std::size_t i) {
     return of.points[of.triangles[t][i]];
   };

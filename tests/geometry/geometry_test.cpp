@@ -3,7 +3,6 @@
 #include "geometry/depth_raster.h"
 #include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

@@ -420,11 +420,7 @@ TEST(StableStep, EndsInAHurryWithABracket) {
 
 /// A cloth without pins that hangs a row above the floor, or high above it.
 StepLimit limit_of_backward_euler(double ceiling_m) {
-  SceneSpec spec = cloth_spec(10, 10);
-  auto& cloth = std::get<ClothSpec>(spec.content);
-  cloth.pins.reset();
-  cloth.ceiling_height_m = ceiling_m;
-  const System system = build_system(spec);
+  const System system = cloth_system(10, 10, ceiling_m, {});
   const Spectrum spectrum = spectrum_at(system, system.start);
   const LimitRequest request{.system = &system,
                              .backends = {find_backend("serial")},

@@ -1,5 +1,3 @@
-
-
 #include "laws/host_laws.h"
 #include "tests/support/testing.h"
 

@@ -1,5 +1,3 @@
-
-
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
 #include "output/tables/suite_tables.h"
@@ -62,72 +60,54 @@ struct BrokenFile {
   const char* about;  ///< in it
 };
 
-void PrintTo(const BrokenFile& file, std::ostream* out) { *out << file.about; }
-
-class BrokenTetgenFile : public testing::TestWithParam<BrokenFile> {};
-
-TEST_P(BrokenTetgenFile, IsRefusedWithPlaceAndValue) {
-  const BrokenFile& file = GetParam();
-  const std::string message = input_error_of([&] {
-    parse(file.nodes ? file.nodes : good_nodes, file.tetrahedra ? file.tetrahedra : good_tetrahedra);
-  });
-  EXPECT_THAT(message, AllOf(StartsWith(file.begin), HasSubstr(file.about)));
-  EXPECT_EQ(message.find('\n'), std::string::npos);
-}
-
 #define FOUR_NODES "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n"
 #define FIVE_NODES "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n"
 
-INSTANTIATE_TEST_SUITE_P(
-    Nodes, BrokenTetgenFile,
-    testing::Values(
-        BrokenFile{"", nullptr, "a.node, line ", "the file ends before the number of nodes"},
-        BrokenFile{"# only this\n", nullptr, "a.node, line 1: ", "truncated"},
-        BrokenFile{"five 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is \"five\""},
-        BrokenFile{"\x01\x7f\xff\n", nullptr, "a.node, line 1: ", "is \"\\u0001\\u007f\xef\xbf\xbd\""},
-        BrokenFile{"0 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is 0"},
-        BrokenFile{"99999999999999999999 3 0 0\n", nullptr, "a.node, line 1: ", "99999999999999999999"},
-        BrokenFile{"9000000000000000000 3 0 0\n0 0 0 0\n", nullptr,
-                   "a.node, line 1: ", "more than a file of 34 bytes"},
-        BrokenFile{"1 2 0 0\n", nullptr, "a.node, line 1: ", "the dimension is 2"},
-        BrokenFile{"1 3 -1 0\n", nullptr, "a.node, line 1: ", "attributes is -1"},
-        // Found by fuzzing: such a number overflowed when the others were added to it.
-        BrokenFile{"1 3 9223372036854775807 0\n", nullptr,
-                   "a.node, line 1: ", "attributes is 9223372036854775807; give one from 0 to 1000"},
-        BrokenFile{"1 3 0 1001\n", nullptr, "a.node, line 1: ", "boundary markers is 1001"},
-        BrokenFile{FOUR_NODES, nullptr, "a.node, line 4: ", "the file ends before node 4 of 4"},
-        BrokenFile{FOUR_NODES "3 0 0", nullptr, "a.node, line 5: ", "there are 3 numbers"},
-        BrokenFile{FOUR_NODES "3 0 0 0 0", nullptr, "a.node, line 5: ", "there are 5 numbers"},
-        BrokenFile{FOUR_NODES "3 0 0 x", nullptr, "a.node, line 5: ", "z is \"x\""},
-        BrokenFile{FOUR_NODES "3 0 nan 1", nullptr, "a.node, line 5: ", "y is \"nan\""},
-        BrokenFile{FOUR_NODES "3 -2e9 0 1", nullptr,
-                   "a.node, line 5: ", "x is \"-2e9\"; give a number from -1e9 to 1e9"},
-        BrokenFile{FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 is where node 3 is expected"},
-        BrokenFile{FOUR_NODES "3 0 0 1\n4 1 1 1", nullptr, "a.node, line 6: ", "continues after the 4 nodes"},
-        BrokenFile{"1 3 0 0\n7 0 0 0\n", nullptr, "a.node, line 2: ", "the first node has the number 7"},
-        BrokenFile{FIVE_NODES "4 0 0 1\n", nullptr, "a.node, line 6: ", "another node is at (0, 0, 1)"},
-        BrokenFile{nullptr, "1 4 0\n0 0 1 2 3\n", "a.node, line 6: ", "no tetrahedron has this node"}));
+const BrokenFile broken_files[]{
+    {"", nullptr, "a.node, line ", "the file ends before the number of nodes"},
+    {"# only this\n", nullptr, "a.node, line 1: ", "truncated"},
+    {"five 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is \"five\""},
+    {"\x01\x7f\xff\n", nullptr, "a.node, line 1: ", "is \"\\u0001\\u007f\xef\xbf\xbd\""},
+    {"0 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is 0"},
+    {"99999999999999999999 3 0 0\n", nullptr, "a.node, line 1: ", "99999999999999999999"},
+    {"9000000000000000000 3 0 0\n0 0 0 0\n", nullptr, "a.node, line 1: ", "more than a file of 34 bytes"},
+    {"1 2 0 0\n", nullptr, "a.node, line 1: ", "the dimension is 2"},
+    {"1 3 -1 0\n", nullptr, "a.node, line 1: ", "attributes is -1"},
+    // Found by fuzzing: such a number overflowed when the others were added to it.
+    {"1 3 9223372036854775807 0\n", nullptr,
+     "a.node, line 1: ", "attributes is 9223372036854775807; give one from 0 to 1000"},
+    {"1 3 0 1001\n", nullptr, "a.node, line 1: ", "boundary markers is 1001"},
+    {FOUR_NODES, nullptr, "a.node, line 4: ", "the file ends before node 4 of 4"},
+    {FOUR_NODES "3 0 0", nullptr, "a.node, line 5: ", "there are 3 numbers"},
+    {FOUR_NODES "3 0 0 0 0", nullptr, "a.node, line 5: ", "there are 5 numbers"},
+    {FOUR_NODES "3 0 0 x", nullptr, "a.node, line 5: ", "z is \"x\""},
+    {FOUR_NODES "3 0 nan 1", nullptr, "a.node, line 5: ", "y is \"nan\""},
+    {FOUR_NODES "3 -2e9 0 1", nullptr, "a.node, line 5: ", "x is \"-2e9\"; give a number from -1e9 to 1e9"},
+    {FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 is where node 3 is expected"},
+    {FOUR_NODES "3 0 0 1\n4 1 1 1", nullptr, "a.node, line 6: ", "continues after the 4 nodes"},
+    {"1 3 0 0\n7 0 0 0\n", nullptr, "a.node, line 2: ", "the first node has the number 7"},
+    {FIVE_NODES "4 0 0 1\n", nullptr, "a.node, line 6: ", "another node is at (0, 0, 1)"},
+    {nullptr, "1 4 0\n0 0 1 2 3\n", "a.node, line 6: ", "no tetrahedron has this node"},
+    {nullptr, "", "a.ele, line ", "the file ends before the number of tetrahedra"},
+    {nullptr, "0 4 0\n", "a.ele, line 1: ", "the number of tetrahedra is 0"},
+    {nullptr, "4000000000 4 0\n0 0 1 2 3\n", "a.ele, line 1: ", "more than a file of 25 bytes"},
+    {nullptr, "2 10 0\n", "a.ele, line 1: ", "give linear tetrahedra"},
+    {nullptr, "2 4 0\n0 0 1 2 3\n", "a.ele, line 2: ", "before tetrahedron 2 of 2"},
+    {nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3", "a.ele, line 3: ", "there are 4 numbers"},
+    {nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4.5", "a.ele, line 3: ", "is \"4.5\"; give a whole number"},
+    {nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 5\n", "a.ele, line 3: ", "node 5 is not one of the nodes 0 to 4"},
+    {nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 -1\n", "a.ele, line 3: ", "node -1 is not one of"},
+    {nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 4 3\n", "a.ele, line 3: ", "volume is -0.33333"},
+    {nullptr, "2 4 0\n0 0 1 2 2\n1 1 2 3 4\n", "a.ele, line 2: ", "it is flat"},
+    {nullptr, "3 4 0\n0 0 1 2 3\n1 1 2 3 4\n2 0 1 2 3\n", "a.ele, line 4: ", "shares a face with two"},
+    {nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4\nmore", "a.ele, line 4: ", "continues after the 2 tetrahedra"}};
 
-INSTANTIATE_TEST_SUITE_P(
-    Tetrahedra, BrokenTetgenFile,
-    testing::Values(
-        BrokenFile{nullptr, "", "a.ele, line ", "the file ends before the number of tetrahedra"},
-        BrokenFile{nullptr, "0 4 0\n", "a.ele, line 1: ", "the number of tetrahedra is 0"},
-        BrokenFile{nullptr, "4000000000 4 0\n0 0 1 2 3\n", "a.ele, line 1: ", "more than a file of 25 bytes"},
-        BrokenFile{nullptr, "2 10 0\n", "a.ele, line 1: ", "give linear tetrahedra"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n", "a.ele, line 2: ", "before tetrahedron 2 of 2"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3", "a.ele, line 3: ", "there are 4 numbers"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4.5",
-                   "a.ele, line 3: ", "is \"4.5\"; give a whole number"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 5\n",
-                   "a.ele, line 3: ", "node 5 is not one of the nodes 0 to 4"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 -1\n", "a.ele, line 3: ", "node -1 is not one of"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 4 3\n", "a.ele, line 3: ", "volume is -0.33333"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 2\n1 1 2 3 4\n", "a.ele, line 2: ", "it is flat"},
-        BrokenFile{nullptr, "3 4 0\n0 0 1 2 3\n1 1 2 3 4\n2 0 1 2 3\n",
-                   "a.ele, line 4: ", "shares a face with two"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4\nmore",
-                   "a.ele, line 4: ", "continues after the 2 tetrahedra"}));
+TEST(TetgenFiles, ThatAreBrokenAreRefusedWithPlaceAndValue) {
+  for (const auto& [nodes, tetrahedra, begin, about] : broken_files)
+    EXPECT_THAT(input_error_of(
+                    [&, n = nodes, t = tetrahedra] { parse(n ? n : good_nodes, t ? t : good_tetrahedra); }),
+                AllOf(StartsWith(begin), HasSubstr(about), Not(HasSubstr("\n"))));
+}
 
 TEST(TetgenFiles, OfOneEndlessLineAreRefusedBeforeItIsSplitIntoWords) {
   std::string words = "5 3 0 0\n0";

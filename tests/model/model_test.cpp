@@ -1,4 +1,3 @@
-
 #include <cstring>
 
 #include "geometry/surface.h"

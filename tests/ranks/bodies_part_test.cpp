@@ -1,4 +1,3 @@
-
 #include <thread>
 
 #include "backends/layouts/spring_graph.h"

@@ -1,5 +1,3 @@
-
-
 #include "ranks/shares.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"

@@ -1,5 +1,3 @@
-
-
 #include "ranks/requests.h"
 #include "ranks/shares.h"
 #include "tests/support/testing.h"

@@ -1,4 +1,3 @@
-
 #include "application/bench/suites.h"
 #include "charts/layout.h"
 #include "integrators/all_integrators.h"

@@ -1,5 +1,3 @@
-
-
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "scene/fields/fields.h"
@@ -85,12 +83,7 @@ TEST(Claims, AreNamedOnceAndEitherTestedOrNeedSomething) {
 
 TEST(Claims, OfAFileThatIsNoneNameThePlace) {
   const auto refused = [](const std::string& text) {
-    try {
-      claims_in("claims.json", text);
-    } catch (const SceneError& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing is refused");
+    return sentence_of<SceneError>([&] { claims_in("claims.json", text); });
   };
   EXPECT_THAT(refused(R"({"claims": [{"name": "a", "paper": "Newton", "place": "1", "says": "b"}]})"),
               HasSubstr("/claims/0/paper"));

@@ -11,7 +11,6 @@
 #include "scene/spec/scene_spec.h"
 #include "tests/support/address_space.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
 
@@ -131,8 +130,7 @@ TEST(ClothScenes, AreBuiltAsCountedAndStartInMotionAndStrainedByAFewPercentAtMos
 
 TEST(BuildCloth, PlacesTheNodesRowByRowUnderTheCeiling) {
   SceneSpec spec = cloth_spec(3, 5);
-  ClothSpec& cloth = std::get<ClothSpec>(spec.content);
-  cloth.ripple = {0, 0.1, 0};
+  std::get<ClothSpec>(spec.content).ripple = {0, 0.1, 0};
   const System system = build_cloth(spec);
   ASSERT_EQ(system.nodes(), 15U);
   EXPECT_EQ(system.start.position[0], (Vec3d{0, 1, 0}));
@@ -146,10 +144,8 @@ TEST(BuildCloth, PlacesTheNodesRowByRowUnderTheCeiling) {
 }
 
 TEST(BuildCloth, StartsAsAStandingWaveThatIsHalfAsHighInThePlane) {
-  SceneSpec spec = cloth_spec(3, 5);
-  ClothSpec& cloth = std::get<ClothSpec>(spec.content);
-  cloth.pins.reset();
-  cloth.ripple = {0.004, 0.1, 3};
+  SceneSpec spec = cloth_spec(3, 5, 1, {});
+  std::get<ClothSpec>(spec.content).ripple = {0.004, 0.1, 3};
   // A tenth of the wavelength a node, 0.2 pi: at row 2 and column 1 the phases are 0.2 pi along x and 0.4 pi
   // along z further.
   constexpr double x = 0.2 * std::numbers::pi, z = 0.4 * std::numbers::pi;
@@ -178,14 +174,11 @@ TEST(BuildCloth, TakesOverThePhysics) {
 }
 
 TEST(BuildCloth, PinsEverySoManyColumnsAndTheLastOfOneRow) {
-  SceneSpec spec = cloth_spec(3, 12);
-  std::get<ClothSpec>(spec.content).pins = ClothPins{1, 5};
-  const System system = build_cloth(spec);
+  const System system = build_cloth(cloth_spec(3, 12, 1, ClothPins{1, 5}));
   EXPECT_THAT(system.pins, ElementsAre(12, 17, 22, 23));
   for (const std::uint32_t pin : system.pins)
     EXPECT_EQ(system.start.position[pin], (Vec3d{(pin - 12) * 0.01, 1, 0.01}));
-  std::get<ClothSpec>(spec.content).pins.reset();
-  EXPECT_THAT(build_cloth(spec).pins, IsEmpty());
+  EXPECT_THAT(build_cloth(cloth_spec(3, 12, 1, {})).pins, IsEmpty());
 }
 
 std::string refusal(const SceneSpec& spec) {

@@ -1,4 +1,3 @@
-
 #include <iostream>
 
 #include "output/folders/result_folder.h"

@@ -42,11 +42,17 @@ ends() {
 says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\": $(cat "$work/out")"; }
 warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\": $(cat "$work/err")"; }
 
+# saying PATTERN FUNCTION ARGUMENTS..., warning PATTERN FUNCTION ARGUMENTS...: runs mssim by ends, or by a test's own function, and then
+# it has said PATTERN on stdout, on stderr
+saying() { "${@:2}"; says "$1"; }
+warning() { "${@:2}"; warns "$1"; }
+
 # value COLUMN: of the one row that mssim has printed, in which no field behind it holds a blank
 value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = NF - i } NR == 2 { print $(NF - c) }' "$work/out"; }
 
 # begins ARGUMENTS...: mssim runs beside the test, as $process. Shells start such programs with SIGINT ignored; env puts it back.
 begins() {
+  true >"$work/out" 2>"$work/err"  # nobody takes what an earlier run has said for this one's
   env --default-signal=INT,QUIT "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null &
   process=$!
 }
@@ -61,9 +67,11 @@ soon() {
   return 1
 }
 
-# is_ended STATUS SIGNAL: $process is sent the signal, and must exit with STATUS
+# is_ended STATUS SIGNAL [SECONDS COMMAND...]: $process is sent the signal, and must exit with STATUS; before, the command must succeed
+# within SECONDS
 is_ended() {
   local status=0
+  [ $# -eq 2 ] || soon "${@:3}" || fail "mssim has not come so far: ${*:4}: $(cat "$work/err")"
   kill -"$2" "$process" || fail "mssim ended before SIG$2: $(cat "$work/err")"
   wait "$process" || status=$?
   [ "$status" -eq "$1" ] || fail "SIG$2 gives exit status $status instead of $1: $(cat "$work/err")"
@@ -91,6 +99,27 @@ bodies_scene() {
  "bodies": {"density_kg_per_m3": 1000, "springs": {"stiffness_n_per_m": 10000, "damping_n_s_per_m": 0.5},
   "list": [$(IFS=,; echo "$*")]}}
 END
+}
+
+# make_run FOLDER BACKEND=MS[:SPREAD][:COUNT]...: a result folder in which only the times are made up: COUNT samples of each backend (15),
+# spread evenly about MS by at most that fraction (0.02)
+make_run() {
+  local folder=$1 of=$source/results/table1/zen5 backend ms spread count pair file
+  rm -rf "$folder"
+  mkdir "$folder"
+  cp "$of/provenance.json" "$folder"
+  for file in timings samples; do head -n 1 "$of/$file.csv" >"$folder/$file.csv"; done
+  for pair in "${@:2}"; do
+    backend=${pair%%=*}
+    IFS=: read -r ms spread count <<<"${pair#*=}"
+    awk -F, -v OFS=, -v b="$backend" -v ms="$ms" -v n="${count:-15}" 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next }
+      $c["scene"] == "cloth2500" && $c["backend"] == b && $c["integrator"] == "semi-euler" {
+        $c["ms_per_step"] = ms; $c["ms_per_step_low"] = 0.99 * ms; $c["ms_per_step_high"] = 1.01 * ms; $c["rounds"] = n; print
+      }' "$of/timings.csv" >>"$folder/timings.csv"
+    awk -v b="$backend" -v ms="$ms" -v s="${spread:-0.02}" -v n="${count:-15}" 'BEGIN {
+        for (i = 1; i <= n; ++i) print "cloth2500," b ",semi-euler," i ",10," ms * (1 + s * (2 * (i - 1) / (n - 1) - 1)) ","
+      }' >>"$folder/samples.csv"
+  done
 }
 
 # column_of FILE NAME: that column of a CSV file in which no field before it holds a comma

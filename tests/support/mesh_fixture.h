@@ -4,7 +4,6 @@
 
 #include "mesh/meshing.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 #include "text/error.h"
 

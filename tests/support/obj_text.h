@@ -7,10 +7,10 @@
 
 namespace mssim {
 
-/// The surface as an OBJ file has it.
-inline std::string obj_text(const Surface& surface) {
+/// The surface as an OBJ file has it, with so many digits: 17 read back the same.
+inline std::string obj_text(const Surface& surface, int digits = 9) {
   std::ostringstream text;
-  text.precision(9);
+  text.precision(digits);
   for (const Vec3d& point : surface.points)
     text << "v " << point.x << ' ' << point.y << ' ' << point.z << '\n';
   for (const auto& [a, b, c] : surface.triangles)

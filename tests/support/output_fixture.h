@@ -1,8 +1,10 @@
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <exception>
 
 #include "model/system.h"
@@ -64,6 +66,22 @@ inline bool become_nobody() {
 inline int exit_of_child(const std::function<int()>& body) {
   const int status = status_in_child(body);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// Expects what `body` expects, in a process of its own.
+inline void expect_in_child(const std::function<void()>& body) {
+  EXPECT_EQ(exit_of_child([&] {
+              body();
+              return testing::Test::HasFailure() ? 1 : 0;
+            }),
+            0);
+}
+
+/// Lets files of this process become no larger, as a full disk does. For a child: there is no way back.
+inline void limit_file_size(rlim_t bytes) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{bytes, bytes};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
 }
 
 }  // namespace mssim

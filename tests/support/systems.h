@@ -11,14 +11,15 @@
 namespace mssim {
 
 /// A small cloth of the committed scenes' material, high above the floor, for tests to change.
-inline SceneSpec cloth_spec(std::uint32_t rows, std::uint32_t columns) {
+inline SceneSpec cloth_spec(std::uint32_t rows, std::uint32_t columns, double ceiling_height_m = 1,
+                            std::optional<ClothPins> pins = ClothPins{0, 10}) {
   ClothSpec cloth;
   cloth.rows = rows;
   cloth.columns = columns;
   cloth.spacing_m = 0.01;
   cloth.areal_density_kg_per_m2 = 0.2;
-  cloth.ceiling_height_m = 1;
-  cloth.pins = ClothPins{0, 10};
+  cloth.ceiling_height_m = ceiling_height_m;
+  cloth.pins = pins;
   cloth.ripple = {0.0005, 0.2, 0.2};
   cloth.springs = {{{200, 0.01}, {60, 0.003}, {8, 0.0004}}};
   SceneSpec spec;
@@ -31,24 +32,21 @@ inline SceneSpec cloth_spec(std::uint32_t rows, std::uint32_t columns) {
   return spec;
 }
 
-inline System cloth_system(std::uint32_t rows, std::uint32_t columns) {
-  return build_system(cloth_spec(rows, columns));
+inline System cloth_system(std::uint32_t rows, std::uint32_t columns, double ceiling_height_m = 1,
+                           std::optional<ClothPins> pins = ClothPins{0, 10}) {
+  return build_system(cloth_spec(rows, columns, ceiling_height_m, pins));
 }
 
 /// A flat sheet at rest, without pins, at `height_m`.
 inline SceneSpec sheet_spec(std::uint32_t rows, std::uint32_t columns, double height_m) {
-  SceneSpec spec = cloth_spec(rows, columns);
-  auto& cloth = std::get<ClothSpec>(spec.content);
-  cloth.pins.reset();
-  cloth.ripple = {0, 1, 0};
-  cloth.ceiling_height_m = height_m;
+  SceneSpec spec = cloth_spec(rows, columns, height_m, {});
+  std::get<ClothSpec>(spec.content).ripple = {0, 1, 0};
   return spec;
 }
 
 /// A rippled cloth without pins, gravity, damping by the air: nothing outside the cloth acts on it.
 inline System lone_cloth(std::uint32_t rows, std::uint32_t columns) {
-  SceneSpec spec = cloth_spec(rows, columns);
-  std::get<ClothSpec>(spec.content).pins.reset();
+  SceneSpec spec = cloth_spec(rows, columns, 1, {});
   spec.gravity_m_per_s2 = 0;
   spec.viscous_damping_per_s = 0;
   return build_system(spec);

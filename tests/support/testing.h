@@ -1,7 +1,7 @@
 #pragma once
 
-// What most tests use, in one place: GoogleTest with the matchers of texts and lists, and the standard
-// library. The precompiled header of mssim_tests.
+// What most tests use, in one place: GoogleTest with the matchers of texts and lists, the standard library,
+// and sentences of errors. The precompiled header of mssim_tests.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,5 +39,16 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
+
+/// What the Error says that `call` throws; empty where it throws nothing.
+template <class Error, class Call>
+std::string sentence_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
 
 }  // namespace mssim

@@ -7,6 +7,7 @@
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 #include "text/error.h"
 
 namespace mssim {
@@ -22,10 +23,10 @@ class BenchPlanTest : public TemporaryFolderTest {
     options_.rounds = 1;
   }
 
-  void expect_refused(const std::vector<std::string>& backends) {
-    for (const std::string& backend : backends) {
-      options_.backends = {backend};
-      EXPECT_THROW(plan_of(options_), UsageError) << backend;
+  void expect_refused(const std::vector<std::string>& wrong_backends) {
+    for (const std::string& wrong : wrong_backends) {
+      options_.backends = {wrong};
+      EXPECT_THROW(plan_of(options_), UsageError) << wrong;
     }
   }
 

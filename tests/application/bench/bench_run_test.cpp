@@ -5,6 +5,7 @@
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
+#include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"
 
 namespace mssim {

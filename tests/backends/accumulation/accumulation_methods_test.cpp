@@ -169,9 +169,7 @@ TEST_P(EachRowKernelAndIntegrator, TreatsTheFloorLikeTheReference) {
 }
 
 TEST_P(EachRowKernelAndIntegrator, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFloor) {
-  SceneSpec spec = cloth_spec(20, 23);
-  std::get<ClothSpec>(spec.content).pins = ClothPins{13, 5};
-  System system = build_system(spec);
+  System system = cloth_system(20, 23, 1, ClothPins{13, 5});
   system.floor.height = system.start.position[system.pins.front()].y + 0.01;
   const State state = state_after(*make(system, 3), 51);
   EXPECT_TRUE(pins_hold(system, state));

@@ -2,7 +2,6 @@
 
 #include "scene/fields/fields.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

@@ -15,7 +15,6 @@
 #include "platform/machine.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/garment_system.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
 

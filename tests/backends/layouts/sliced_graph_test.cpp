@@ -6,7 +6,6 @@
 #include "backends/openmp/openmp.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/expect_coloured.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
 

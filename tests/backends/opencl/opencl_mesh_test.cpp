@@ -1,11 +1,11 @@
-// Tetrahedral bodies on the OpenCL backends, in every width, against the double-precision reference.
+// Tetrahedral bodies on the OpenCL backends, in every width, against the double-precision reference. That no
+// way to share the work or memory changes a bit is tested with cloths, in opencl_test.cpp.
 
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/opencl_variants.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
@@ -103,24 +103,6 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
     }
 }
 
-TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
-  for (const System& system : {solid_block(7, 5, 6), alike_bodies(solid_block(3, 4, 3), 19)})
-    for (const Integrator& integrator : integrators) {
-      const auto run = [&](const OpenclVariant& way) {
-        const auto backend = way.make(system, integrator, backend_dt_of(integrator));
-        backend->step(30);
-        return backend->state().position;
-      };
-      for (const int lanes : opencl_lanes) {
-        if (lanes == 1) continue;  // a GPU's kernels sum in another order
-        for (const bool hybrid : {false, true})
-          EXPECT_EQ(run({hybrid, lanes}), run({hybrid, most_opencl_lanes}))
-              << integrator.name << ", " << lanes;
-      }
-      EXPECT_EQ(run({true, most_opencl_lanes, 1}), run({true, most_opencl_lanes, 3})) << integrator.name;
-    }
-}
-
 TEST(OpenclMeshes, GiveABodyTheSameBitsAloneAndBesideOthersThatAreAlike) {
   const System block = solid_block(3, 4, 3), system = alike_bodies(block, 19);
   const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
@@ -138,21 +120,6 @@ TEST(OpenclMeshes, GiveABodyTheSameBitsAloneAndBesideOthersThatAreAlike) {
       EXPECT_EQ(beside->stored_springs(), block.springs.size());
       EXPECT_EQ(alone->stored_springs(), std::nullopt);
     }
-}
-
-TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
-  for (const System& system : {two_solid_blocks(), alike_bodies(solid_block(3, 4, 3), 11)})
-    for (const Integrator& integrator : integrators)
-      for (const OpenclVariant way : {OpenclVariant{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
-        std::vector<State> found;
-        for (const DeviceInMemory& memory : ways_to_memory()) {
-          const auto backend = way.make_in(memory, system, integrator, backend_dt_s);
-          backend->step(31);
-          found.push_back(backend->state());
-          EXPECT_TRUE(same_state(found.back(), found[0])) << memory.name << ", " << integrator.name;
-        }
-        EXPECT_NE(found[0].position, system.start.position);
-      }
 }
 
 TEST(OpenclMeshes, SayWhyTheyDoNotFit) {

@@ -11,7 +11,6 @@
 #include "backends/interface/backend.h"
 #include "platform/process.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
@@ -284,11 +283,8 @@ TEST(Answers, SayThatARequestIsDone) {
   for (const char* line : {"done 0.25", "ready 1", "", "failed"})
     EXPECT_THROW(take_done("get", line, false), ConversationFailure) << line;
   EXPECT_THROW(take_done("step 3", "done -1", true), ConversationFailure);
-  try {
-    take_done("step 3", "hello", true);
-  } catch (const ConversationFailure& failure) {
-    EXPECT_THAT(failure.what(), StartsWith("answered \"hello\" to \"step 3\""));
-  }
+  EXPECT_THAT(sentence_of<ConversationFailure>([] { take_done("step 3", "hello", true); }),
+              StartsWith("answered \"hello\" to \"step 3\""));
 }
 
 }  // namespace

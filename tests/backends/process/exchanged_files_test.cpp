@@ -1,8 +1,5 @@
 #include "backends/process/exchanged_files.h"
 
-#include <sys/resource.h>
-
-#include <csignal>
 #include <fstream>
 
 #include "backends/process/process_backend.h"
@@ -11,7 +8,6 @@
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/output_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"
 #include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"
@@ -95,15 +91,11 @@ TEST_F(StateFileTest, SurvivesBeingCut) {
 }
 
 TEST_F(StateFileTest, NamesTheLimitThatItExceeds) {
-  EXPECT_EQ(exit_of_child([&] {
-              std::signal(SIGXFSZ, SIG_IGN);
-              const rlimit limit{1000, 1000};
-              ::setrlimit(RLIMIT_FSIZE, &limit);
-              EXPECT_THAT(sentence_of<std::runtime_error>([&] { StateFile(1000, folder()); }),
-                          AllOf(HasSubstr("48000 bytes"), HasSubstr("ulimit -f")));
-              return testing::Test::HasFailure() ? 1 : 0;
-            }),
-            0);
+  expect_in_child([&] {
+    limit_file_size(1000);
+    EXPECT_THAT(sentence_of<std::runtime_error>([&] { StateFile(1000, folder()); }),
+                AllOf(HasSubstr("48000 bytes"), HasSubstr("ulimit -f")));
+  });
 }
 
 TEST_F(StateFileTest, GoesAway) {

@@ -1,22 +1,15 @@
 #include "bench/machine/provenance.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "output/folders/provenance_file.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 class MadeUpMachine : public TemporaryFolderTest {
  protected:

@@ -1,15 +1,10 @@
 #include "bench/results/comparison.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 /// A row of `count` samples about `ms`, spread evenly over plus and minus `spread`.
 ResultRow row_of(const std::string& backend, double ms, double spread = 0.02, int count = 15) {

@@ -1,14 +1,8 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "bench/results/comparison.h"
 #include "statistics/rank_tests.h"
 #include "statistics/statistics.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

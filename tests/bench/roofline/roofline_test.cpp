@@ -1,16 +1,10 @@
 #include "bench/roofline/roofline.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
-#include <limits>
-#include <vector>
 
 #include "integrators/all_integrators.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

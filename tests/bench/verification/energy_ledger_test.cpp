@@ -1,17 +1,11 @@
 // The balance of energies and losses, for every integrator and for cases that can be worked out by hand.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <string_view>
-#include <vector>
 
 #include "backends/backends.h"
 #include "backends/spring_list/list_backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -76,11 +70,7 @@ TEST_P(EnergyLedgerOf, BalancesABlockThatFallsSpinsBouncesAndSlides) {
 }
 
 TEST_P(EnergyLedgerOf, BalancesAClothThatFallsOnTheFloorAndSlides) {
-  SceneSpec spec = cloth_spec(12, 9);
-  auto& cloth = std::get<ClothSpec>(spec.content);
-  cloth.pins.reset();
-  cloth.ceiling_height_m = 0.03;
-  System system = build_system(spec);
+  System system = cloth_system(12, 9, 0.03, {});
   for (Vec3d& v : system.start.velocity) v += {0.5, 0, 0.25};
   const Balance balance = balance_of(system, system, integrator(), 6000);
   EXPECT_LT(std::abs(balance.imbalance), cloth_tolerance);

@@ -1,18 +1,12 @@
 #include "bench/verification/reference_cache.h"
 
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <filesystem>
-#include <functional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "integrators/all_integrators.h"
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,17 +1,8 @@
 // A check that could not fail would be none: backends that are wrong on purpose must be found.
 #include "bench/verification/verification.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "backends/backends.h"
 #include "backends/openmp/openmp.h"
@@ -22,6 +13,7 @@
 #include "scene/scene_file.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
@@ -53,11 +45,7 @@ const std::vector<Mistake> mistakes{
 };
 
 /// Near the origin, where positions are rounded least.
-System low_cloth() {
-  SceneSpec spec = cloth_spec(20, 25);
-  std::get<ClothSpec>(spec.content).ceiling_height_m = 0.2;
-  return build_system(spec);
-}
+System low_cloth() { return cloth_system(20, 25, 0.2); }
 
 TEST(Verification, PassesARightBackend) {
   const System system = low_cloth();
@@ -74,9 +62,7 @@ TEST(Verification, PassesRightBackendsWhereRoundingsAddUp) {
   // Far up, and with short steps, a step moves a node by few units in its last place: roundings have one
   // sign.
   for (const auto& [height_m, step_s] : {std::pair{2., 5e-5}, {10., 5e-5}, {100., 5e-5}, {0.2, 1e-6}}) {
-    SceneSpec spec = cloth_spec(20, 25);
-    std::get<ClothSpec>(spec.content).ceiling_height_m = height_m;
-    const System system = build_system(spec);
+    const System system = cloth_system(20, 25, height_m);
     double furthest = 0;  // in tolerances of independent roundings
     for (const char* name : {"semi-euler", "midpoint", "rk4"}) {
       const Integrator& integrator = *find_integrator(name);
@@ -98,9 +84,7 @@ TEST(Verification, PassesRightBackendsWhereRoundingsAddUp) {
 }
 
 TEST(Verification, RefusesScenesSoFarAwayThatItWouldShowNothing) {
-  SceneSpec spec = cloth_spec(20, 25);
-  std::get<ClothSpec>(spec.content).ceiling_height_m = 1e4;
-  const Reference reference = run_reference(build_system(spec), integrators[0], backend_dt_s);
+  const Reference reference = run_reference(cloth_system(20, 25, 1e4), integrators[0], backend_dt_s);
   ASSERT_TRUE(reference.failure);
   for (const char* part : {"nothing can be verified", "100 steps", "nearer to the origin"})
     EXPECT_NE(reference.failure->find(part), std::string::npos) << *reference.failure;
@@ -372,9 +356,7 @@ TEST(SampleCheck, FindsASampleThatIsWrongAtItsEnd) {
 }
 
 TEST(Verification, StopsBeforeTheFloor) {
-  SceneSpec spec = cloth_spec(8, 8);
-  std::get<ClothSpec>(spec.content).ceiling_height_m = 0.0015;
-  const System system = build_system(spec);
+  const System system = cloth_system(8, 8, 0.0015);
   const Reference reference = run_reference(system, integrators[0], backend_dt_s);
   EXPECT_FALSE(reference.failure);
   EXPECT_GT(reference.steps, 0);
@@ -410,12 +392,8 @@ TEST(Verification, StopsBeforeTheFloorThoughNodesBounceOffBetweenTwoLooks) {
 TEST(SampleCheck, AllowsLandingsAtOtherTimes) {
   constexpr double step_s = 1e-4;
   constexpr int steps = 2000;
-  SceneSpec spec = cloth_spec(2, 2);
-  auto& cloth = std::get<ClothSpec>(spec.content);
-  cloth.pins.reset();
-  cloth.ceiling_height_m = 0.01;
-  spec.floor = {0, 1, 0};
-  const System system = build_system(spec);
+  System system = cloth_system(2, 2, 0.01, {});
+  system.floor = {0, 1, 0};
   for (std::uint32_t number = 1; number <= 8; ++number) {
     const State start = sample_start(system, number);
     for (const auto& make : {make_serial, make_openmp}) {

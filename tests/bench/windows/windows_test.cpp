@@ -1,10 +1,5 @@
 #include "bench/windows/windows.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <memory>
 #include <variant>
 
 #include "backends/backends.h"
@@ -13,6 +8,7 @@
 #include "scene/builders.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/testing.h"
 
 namespace mssim {
 namespace {

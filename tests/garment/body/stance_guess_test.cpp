@@ -1,5 +1,3 @@
-
-
 #include "garment/body/mannequin.h"
 #include "garment/body/stance.h"
 #include "tests/support/body_with_arms.h"

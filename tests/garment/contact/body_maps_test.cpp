@@ -10,7 +10,6 @@
 #include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

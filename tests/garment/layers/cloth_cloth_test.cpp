@@ -2,7 +2,6 @@
 
 #include "model/system.h"
 #include "tests/support/cloth_layers_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

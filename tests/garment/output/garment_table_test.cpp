@@ -1,9 +1,6 @@
-
-
 #include "garment/output/garment_tables.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

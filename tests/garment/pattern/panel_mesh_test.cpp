@@ -1,5 +1,3 @@
-
-
 #include "garment/pattern/garment_build.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"

@@ -11,7 +11,6 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/obj_text.h"
 #include "tests/support/open_count.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

@@ -8,7 +8,6 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
@@ -202,69 +201,61 @@ struct BadPieces {
   const char *place, *value, *remedy;
 };
 
-std::ostream& operator<<(std::ostream& stream, const BadPieces& bad) { return stream << bad.new_part; }
-
-class BadGarmentPieces : public testing::TestWithParam<BadPieces> {};
-
-TEST_P(BadGarmentPieces, AreRefusedInOneSentenceWithPlaceValueAndRemedy) {
-  const BadPieces& bad = GetParam();
-  const std::string error =
-      sentence_of<SceneError>([&] { built(with_change(two_pieces, bad.old_part, bad.new_part)); });
-  EXPECT_THAT(error, AllOf(StartsWith(std::string("pieces.json: ") + bad.place + " "), HasSubstr(bad.value),
-                           HasSubstr(bad.remedy), Not(HasSubstr("\n"))));
-}
-
 const char* const apron_top = R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.2, 1.05]]})";
 const char* const first_stretch = R"("first": {"panel": "apron", "edge": "right", "from": 0, "to": 1})";
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, BadGarmentPieces,
-    testing::Values(
-        // What the reader sees.
-        BadPieces{R"("name": "apron")", R"("name": "")", "/garment/pieces/panels/0/name", "is empty",
-                  "give the panel a name"},
-        BadPieces{R"("rows": 6, "columns": 5, "layer": 0)", R"("rows": 1, "columns": 5, "layer": 0)",
-                  "/garment/pieces/panels/0/rows", "is 1", "give an integer from 2 to 10000"},
-        BadPieces{R"("layer": 1)", R"("layer": 8)", "/garment/pieces/panels/1/layer", "is 8",
-                  "give an integer from 0 to 7"},
-        BadPieces{R"("rows": 6, "columns": 5, "layer": 1)", R"("rows": 10000, "columns": 1001, "layer": 1)",
-                  "/garment/pieces/panels", "have 10010030 nodes in all", "at most 10000000"},
-        BadPieces{apron_top, R"("top": {"curve": "spline", "points_m": [[-0.2, 1.05], [0.2, 1.05]]})",
-                  "/garment/pieces/panels/0/top/curve", "is the text \"spline\"",
-                  "give the text polyline or bezier"},
-        BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05]]})",
-                  "/garment/pieces/panels/0/top/points_m",
-                  "has 1 element:", "give a list, [ ... ], of 2 to 100 points [x, y]"},
-        BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.2, 1.05, 0]]})",
-                  "/garment/pieces/panels/0/top/points_m/1", "is a list", "give a point, two numbers [x, y]"},
-        BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.2, 11]]})",
-                  "/garment/pieces/panels/0/top/points_m/1/1", "is 11", "give a number from -10 to 10"},
-        BadPieces{
-            apron_top, R"("top": {"curve": "bezier", "points_m": [[-0.2, 1.05], [0, 1.1], [0.2, 1.05]]})",
-            "/garment/pieces/panels/0/top", "a chain of cubic Bezier segments has 3 points", "give 4, 7, 10"},
-        BadPieces{R"("side": "back")", R"("side": "behind")", "/garment/pieces/panels/1/placement/side",
-                  "is the text \"behind\"", "give the text front or back"},
-        BadPieces{R"("distance_m": 0.08)", R"("distance_m": 0)",
-                  "/garment/pieces/panels/1/placement/distance_m", "is 0", "above 0"},
-        BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "rihgt", "from": 0, "to": 1})",
-                  "/garment/pieces/seams/0/first/edge", "is the text \"rihgt\"", "perhaps right"},
-        BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0, "to": 1.1})",
-                  "/garment/pieces/seams/0/first/to", "is 1.1", "from 0 to 1"},
-        BadPieces{dressing_end,
-                  R"("none": {}},
+const BadPieces bad_pieces[]{
+    // What the reader sees.
+    {R"("name": "apron")", R"("name": "")", "/garment/pieces/panels/0/name", "is empty",
+     "give the panel a name"},
+    {R"("rows": 6, "columns": 5, "layer": 0)", R"("rows": 1, "columns": 5, "layer": 0)",
+     "/garment/pieces/panels/0/rows", "is 1", "give an integer from 2 to 10000"},
+    {R"("layer": 1)", R"("layer": 8)", "/garment/pieces/panels/1/layer", "is 8",
+     "give an integer from 0 to 7"},
+    {R"("rows": 6, "columns": 5, "layer": 1)", R"("rows": 10000, "columns": 1001, "layer": 1)",
+     "/garment/pieces/panels", "have 10010030 nodes in all", "at most 10000000"},
+    {apron_top, R"("top": {"curve": "spline", "points_m": [[-0.2, 1.05], [0.2, 1.05]]})",
+     "/garment/pieces/panels/0/top/curve", "is the text \"spline\"", "give the text polyline or bezier"},
+    {apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05]]})",
+     "/garment/pieces/panels/0/top/points_m",
+     "has 1 element:", "give a list, [ ... ], of 2 to 100 points [x, y]"},
+    {apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.2, 1.05, 0]]})",
+     "/garment/pieces/panels/0/top/points_m/1", "is a list", "give a point, two numbers [x, y]"},
+    {apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.2, 11]]})",
+     "/garment/pieces/panels/0/top/points_m/1/1", "is 11", "give a number from -10 to 10"},
+    {apron_top, R"("top": {"curve": "bezier", "points_m": [[-0.2, 1.05], [0, 1.1], [0.2, 1.05]]})",
+     "/garment/pieces/panels/0/top", "a chain of cubic Bezier segments has 3 points", "give 4, 7, 10"},
+    {R"("side": "back")", R"("side": "behind")", "/garment/pieces/panels/1/placement/side",
+     "is the text \"behind\"", "give the text front or back"},
+    {R"("distance_m": 0.08)", R"("distance_m": 0)", "/garment/pieces/panels/1/placement/distance_m", "is 0",
+     "above 0"},
+    {first_stretch, R"("first": {"panel": "apron", "edge": "rihgt", "from": 0, "to": 1})",
+     "/garment/pieces/seams/0/first/edge", "is the text \"rihgt\"", "perhaps right"},
+    {first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0, "to": 1.1})",
+     "/garment/pieces/seams/0/first/to", "is 1.1", "from 0 to 1"},
+    {dressing_end,
+     R"("none": {}},
     "layers": {"thickness_m": 0, "friction": 0.2, "push_speed_m_per_s": 0.7, "sweeps": 3})",
-                  "/garment/layers/thickness_m", "is 0", "from 1e-06 to 10"},
-        // What cutting, sewing and placing see.
-        BadPieces{R"("name": "seat")", R"("name": "apron")", "/garment/pieces/panels/1",
-                  "two panels have this name", "rename one of them"},
-        BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.21, 1.05]]})",
-                  "/garment/pieces/panels/0", "apron: at the top right corner", "make them meet"},
-        BadPieces{first_stretch, R"("first": {"panel": "aprn", "edge": "right", "from": 0, "to": 1})",
-                  "/garment/pieces/seams/0", "there is no panel aprn", "use one of apron, seat"},
-        BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0.4, "to": 1})",
-                  "/garment/pieces/seams/0", "is 0.15 m long", "raise the seam's tolerance of 0.03"},
-        BadPieces{dressing_end, with_layers, "/garment/pieces/seams/0", "apron in layer 0 to seat in layer 1",
-                  "leave out \"layers\""}));
+     "/garment/layers/thickness_m", "is 0", "from 1e-06 to 10"},
+    // What cutting, sewing and placing see.
+    {R"("name": "seat")", R"("name": "apron")", "/garment/pieces/panels/1", "two panels have this name",
+     "rename one of them"},
+    {apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.21, 1.05]]})",
+     "/garment/pieces/panels/0", "apron: at the top right corner", "make them meet"},
+    {first_stretch, R"("first": {"panel": "aprn", "edge": "right", "from": 0, "to": 1})",
+     "/garment/pieces/seams/0", "there is no panel aprn", "use one of apron, seat"},
+    {first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0.4, "to": 1})",
+     "/garment/pieces/seams/0", "is 0.15 m long", "raise the seam's tolerance of 0.03"},
+    {dressing_end, with_layers, "/garment/pieces/seams/0", "apron in layer 0 to seat in layer 1",
+     "leave out \"layers\""}};
+
+TEST(GarmentPieces, AreRefusedInOneSentenceWithPlaceValueAndRemedy) {
+  for (const BadPieces& bad : bad_pieces)
+    EXPECT_THAT(sentence_of<SceneError>([&] { built(with_change(two_pieces, bad.old_part, bad.new_part)); }),
+                AllOf(StartsWith(std::string("pieces.json: ") + bad.place + " "), HasSubstr(bad.value),
+                      HasSubstr(bad.remedy), Not(HasSubstr("\n"))))
+        << bad.new_part;
+}
 
 TEST(GarmentPieces, NeedABodyAtTheirHeights) {
   std::string text = two_pieces;

@@ -11,7 +11,6 @@
 #include "tests/support/backend_checks.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

@@ -1,8 +1,7 @@
 #include "output/exports/exports.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/support/systems.h"
+#include "tests/support/testing.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"
 

@@ -47,15 +47,9 @@ class ProvenanceFile : public TemporaryFolderTest {
   /// The sentence that a file with this text is refused with, without its folder.
   std::string refusal_of(const std::string& text) const {
     const auto file = put("provenance.json", text);
-    try {
-      read_provenance(file);
-    } catch (const ProvenanceError& error) {
-      const std::string sentence = error.what();
-      EXPECT_THAT(sentence, AllOf(StartsWith(file.string() + ": "), Not(HasSubstr("\n"))));
-      return sentence.substr(file.string().size() + 2);
-    }
-    ADD_FAILURE() << "was read: " << text;
-    return {};
+    const std::string sentence = sentence_of<ProvenanceError>([&] { read_provenance(file); });
+    EXPECT_THAT(sentence, AllOf(StartsWith(file.string() + ": "), Not(HasSubstr("\n")))) << text;
+    return sentence.substr(std::min(sentence.size(), file.string().size() + 2));
   }
 
   /// The same for the full provenance with one value changed, or removed where it is discarded.

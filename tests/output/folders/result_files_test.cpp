@@ -9,7 +9,6 @@
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 
 namespace mssim {

@@ -1,5 +1,3 @@
-
-
 #include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"

@@ -5,7 +5,6 @@
 
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
-#include "tests/support/sentence_of.h"
 #include "tests/support/testing.h"
 #include "text/text.h"
 

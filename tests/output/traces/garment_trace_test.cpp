@@ -1,7 +1,4 @@
 // Traces of garments: panels, joints, and the body that they are dressed on.
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
@@ -62,19 +59,14 @@ TEST_F(GarmentTrace, NeedsNoBody) {
 }
 
 TEST_F(GarmentTrace, LeavesNothingBehindWhereNotEvenTheBodyFits) {
-  EXPECT_EQ(exit_of_child([&] {
-              std::signal(SIGXFSZ, SIG_IGN);
-              const rlimit limit{100000, 100000};
-              ::setrlimit(RLIMIT_FSIZE, &limit);
-              Surface large = small_tetrahedron();
-              for (int i = 0; i < 20000; ++i)
-                large.points.push_back({std::sin(i), std::sin(3 * i), std::sin(5 * i)});
-              EXPECT_THAT([&] { H5mdTrace(file(), garment_, header(), large); },
-                          testing::ThrowsMessage<WriteError>(HasSubstr("File too large")));
-              EXPECT_TRUE(std::filesystem::is_empty(folder()));
-              return testing::Test::HasFailure() ? 1 : 0;
-            }),
-            0);
+  expect_in_child([&] {
+    limit_file_size(100000);
+    Surface large = small_tetrahedron();
+    for (int i = 0; i < 20000; ++i) large.points.push_back({std::sin(i), std::sin(3 * i), std::sin(5 * i)});
+    EXPECT_THAT([&] { H5mdTrace(file(), garment_, header(), large); },
+                testing::ThrowsMessage<WriteError>(HasSubstr("File too large")));
+    EXPECT_TRUE(std::filesystem::is_empty(folder()));
+  });
 }
 
 TEST_F(GarmentTrace, RefusesWhatWouldPointBeyondItsNodes) {

@@ -32,18 +32,21 @@ inline cl_int CL_API_CALL platform_info(cl_platform_id, cl_platform_info what, s
   return CL_SUCCESS;
 }
 
-inline cl_int give_platform(cl_uint room, cl_platform_id* platforms, cl_uint* count) {
-  calls.clGetPlatformInfo = platform_info;
-  calls.clGetDeviceIDs = device_ids;
-  if (platforms != nullptr && room > 0) *platforms = &platform;
-  if (count != nullptr) *count = 1;
+}  // namespace fake_opencl
+
+extern "C" cl_int clIcdGetPlatformIDsKHR(cl_uint num_entries, cl_platform_id* platforms,
+                                         cl_uint* num_platforms) {
+  fake_opencl::calls.clGetPlatformInfo = fake_opencl::platform_info;
+  fake_opencl::calls.clGetDeviceIDs = fake_opencl::device_ids;
+  if (platforms != nullptr && num_entries > 0) *platforms = &fake_opencl::platform;
+  if (num_platforms != nullptr) *num_platforms = 1;
   return CL_SUCCESS;
 }
 
-inline void* function_named(const char* name) {
-  if (std::strcmp(name, "clIcdGetPlatformIDsKHR") == 0) return reinterpret_cast<void*>(give_platform);
-  if (std::strcmp(name, "clGetPlatformInfo") == 0) return reinterpret_cast<void*>(platform_info);
+extern "C" void* clGetExtensionFunctionAddress(const char* func_name) {
+  if (std::strcmp(func_name, "clIcdGetPlatformIDsKHR") == 0)
+    return reinterpret_cast<void*>(clIcdGetPlatformIDsKHR);
+  if (std::strcmp(func_name, "clGetPlatformInfo") == 0)
+    return reinterpret_cast<void*>(fake_opencl::platform_info);
   return nullptr;
 }
-
-}  // namespace fake_opencl

@@ -405,9 +405,7 @@ TEST_P(EachXpbdKernel, TreatsTheFloorLikeTheReference) {
 }
 
 TEST_P(EachXpbdKernel, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFloor) {
-  SceneSpec spec = cloth_spec(20, 23);
-  std::get<ClothSpec>(spec.content).pins = ClothPins{13, 5};
-  System cloth = build_system(spec);
+  System cloth = cloth_system(20, 23, 1, ClothPins{13, 5});
   cloth.floor.height = cloth.start.position[cloth.pins.front()].y + 0.01;
   const System block = pinned(solid_block(4, 5, 6), {0, 17, 118});
   for (const System& system : {cloth, block}) {
