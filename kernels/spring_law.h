@@ -1,12 +1,6 @@
 /* The law of a spring, written once in the common subset of C++ and OpenCL C: the force, and the quantities
  * derived from it.
  *
- * Hooke's law with damping along the spring (the force f_i of Hong et al., Eq. 1):
- *
- *     f = (k (|d| - L) + c (u . d)/|d|) d/|d|,     d = x_other - x_this,  u = v_other - v_this,
- *
- * rearranged so that the force is `spring_pull(...) * d`: one reciprocal length and no unit vector.
- *
  * Text for many number types, without an include guard. Needs spring_constants.h; the includer first defines
  *   MSSIM_LAW                   prefix of a function that returns a Real,
  *   MSSIM_STRUCT(Name)          prefix of the braces of a struct of Reals,
@@ -32,12 +26,20 @@ MSSIM_GIVES(LinearSpring) linear_spring(MSSIM_OF(SpringConstants) constants, Rea
   return spring;
 }
 
-/* Force on this end divided by the vector to the other end, N/m.
+/* Hooke's law with damping along the spring (the force f_i of Hong et al., Eq. 1):
+ *
+ *     f = (k (|d| - L) + c (u . d)/|d|) d/|d|,     d = x_other - x_this,  u = v_other - v_this,
+ *
+ * rearranged so that the force is `spring_pull(...) * d`: one reciprocal length and no unit vector.
+ *
+ * Force on this end divided by the vector to the other end, N/m.
  * inverse_length = 1/|d| (1/m), closing = u . d (m^2/s). */
 MSSIM_LAW spring_pull_at(Real inverse_length, Real closing, MSSIM_OF(LinearSpring) spring) {
   return mul_add(mul_add(spring.constants.damping * closing, inverse_length, -spring.stiffness_rest),
                  inverse_length, spring.constants.stiffness);
 }
+/* Its floating-point operations: a product and two multiply-adds, which count as two each. */
+enum { spring_pull_flops = 1 + 2 * 2 };
 
 /* spring_pull_at for length_squared = d . d (m^2). A spring of length zero gives infinity or NaN, which the
  * callers' finite check reports. */

@@ -18,13 +18,12 @@ struct StepCost {
 /// ends. d and u are the differences of position and velocity between the ends:
 ///     d, u                           2 x 3 subtractions               6
 ///     d . d, u . d                   2 x (3 products, 2 sums)        10
-///     spring_pull (spring_law.h)     root, reciprocal, product,
-///                                    two multiply-adds                7
+///     spring_pull (spring_law.h)     root, reciprocal                 2 + spring_pull_flops
 ///     pull * d                       3 products                       3
 ///     onto one end, off the other    2 x 3 sums                       6
 /// Root and reciprocal count as one operation each, as is usual, although they take longer; so the bound is
 /// optimistic. Sign changes are free.
-inline constexpr std::size_t flops_per_spring = 6 + 10 + 7 + 3 + 6;
+inline constexpr std::size_t flops_per_spring = 6 + 10 + (2 + spring_pull_flops) + 3 + 6;
 
 /// Operations of the acceleration of one node (node_laws.h), if the springs' constants have been divided by
 /// its mass: viscous damping (3 products, 3 sums) and gravity (1 sum).
