@@ -12,7 +12,8 @@
  *   where_less(a, b, yes, no)   yes where a < b, else no.
  */
 
-MSSIM_STRUCT(SpringConstants){MSSIM_SPRING_CONSTANTS(MSSIM_MEMBER)};
+#define MSSIM_CONSTANT(name, info) MSSIM_MEMBER(name)
+MSSIM_STRUCT(SpringConstants){MSSIM_SPRING_CONSTANTS(MSSIM_CONSTANT)};
 
 /* A spring as the law needs it. stiffness_rest = k L (N): the rest length L enters only through it. */
 MSSIM_STRUCT(LinearSpring) {
@@ -91,14 +92,14 @@ MSSIM_LAW spring_step_along(Real dt, MSSIM_OF(SpringConstants) constants) {
 #ifdef __OPENCL_VERSION__
 /* A spring with equal parameters in every lane. */
 MSSIM_INLINE struct LinearSpring spring_in_every_lane(struct SpringFloats constants, Real stiffness_rest) {
-#define MSSIM_IN_EVERY_LANE(name) (Real)(constants.name),
+#define MSSIM_IN_EVERY_LANE(name, info) (Real)(constants.name),
   struct LinearSpring spring = {{MSSIM_SPRING_CONSTANTS(MSSIM_IN_EVERY_LANE)}, stiffness_rest};
   return spring;
 }
 
 /* Loads the constants of every lane, `step` floats from one constant to the next. */
 MSSIM_INLINE struct SpringConstants load_constants(__global const float* from, size_t step) {
-#define MSSIM_LOAD(name)               \
+#define MSSIM_LOAD(name, info)         \
   constants.name = load_aligned(from); \
   from += step;
   struct SpringConstants constants;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "geometry/vec3.h"
@@ -39,14 +41,10 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
 #define MSSIM_LAW_INLINE inline
 #include "laws/laws-inl.h"
 
-/// Whether all constants are equal.
+/// The constants in the order of their table.
 template <class Real>
-inline bool operator==(const SpringConstants<Real>& a, const SpringConstants<Real>& b) {
-  bool equal = true;
-#define MSSIM_COMPARE(name) equal = equal && a.name == b.name;
-  MSSIM_SPRING_CONSTANTS(MSSIM_COMPARE)
-#undef MSSIM_COMPARE
-  return equal;
+inline std::array<Real, spring_constant_count> numbers_of(const SpringConstants<Real>& constants) {
+  return std::bit_cast<std::array<Real, spring_constant_count>>(constants);
 }
 
 /// Puts a node that has fallen below y = height (m) back on the floor and changes its velocity as in

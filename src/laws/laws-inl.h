@@ -28,7 +28,7 @@
 /// Constants of a spring, each made from the constants of the same name: make(number...).
 template <class Real, class Make, class... From>
 MSSIM_LAW_INLINE SpringConstants<Real> constants_from(const Make& make, const From&... from) {
-#define MSSIM_MADE(name) static_cast<Real>(make(from.name...)),
+#define MSSIM_MADE(name, info) static_cast<Real>(make(from.name...)),
   return {MSSIM_SPRING_CONSTANTS(MSSIM_MADE)};
 #undef MSSIM_MADE
 }
@@ -41,6 +41,7 @@ MSSIM_LAW_INLINE LinearSpring<Real> spring_from(const Make& make, const From&...
 #undef MSSIM_LAW
 #undef MSSIM_STRUCT
 #undef MSSIM_MEMBER
+#undef MSSIM_CONSTANT
 #undef MSSIM_OF
 #undef MSSIM_GIVES
 #undef MSSIM_VECTOR_LAW

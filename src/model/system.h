@@ -28,25 +28,26 @@ struct Spring {
   std::uint32_t kind = 0;  ///< index into System::materials
 };
 
-/// Stiffness and damping of a kind of spring.
+/// The constants of a kind of spring.
 using SpringMaterial = SpringConstants<double>;
 
-/// Names of one of its constants in files.
+/// One of its constants, a row of MSSIM_SPRING_CONSTANTS (kernels/spring_constants.h).
 struct SpringConstantInfo {
   double SpringMaterial::*number;
   std::string_view name;             ///< in traces, and in the files of users' programs
-  std::string_view unit, h5md_unit;  ///< in those files, and as in traces
+  int per_time;                      ///< n if the constant divided by a mass contains s^-n
+  std::string_view unit, h5md_unit;  ///< in the files of users' programs, and in traces
   std::string_view key, sentence;    ///< in scene files and their schema
   double most;                       ///< maximum in a scene file
+  bool required;                     ///< in scene files; another constant is 0 if a file does not state it
 };
-/// The TABLE of a spring's constants, in the order of SpringMaterial.
-inline constexpr auto spring_constants = std::to_array<SpringConstantInfo>({
-    {&SpringMaterial::stiffness, "stiffness", "N/m", "N m-1", "stiffness_n_per_m",
-     "Force per lengthening, N/m.", 1e9},
-    {&SpringMaterial::damping, "damping", "N s/m", "N s m-1", "damping_n_s_per_m",
-     "Force against the rate of lengthening, along the spring, N s/m.", 1e6},
-});
-static_assert(spring_constants.size() == spring_constant_count);
+/// The constants in the order of SpringMaterial.
+#define MSSIM_COLUMNS(...) __VA_ARGS__
+#define MSSIM_INFO(name, info) {&SpringMaterial::name, #name, MSSIM_COLUMNS info},
+inline constexpr auto spring_constants =
+    std::to_array<SpringConstantInfo>({MSSIM_SPRING_CONSTANTS(MSSIM_INFO)});
+#undef MSSIM_INFO
+#undef MSSIM_COLUMNS
 
 /// The springs of a regular cloth, by the deformation that they resist. The numbers index GridSpringKind
 /// tables and materials.

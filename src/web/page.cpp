@@ -38,11 +38,6 @@ std::vector<Number> numbers_of(std::span<const Vec3d> vectors) {
   return numbers;
 }
 
-json constants_of(const SpringMaterial& material) {
-  return mapped<double>(spring_constants,
-                        [&](const SpringConstantInfo& constant) { return material.*constant.number; });
-}
-
 /// Shapes of bodies, each once: many bodies of the paper are copies of nine.
 class Shapes {
  public:
@@ -81,7 +76,8 @@ json laws_of(const System& system, Shapes& shapes) {
             {"gravity", system.gravity},
             {"viscous_damping", system.viscous_damping},
             {"floor", {system.floor.height, system.floor.restitution, system.floor.friction}},
-            {"materials", mapped<json>(system.materials, constants_of)},
+            {"materials", mapped<json>(system.materials,
+                                       [](const SpringMaterial& material) { return numbers_of(material); })},
             {"pins", system.pins},
             {"mean_rest_length", mean_rest_length(system)},
             {"rounding_energy_j", energy_in_motion(system, system.start, Energy())}};

@@ -192,6 +192,22 @@ TEST_F(SceneFile, CutShortAnywhereIsRefusedWithoutACrash) {
     EXPECT_THAT(error_of(write(good + rest)), HasSubstr("malformed JSON")) << rest;
 }
 
+TEST(SpringConstant, ThatIsNotRequiredIsZeroUnlessAFileStatesIt) {
+  SpringConstantInfo constant = spring_constants.back();
+  constant.required = false;
+  SpringMaterial material;
+  const FieldList fields = [&](FieldVisitor& visitor) {
+    visit_constant(visitor, constant, material, from(0, constant.most));
+  };
+  read_fields("scene", fmt::format(R"({{"{}": 0.5}})", constant.key), fields);
+  EXPECT_EQ(material.*constant.number, 0.5);
+  read_fields("scene", "{}", fields);
+  EXPECT_EQ(material.*constant.number, 0);
+  EXPECT_THAT(json_schema("", "", fields), HasSubstr(R"("required": [])"));
+  constant.required = true;
+  EXPECT_THROW(read_fields("scene", "{}", fields), SceneError);
+}
+
 TEST(SceneNames, AreTheCommittedOnesByKindAndSize) {
   std::vector<std::string> names;
   for (const SceneSpec& spec : shipped_scenes()) names.push_back(spec.name);

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <span>
 #include <vector>
@@ -199,6 +199,13 @@ struct SeparateSteps : ExplicitSteps<Real> {
   }
 };
 
+/// base^exponent as a product, which std::pow does not round as.
+constexpr double whole_power(double base, int exponent) {
+  double product = 1;
+  for (int i = 0; i < std::abs(exponent); ++i) product *= base;
+  return exponent < 0 ? 1 / product : product;
+}
+
 /// A spring divided by the mass of a node, so that its force is an acceleration.
 template <class Real>
 using SpringPerMassOf = LinearSpring<Real>;
@@ -208,18 +215,17 @@ using SpringPerMass = SpringPerMassOf<float>;
 template <class Real = float>
 SpringPerMassOf<Real> spring_per_mass(const SpringMaterial& material, double rest_length, double mass,
                                       double unit_s = 1) {
-  static_assert(spring_constant_count == 2, "scale another constant by its power of time, too");
   auto spring = linear_spring(material, rest_length);
-  spring.constants.stiffness *= unit_s * unit_s;
-  spring.stiffness_rest *= unit_s * unit_s;
-  spring.constants.damping *= unit_s;
+  for (const SpringConstantInfo& constant : spring_constants)
+    spring.constants.*constant.number *= whole_power(unit_s, constant.per_time);
+  spring.stiffness_rest *= whole_power(unit_s, 2);
   return spring_from<Real>([mass](double number) { return number / mass; }, spring);
 }
 
 /// Writes the constants of one spring or node, `step` numbers apart. Returns the position after the last.
 template <class Real>
 Real* write_constants(Real* to, std::size_t step, const SpringConstants<Real>& constants) {
-  for (const Real number : std::bit_cast<std::array<Real, spring_constant_count>>(constants)) {
+  for (const Real number : numbers_of(constants)) {
     *to = number;
     to += step;
   }

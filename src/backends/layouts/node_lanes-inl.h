@@ -39,7 +39,7 @@ HWY_INLINE SpringConstants<Lanes> load_constants(const Real*& from) {
     from += lane_count();
     return number;
   };
-#define MSSIM_LOADED(name) next(),
+#define MSSIM_LOADED(name, info) next(),
   return {MSSIM_SPRING_CONSTANTS(MSSIM_LOADED)};
 #undef MSSIM_LOADED
 }

@@ -117,11 +117,21 @@ inline void visit_length(FieldVisitor& fields, const Field& field, double& targe
 
 inline constexpr double largest_stiffness = spring_constants.front().most;  ///< N/m
 
+/// Names the field of a constant of springs, with its target in `material`.
+inline void visit_constant(FieldVisitor& fields, const SpringConstantInfo& constant, SpringMaterial& material,
+                           const Range& range) {
+  const Field field{constant.key, constant.sentence};
+  if (constant.required) return fields.number(field, material.*constant.number, range);
+  std::optional<double> stated;
+  fields.optional_number(field, stated, range);
+  material.*constant.number = stated.value_or(0);
+}
+
 /// Names the fields of one kind of spring, with their targets in `material`.
 inline void visit_material(FieldVisitor& fields, SpringMaterial& material, const Range& stiffness) {
   for (const SpringConstantInfo& constant : spring_constants)
-    fields.number({constant.key, constant.sentence}, material.*constant.number,
-                  constant.number == &SpringMaterial::stiffness ? stiffness : from(0, constant.most));
+    visit_constant(fields, constant, material,
+                   constant.number == &SpringMaterial::stiffness ? stiffness : from(0, constant.most));
 }
 
 /// Bad input: a scene that cannot be found, read, parsed or built. what() is one sentence with the file, the
