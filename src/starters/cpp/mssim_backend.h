@@ -70,6 +70,11 @@ struct Grid {
   double spacing = 0;  ///< m
 };
 
+/// The constants of the law of a spring: applies ROW(name) to each. Springs of one kind share them.
+#define MSSIM_BACKEND_SPRING_CONSTANTS(ROW) \
+  ROW(stiffness) /* N/m */                  \
+  ROW(damping)   /* N s/m, along the spring */
+
 /// The simulated system. Names are those of the datasets of system.h5; nodes are in the scene's order.
 struct System {
   std::string scene;                                  ///< its name
@@ -81,9 +86,10 @@ struct System {
   std::vector<std::uint32_t> pins;                    ///< nodes that keep their start position, at rest
   std::vector<std::array<std::uint32_t, 2>> springs;  ///< the two nodes of each spring
   std::vector<double> rest_length;                    ///< [springs] m
-  std::vector<double> stiffness;                      ///< [springs] N/m
-  std::vector<double> damping;                        ///< [springs] N s/m, along the spring
-  std::vector<std::uint32_t> kind;  ///< [springs] springs of one kind have the same stiffness and damping
+#define MSSIM_BACKEND_MEMBER(name) std::vector<double> name;
+  MSSIM_BACKEND_SPRING_CONSTANTS(MSSIM_BACKEND_MEMBER)  ///< [springs] each
+#undef MSSIM_BACKEND_MEMBER
+  std::vector<std::uint32_t> kind;  ///< [springs]
   Vector gravity{};                 ///< m/s^2
   double viscous_damping = 0;       ///< 1/s
   Floor floor;
@@ -353,8 +359,9 @@ inline void read_system(System& system, const std::string& path) {
   system.pins = file.read<Index>("pins");
   system.springs = file.read<Index, std::array<Index, 2>>("springs");
   system.rest_length = file.read<double>("rest_length");
-  system.stiffness = file.read<double>("stiffness");
-  system.damping = file.read<double>("damping");
+#define MSSIM_BACKEND_READ(name) system.name = file.read<double>(#name);
+  MSSIM_BACKEND_SPRING_CONSTANTS(MSSIM_BACKEND_READ)
+#undef MSSIM_BACKEND_READ
   system.kind = file.read<Index>("kind");
   system.gravity = file.read<double, Vector>("gravity").at(0);
   system.viscous_damping = file.read_one<double>("viscous_damping");

@@ -53,7 +53,7 @@ class System:
     springs              [springs, 2]  the two nodes of each spring
     rest_length          [springs]     m
     stiffness, damping   [springs]     N/m; N s/m, along the spring
-    kind                 [springs]     springs of one kind have the same stiffness and damping
+    kind                 [springs]     springs of one kind have the same constants
     gravity              [3]           m/s^2
     viscous_damping                    1/s
     floor                              height (m), restitution, friction
@@ -61,6 +61,7 @@ class System:
                                        node = row * columns + column
     tetrahedra           [n, 4]        of bodies: the nodes of each; else None
 
+    Other datasets of system.h5 are there, too: further constants of the law of a spring, [springs].
     Also: scene (its name), dt (s, time step), threads (maximum number to use), nodes (number of nodes).
     Numbers are double precision, indices 64-bit integers.
     """
@@ -68,9 +69,10 @@ class System:
     def __init__(self, data, scene="", dt=0.0, threads=1):
         """`data`: system.h5, or a dict of the same shape."""
         self.scene, self.dt, self.threads = scene, dt, threads
-        for name in ("position", "velocity", "mass", "rest_length", "stiffness", "damping", "gravity"):
+        indices = {"pins", "springs", "kind"}
+        for name in data.keys() - indices - {"viscous_damping", "floor", "grid", "tetrahedra"}:
             setattr(self, name, np.array(data[name], dtype=np.float64))
-        for name in ("pins", "springs", "kind"):
+        for name in indices:
             # Column-major, which is faster to index with than pairs.
             setattr(self, name, np.array(data[name], dtype=np.int64, order="F"))
         self.viscous_damping = float(data["viscous_damping"][()])
