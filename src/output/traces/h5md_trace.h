@@ -106,7 +106,7 @@ void write_xdmf(const std::filesystem::path& trace, const XdmfMesh& mesh, std::s
 ///     /observables                            attribute leaves_out, of a garment: energies_leave_out()
 ///     .../step, .../time                      [frames] int64, float64: the same two datasets everywhere
 ///     /connectivity/springs                   [springs][2] uint32, each unique spring once
-///     /parameters/springs/{rest_length,stiffness,damping}     [springs] float64, in that order
+///     /parameters/springs/rest_length, and each of spring_constants   [springs] float64, in that order
 ///     /connectivity/tetrahedra                [tetrahedra][4] uint32, of bodies
 ///     /connectivity/joints                    [joints][3] uint32, of a garment: h5md_garment.h
 ///     /body/{points,triangles}                [points][3] float32, m, and [triangles][3] uint32, seen

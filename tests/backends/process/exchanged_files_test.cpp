@@ -144,8 +144,7 @@ TEST_F(SystemFileTest, HoldsACloth) {
   EXPECT_EQ(counts("/pins"), system.pins);
   EXPECT_THAT(extents("/springs"), ElementsAre(system.springs.size(), 2));
   const auto ends = counts("/springs"), kinds = counts("/kind");
-  const auto rest_lengths = doubles("/rest_length"), stiffness = doubles("/stiffness"),
-             damping = doubles("/damping");
+  const auto rest_lengths = doubles("/rest_length");
   ASSERT_EQ(rest_lengths.size(), system.springs.size());
   for (std::size_t i = 0; i < system.springs.size(); ++i) {
     const Spring& spring = system.springs[i];
@@ -153,8 +152,12 @@ TEST_F(SystemFileTest, HoldsACloth) {
     EXPECT_EQ(ends[2 * i + 1], spring.second);
     EXPECT_EQ(rest_lengths[i], spring.rest_length);
     EXPECT_EQ(kinds[i], spring.kind);
-    EXPECT_EQ(stiffness[i], system.materials[spring.kind].stiffness);
-    EXPECT_EQ(damping[i], system.materials[spring.kind].damping);
+  }
+  for (const SpringConstantInfo& constant : spring_constants) {
+    const auto numbers = doubles(fmt::format("/{}", constant.name));
+    ASSERT_EQ(numbers.size(), system.springs.size()) << constant.name;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      EXPECT_EQ(numbers[i], system.materials[system.springs[i].kind].*constant.number) << constant.name;
   }
   EXPECT_THAT(doubles("/gravity"), ElementsAre(0, -9.81, 0));
   EXPECT_THAT(extents("/viscous_damping"), ElementsAre());

@@ -20,15 +20,16 @@ double residual_of_linear_step(const System& system, const std::vector<Vec3d>& w
   const std::vector<Vec3d>&position = system.start.position, &velocity = system.start.velocity;
   std::vector<Vec3d> force = forces(system, system.start);
   for (const Spring& spring : system.springs) {
-    const auto [stiffness, damping] = system.materials[spring.kind];
+    const SpringMaterial& material = system.materials[spring.kind];
     const Vec3d d = position[spring.second] - position[spring.first], unit = 1 / length(d) * d;
     const Vec3d moved = dt_s * (w[spring.second] - w[spring.first]),
                 faster =
                     w[spring.second] - velocity[spring.second] - w[spring.first] + velocity[spring.first];
     const double across =
-        std::max(0.0, stiffness * (1 - static_cast<double>(spring.rest_length) / length(d)));
-    const Vec3d change = (stiffness * dot(unit, moved) + damping * dot(unit, faster)) * unit +
-                         across * (moved - dot(unit, moved) * unit);
+        std::max(0.0, material.stiffness * (1 - static_cast<double>(spring.rest_length) / length(d)));
+    const Vec3d change =
+        (material.stiffness * dot(unit, moved) + material.damping * dot(unit, faster)) * unit +
+        across * (moved - dot(unit, moved) * unit);
     force[spring.first] += change;
     force[spring.second] -= change;
   }
