@@ -229,7 +229,7 @@ int run(const BenchRequest& options) {
   }
   // The first write replaces earlier results, so nothing is written before there is a row.
   if (results.folder() && !structure.empty() && (plan.timed.empty() || !results.rows().empty()))
-    results.folder()->write(structure);
+    results.folder()->write(std::vector{structure_table(structure, plan.provenance)});
   tell_where_results_are(plan, results, stop.requested());
   stop.throw_if_requested();
   return code;

@@ -47,6 +47,11 @@ inline std::array<Real, spring_constant_count> numbers_of(const SpringConstants<
   return std::bit_cast<std::array<Real, spring_constant_count>>(constants);
 }
 
+template <class Real>
+inline bool operator==(const SpringConstants<Real>& a, const SpringConstants<Real>& b) {
+  return numbers_of(a) == numbers_of(b);
+}
+
 /// Puts a node that has fallen below y = height (m) back on the floor and changes its velocity as in
 /// kernels/node_laws.h; a node above stays unchanged. `x` in m, `v` in m/s.
 template <class Real>

@@ -45,7 +45,7 @@ std::optional<std::vector<AlikeBodiesOf<Real>>> find_alike_bodies(const System& 
     body.first_spring.push_back(static_cast<std::uint32_t>(body.springs.size()));
     begin = end;
     const auto known = std::ranges::find_if(all, [&](const AlikeBodiesOf<Real>& of) {
-      return numbers_of(of.constants) == numbers_of(body.constants) && of.pinned == body.pinned &&
+      return of.constants == body.constants && of.pinned == body.pinned &&
              of.first_spring == body.first_spring && of.springs == body.springs;
     });
     if (known == all.end())

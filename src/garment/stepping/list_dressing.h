@@ -20,10 +20,8 @@ class ListDressing : public DressingBackend {
 
   State state() const override {
     State state;
-    for (const Node& node : nodes_) {
-      state.position.push_back(vec3_cast<double>(Vec3<Real>(node.x)));
-      state.velocity.push_back(vec3_cast<double>(Vec3<Real>(node.v)));
-    }
+    for (const Node& node : nodes_)
+      state.add(vec3_cast<double>(Vec3<Real>(node.x)), vec3_cast<double>(Vec3<Real>(node.v)));
     state.draped = seaming_.progress.draping;
     return state;
   }
