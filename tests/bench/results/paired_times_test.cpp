@@ -12,7 +12,7 @@ namespace {
 PairedTimes pairs_of(std::size_t rounds, double factor, double noise, unsigned seed = 1) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> speed(1, 3), luck(-noise, noise);
-  PairedTimes times{"cloth2500", "openmp", "semi-euler", {}, {}, {}};
+  PairedTimes times{{"cloth2500", "openmp", "semi-euler"}, {}, {}, {}};
   for (std::size_t round = 0; round < rounds; ++round) {
     times.base_ms.push_back(speed(random));
     times.new_ms.push_back(times.base_ms.back() * factor * (1 + luck(random)));

@@ -226,7 +226,7 @@ TEST(RowTable, KeepsNumbersInLineBesideMarks) {
 
 ComparedRow row_of(const std::string& backend, std::optional<double> new_ms,
                    std::optional<RatioEstimate> ratio, Verdict verdict) {
-  return {"cloth2500", backend, "semi-euler", 1, new_ms, ratio, verdict, {}, "", {0.75, 1, 1.25}, {}};
+  return {{"cloth2500", backend, "semi-euler"}, 1, new_ms, ratio, verdict, {}, "", {0.75, 1, 1.25}, {}};
 }
 
 RunComparison made_up_comparison() {
