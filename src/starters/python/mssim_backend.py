@@ -70,7 +70,9 @@ class System:
         """`data`: system.h5, or a dict of the same shape."""
         self.scene, self.dt, self.threads = scene, dt, threads
         indices = {"pins", "springs", "kind"}
-        for name in data.keys() - indices - {"viscous_damping", "floor", "grid", "tetrahedra"}:
+        required = {"position", "velocity", "mass", "rest_length", "stiffness", "damping", "gravity"}
+        further = data.keys() - indices - {"viscous_damping", "floor", "grid", "tetrahedra", "scene", "dt", "threads"}
+        for name in required | further:
             setattr(self, name, np.array(data[name], dtype=np.float64))
         for name in indices:
             # Column-major, which is faster to index with than pairs.
