@@ -89,8 +89,8 @@ struct TorusShape {
   bool operator==(const TorusShape&) const = default;
 };
 
-/// The surface, of at least 3 cells each way; cells_around x cells_across points. Throws InputError for radii
-/// that make no ring, and an odd number of cells around.
+/// The surface, of at least 4 cells around and 3 across; cells_around x cells_across points. Throws
+/// InputError for radii that make no ring, and an odd number of cells around.
 Surface surface_of(const TorusShape& torus);
 
 /// The nodes inside a generated body: points of a body-centred cubic lattice, slightly perturbed at random.

@@ -72,7 +72,7 @@ void visit_torus(FieldVisitor& fields, BodySpec& body) {
   fields.number({"major_radius_m", "Distance from the centre of the ring to that of its section, m."},
                 torus.major_radius_m, above(0, 1000));
   fields.number({"minor_radius_m", "Radius of the section, m."}, torus.minor_radius_m, above(0, 1000));
-  fields.integer({"cells_around", "Sections along the ring."}, torus.cells_around, 3, 1000);
+  fields.integer({"cells_around", "Sections along the ring."}, torus.cells_around, 4, 1000);
   fields.integer({"cells_across", "Points of a section."}, torus.cells_across, 3, 1000);
   visit_interior(fields, interior);
 }

@@ -339,6 +339,9 @@ TEST_F(BodiesFile, OfAShapeOutOfRangeIsRefused) {
             "frequency is 0: give an integer from 1 to 1000"},
            {"torus", "\"cells_across\": 3", "\"cells_across\": 2",
             "cells_across is 2: give an integer from 3"},
+           {"torus", "\"cells_around\": 4", "\"cells_around\": 3",
+            "cells_around is 3: give an integer from 4"},
+           {"torus", "\"cells_around\": 4", "\"cells_around\": 5", "are 5, an odd number"},
            {"surface", "\"unit_m\": 1", "\"unit_m\": 0", "unit_m is 0: give a number above 0"},
            {"surface", "_m3\": 0", "_m3\": -1", "largest_tetrahedron_m3 is -1: give a number from 0"},
        }))
