@@ -176,8 +176,10 @@ constexpr Pair walk_writes_to(const Integrator& integrator, std::size_t stage, P
 /// The pairs that this storage needs arrays for.
 inline std::vector<Pair> stored_pairs(const Integrator& integrator, Storage storage) {
   std::vector<Pair> stored;
-  for (const Pair pair : {Pair::state, Pair::next, Pair::trial_a, Pair::trial_b})
+  for (std::size_t i = 0; i < pair_kinds; ++i) {
+    const auto pair = static_cast<Pair>(i);
     if (touches(integrator, pair) && storage_of(integrator, pair, storage) == pair) stored.push_back(pair);
+  }
   return stored;
 }
 

@@ -1,6 +1,7 @@
 #include "picture/legend.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -65,6 +66,7 @@ Rgb srgb(const Lch& colour) {
   }
   const LinearRgb rgb = with_lightness(low);
   const auto channel = [](double linear) {
+    assert(linear > -1e-4 && linear < 1 + 1e-4);
     return static_cast<std::uint8_t>(std::lround(255 * srgb_code(std::clamp(linear, 0.0, 1.0))));
   };
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};

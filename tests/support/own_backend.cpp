@@ -118,11 +118,10 @@ void serve(const std::string& mistake) {
     if (is_step) {
       int count = mistakes.is("idle") ? 0 : std::stoi(request.substr(5));
       if (mistakes.is("lazy")) count = std::min(count, 105);
-      for (int i = 0; i < count; ++i) {
-        if (mistakes.is("slow")) ::usleep(30'000);
-        if (mistakes.is("slower")) ::usleep(2'000);  // several times a step, even beside other programs
-        simulation.backend->step(1);
-      }
+      // Several times a step, even beside other programs.
+      const unsigned pause_us = mistakes.is("slow") ? 30'000 : mistakes.is("slower") ? 2'000 : 0;
+      for (int i = 0; pause_us > 0 && i < count; ++i) ::usleep(pause_us);
+      simulation.backend->step(count);
     } else if (request == "costs") {
       for (int times = mistakes.is("many-costs") ? 101 : 1; times > 0; --times)
         for (const char* cost : {"cost waiting 0.25", "cost bytes 96", "cost messages 2"}) lines->tell(cost);

@@ -261,7 +261,7 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
   Reference reference;
   const auto failed = [&](const std::string& why) {
     reference.failure = why;
-    return reference;
+    return std::move(reference);
   };
   std::unique_ptr<Backend> backend;
   try {
