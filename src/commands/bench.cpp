@@ -1,7 +1,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -151,7 +150,7 @@ std::vector<StructureRow> describe_scenes(std::vector<UnbuiltScene>& scenes) {
   return rows;
 }
 
-void tell_where_results_are(const BenchPlan& plan, BenchResults& results, bool stopped) {
+void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, bool stopped) {
   if (!results.folder()) return;
   const std::string folder = escaped(plan.output.folder);
   std::cerr << "mssim: ";

@@ -34,8 +34,8 @@ struct ListOptions {
   OwnBackendOptions own_backends;
 };
 
-/// Lists scenes with the numbers that they really have. Bodies whose mesh cannot be made have none. stderr
-/// gives the first reason only, because one cause (TetGen is missing) explains all.
+/// Lists scenes with the numbers that they really have. Bodies whose mesh cannot be made have none: TetGen
+/// is missing, or a file is wrong. stderr gives the first reason only, because one cause explains all.
 Table list_scenes(const ListOptions& /*options*/) {
   Table table;
   std::vector<std::string> uncounted;

@@ -7,7 +7,6 @@
 #include <future>
 #include <limits>
 #include <map>
-#include <memory>
 #include <random>
 #include <utility>
 
@@ -203,6 +202,7 @@ std::optional<State> independent_state(const System& system, double span_s, doub
     put_vector(numbers, nodes + node, system.start.velocity[node]);
   }
   std::vector<Vec3d> force(nodes);
+  // By reference, because the stepper copies the function.
   const auto rate = [&](const Numbers& now, Numbers& out, double /*time_s*/) {
     find_rate(system, now, force, out);
   };

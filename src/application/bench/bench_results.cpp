@@ -25,6 +25,7 @@ std::vector<ResultRow> rows_of_scene(const std::vector<ResultRow>& rows, const s
 }
 
 void replace_rows(std::vector<ResultRow>& rows, const std::string& scene, std::vector<ResultRow> its) {
+  // No row before the scene's first one is erased, so its place stays.
   const auto before = std::ranges::find(rows, scene, &ResultRow::scene) - rows.begin();
   std::erase_if(rows, [&](const ResultRow& row) { return row.scene == scene; });
   std::ranges::move(its, std::inserter(rows, rows.begin() + before));

@@ -57,6 +57,7 @@ class BenchResults {
   std::vector<ResultRow> of_scene(const std::string& name) const { return rows_of_scene(rows_, name); }
   /// The plan's folder, if it has one.
   std::optional<ResultFolder>& folder() { return folder_; }
+  const std::optional<ResultFolder>& folder() const { return folder_; }
   /// The names of the files of the scene's rows (file_stems), unique among those of all scenes.
   std::vector<std::string> stems_of_scene(const std::string& name) const;
 

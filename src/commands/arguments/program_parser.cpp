@@ -5,6 +5,7 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "text/text.h"
@@ -16,11 +17,14 @@ namespace {
 std::string help_entry(const std::string& name, const std::string& text) {
   constexpr std::size_t left_column = 26, page_width = 80;
   const std::string margin(left_column, ' ');
-  std::string page, left = "  " + name;
+  std::string page, line, left = "  " + name;
   // A name that fills its column gets a line of its own.
   left += left.size() + 2 > left_column ? '\n' + margin : margin.substr(left.size());
   std::istringstream lines(wrapped(text, page_width - left_column, ""));
-  for (std::string line; std::getline(lines, line); left = margin) page += left + line + '\n';
+  std::getline(lines, line);  // a text without words leaves the name alone
+  do {
+    page += std::exchange(left, margin) + line + '\n';
+  } while (std::getline(lines, line));
   return page;
 }
 

@@ -64,6 +64,7 @@ class ClothClothCollision {
 
   void put(std::size_t node, const NodeState& state);
   NodeState at(std::size_t node) const;
+  /// Finds the contacts and responds, for a step of dt (s).
   void respond(double dt);
   void stop_approach(const ClothContact& contact);
   void push_apart(const ClothContact& contact, float farthest);

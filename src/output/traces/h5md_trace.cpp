@@ -11,7 +11,7 @@
 namespace mssim {
 namespace {
 
-/// Of vectors in a file. HDF5 rounds their numbers to single precision if the dataset holds it.
+/// Of vectors in a file.
 constexpr std::size_t dimensions = 3;
 static_assert(sizeof(Vec3d) == dimensions * sizeof(double));
 
@@ -111,7 +111,7 @@ void write_h5md_head(hid_t file, const std::string& particles, const System& sys
   write_springs(file, system);
 }
 
-/// Writes the body, unless it is empty. Throws Hdf5Error.
+/// Writes the body, unless it is empty; HDF5 rounds its points to single precision. Throws Hdf5Error.
 void write_static_body(hid_t file, const Surface& body) {
   if (body.triangles.empty()) return;
   create_group(file, "/body");
@@ -254,6 +254,7 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
   const hsize_t frame = times_s_.size();
   reserve_room(file_.get(), name(),
                2 * dimensions * mesh_.nodes * mesh_.bytes_per_number() + room_for_metadata);
+  // HDF5 rounds them to single precision if the datasets hold it.
   write_row(position_, "positions", frame, H5T_NATIVE_DOUBLE, state.position.data());
   write_row(velocity_, "velocities", frame, H5T_NATIVE_DOUBLE, state.velocity.data());
   for (std::size_t kind = 0; kind < observables_.size(); ++kind) {
