@@ -10,6 +10,9 @@ make_run noisy serial=1:0.3 openmp=0.1
 make_run few serial=1:0.02:3
 make_run few-slower serial=2:0.02:3
 make_run other hybrid=1
+# Samples are compared, whatever time the row has.
+awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i } $c["backend"] == "openmp" { $c["ms_per_step"] = 0.1 } 1' \
+  slower/timings.csv >timings && mv timings slower/timings.csv
 
 # Verdicts and exit codes.
 saying 'serial .* same' ends 0 compare "$work/base" "$work/base"

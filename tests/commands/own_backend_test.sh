@@ -35,6 +35,35 @@ nothing_left "a right program"
 ends 3 bench --scene cloth2500 --integrator implicit-euler --rounds 2 --threads 1 --backend serial,./spring_list --out implicit
 grep -q 'unsupported: it has no implicit-euler' implicit/timings.csv || fail "a program without implicit integrators is not told so"
 
+# A program that only listens, and writes down how mssim begins. Each line is in docs/protocol.md.
+cat >listen <<PYTHON
+#!/usr/bin/python3
+import os, socket
+mssim = socket.socket(socket.AF_UNIX)
+mssim.connect(os.environ["MSSIM_SOCKET"])
+with open("$work/heard", "wb") as heard:
+    for line in mssim.makefile("rb"):
+        heard.write(line)
+        if line == b"prepare\n": break
+mssim.sendall(b"unavailable it only listens\n")
+PYTHON
+chmod +x listen
+ends 3 bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1 --backend serial,./listen --out listening
+sed -i 's# \(/.*\)/[^/]*$# \1#; s#/[^ ]*#PATH#' heard
+diff - heard <<'END' || fail "mssim begins in another way than docs/protocol.md says"
+mssim-backend 1
+scene cloth2500
+dt 5.0000000000000002e-05
+threads 1
+integrator semi-euler
+stage x v
+assign v_next 1 0 v 1 1 a
+assign x_next 1 0 x 1 1 v_next
+system PATH
+state PATH
+prepare
+END
+
 # What programs do wrong (more of it in tests/backends/process): each has its sentence, and the rows beside it are measured.
 mistakes=(unsupported unavailable fails-early many-notes crashes hangs-early ends-early exits hangs ignores-signals leaves-children
   binary nan floods tells-time idle lazy huge-costs)

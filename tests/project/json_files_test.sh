@@ -1,6 +1,7 @@
 #!/bin/bash
 # All JSON that mssim writes, or reads from users, is valid by its schema in docs/schemas, and damaged JSON is not. schema_test.sh does
-# so for scene files, and web_test.sh for what the page of mssim web saves. Arguments: mssim, the source folder.
+# so for scene files, and web_test.sh for what the page of mssim web saves. The committed schemas, and the columns in docs/bench.md, are
+# those of this program's tables. Arguments: mssim, the source folder.
 set -euo pipefail
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"

@@ -1,5 +1,7 @@
 // Scenes of tetrahedral bodies: the committed ones are the paper's, and files of others are read or refused.
 
+#include <map>
+
 #include "application/bench/suites.h"
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
@@ -309,7 +311,7 @@ const BadBodies bad_bodies[]{
     {"\"one.ele\"", "\"one.node\"", "/bodies/list/0", "one.node"},
     {"\"density_kg_per_m3\": 1000", "\"density_kg_per_m3\": 0", "/bodies/density_kg_per_m3", "is 0"}};
 
-TEST_F(BodiesFile, IsRefusedInOneSentenceWithItsPlace) {
+TEST_F(BodiesFile, ThatIsBrokenIsRefusedInOneSentenceWithItsPlace) {
   for (const auto& [old_part, new_part, place, problem] : bad_bodies) {
     const std::filesystem::path file = scene(with_change(good_, old_part, new_part));
     EXPECT_THAT(error_of(file),

@@ -151,7 +151,7 @@ const BadScene bad_scenes[]{
     {"\"rows\": 50,\n    \"columns\": 50", "\"rows\": 65536,\n    \"columns\": 65536", "/cloth/rows",
      "is 65536, which with 65536 columns makes 4294967296 nodes", "at or below 4294967295"}};
 
-TEST_F(SceneFile, IsRefusedInOneSentenceWithFilePlaceValueAndRemedy) {
+TEST_F(SceneFile, ThatIsBrokenIsRefusedInOneSentenceWithFilePlaceValueAndRemedy) {
   for (const BadScene& bad : bad_scenes) {
     SCOPED_TRACE(std::string_view(bad.new_part).substr(0, 60));
     const std::string error = error_of(write(with_change(good, bad.old_part, bad.new_part)));

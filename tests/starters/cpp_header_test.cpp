@@ -1,5 +1,6 @@
-// What users' C++ backends are written with has the same floor. That it takes the same steps as the reference
-// is tested with a program: OwnProgram in tests/backends/process.
+// What users' C++ backends are written with has the floor of mssim, and steps as its method says. That its
+// steps are those of the reference is tested with a program, OwnProgram in tests/backends/process, which no
+// sanitizer sees.
 
 #include "geometry/vec3.h"
 #include "laws/host_laws.h"
@@ -22,6 +23,29 @@ TEST(CppHeader, LandsAsTheFloorsLawSays) {
       for (std::size_t k = 0; k < 3; ++k)
         EXPECT_NEAR(own_v[k], (std::array{v.x, v.y, v.z})[k], 1e-15) << height << ' ' << velocity.y;
     }
+}
+
+TEST(CppHeader, StepsAsItsMethodSaysAndHoldsPins) {
+  using mssim_backend::Slot, mssim_backend::Vectors;
+  mssim_backend::System system;
+  system.dt = 0.5;
+  system.position = {{0, 1, 0}, {0, 2, 0}};
+  system.velocity = {{1, 0, 0}, {}};
+  system.mass = {1, 1};
+  system.pins = {1};
+  mssim_backend::Method method{"semi-euler", {{Slot::x, Slot::v, {}}}};
+  for (const char* line : {"v_next 1 0 v 1 1 a", "x_next 1 0 x 1 1 v_next"}) {
+    std::istringstream words(line);
+    method.stages[0].assignments.push_back(mssim_backend::detail::assignment_of(words));
+  }
+  const auto falling = [](const Vectors&, const Vectors&, Vectors& a) { a.assign(2, {0, -1, 0}); };
+  const auto backend = mssim_backend::stepped_by(system, method, falling);
+  backend->set(system.position, system.velocity);
+  backend->step(1);
+  Vectors x, v;
+  backend->get(x, v);
+  EXPECT_EQ(x, (Vectors{{0.5, 0.75, 0}, {0, 2, 0}}));
+  EXPECT_EQ(v, (Vectors{{1, -0.5, 0}, {}}));
 }
 
 }  // namespace

@@ -101,8 +101,8 @@ bodies_scene() {
 END
 }
 
-# make_run FOLDER BACKEND=MS[:SPREAD][:COUNT]...: a result folder in which only the times are made up: COUNT samples of each backend (15),
-# spread evenly about MS by at most that fraction (0.02)
+# make_run FOLDER BACKEND=MS[:SPREAD][:COUNT]...: a result folder in which only times and rounds are made up: COUNT samples of each backend
+# (15), spread evenly about MS by at most that fraction (0.02), and MS as the time per step of its row
 make_run() {
   local folder=$1 of=$source/results/table1/zen5 backend ms spread count pair file
   rm -rf "$folder"

@@ -11,7 +11,9 @@
 
 namespace {
 
-using namespace mssim_backend;
+using mssim_backend::Backend, mssim_backend::Method, mssim_backend::System, mssim_backend::Vector,
+    mssim_backend::Vectors, mssim_backend::stepped_by;
+namespace detail = mssim_backend::detail;
 
 std::unique_ptr<Backend> prepare(const System& system, const Method& method) {
   return stepped_by(system, method, [&system](const Vectors& x, const Vectors& v, Vectors& a) {
@@ -118,7 +120,8 @@ void serve(const std::string& mistake) {
     if (is_step) {
       int count = mistakes.is("idle") ? 0 : std::stoi(request.substr(5));
       if (mistakes.is("lazy")) count = std::min(count, 105);
-      // Several times a step, even beside other programs.
+      // A pause for each step; that of "slower" is several times as long as a step, even beside other
+      // programs.
       const unsigned pause_us = mistakes.is("slow") ? 30'000 : mistakes.is("slower") ? 2'000 : 0;
       for (int i = 0; pause_us > 0 && i < count; ++i) ::usleep(pause_us);
       simulation.backend->step(count);

@@ -40,13 +40,16 @@ using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
 
-/// What the Error says that `call` throws; empty where it throws nothing.
+/// What the Error says that `call` throws; empty where it throws nothing, or another exception, which is a
+/// failure.
 template <class Error, class Call>
 std::string sentence_of(const Call& call) {
   try {
     call();
   } catch (const Error& error) {
     return error.what();
+  } catch (const std::exception& other) {
+    ADD_FAILURE() << "an exception of another type: " << other.what();
   }
   return {};
 }

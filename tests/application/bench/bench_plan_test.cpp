@@ -9,6 +9,7 @@
 #include "tests/support/files_fixture.h"
 #include "tests/support/testing.h"
 #include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -1,5 +1,5 @@
 // Tetrahedral bodies on the OpenCL backends, in every width, against the double-precision reference. That no
-// way to share the work or memory changes a bit is tested with cloths, in opencl_test.cpp.
+// way to share the work or memory changes a bit is tested in opencl_test.cpp, for cloths and bodies.
 
 #include "backends/backends.h"
 #include "bench/verification/verification.h"

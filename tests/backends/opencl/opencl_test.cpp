@@ -158,9 +158,10 @@ TEST(OpenclBackends, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
     for (const Integrator& integrator : integrators)
       for (const OpenclVariant variant :
            {OpenclVariant{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
+        SCOPED_TRACE(fmt::format("{}, {}, {} nodes", variant.name(), integrator.name, system.nodes()));
         std::vector<State> found;
         for (const DeviceInMemory& memory : ways_to_memory()) {
-          SCOPED_TRACE(memory.name + (", " + std::string(integrator.name)));
+          SCOPED_TRACE(memory.name);
           const auto backend = variant.make_in(memory, system, integrator, backend_dt_s);
           backend->step(7);
           backend->set_state(system.start);

@@ -249,7 +249,7 @@ const BadPieces bad_pieces[]{
     {dressing_end, with_layers, "/garment/pieces/seams/0", "apron in layer 0 to seat in layer 1",
      "leave out \"layers\""}};
 
-TEST(GarmentPieces, AreRefusedInOneSentenceWithPlaceValueAndRemedy) {
+TEST(GarmentPieces, ThatAreBrokenAreRefusedInOneSentenceWithPlaceValueAndRemedy) {
   for (const BadPieces& bad : bad_pieces)
     EXPECT_THAT(sentence_of<SceneError>([&] { built(with_change(two_pieces, bad.old_part, bad.new_part)); }),
                 AllOf(StartsWith(std::string("pieces.json: ") + bad.place + " "), HasSubstr(bad.value),

@@ -34,6 +34,7 @@ inline cl_int CL_API_CALL platform_info(cl_platform_id, cl_platform_info what, s
 
 }  // namespace fake_opencl
 
+// NOLINTBEGIN(misc-definitions-in-headers): included once, as said above
 extern "C" cl_int clIcdGetPlatformIDsKHR(cl_uint num_entries, cl_platform_id* platforms,
                                          cl_uint* num_platforms) {
   fake_opencl::calls.clGetPlatformInfo = fake_opencl::platform_info;
@@ -50,3 +51,4 @@ extern "C" void* clGetExtensionFunctionAddress(const char* func_name) {
     return reinterpret_cast<void*>(fake_opencl::platform_info);
   return nullptr;
 }
+// NOLINTEND(misc-definitions-in-headers)
