@@ -143,7 +143,7 @@ PATH=$(tetgen_that 'echo no licence >&2; exit 7'):$PATH expect 2 \
   'torus-small.json: /bodies/list/0 has no mesh: .*ended with exit code 7 after writing "no licence"' run --scene torus-small --duration 0.001
 PATH=$(tetgen_that 'echo garbage >body.1.node; echo garbage >body.1.ele'):$PATH expect 2 \
   'torus-small.json: /bodies/list/0 has no mesh: .*/tetgen cannot be used: .*"garbage"' run --scene torus-small --duration 0.001
-[ "$(find "$work/cache" -type f | wc -l)" -ge 9 ] || fail "the cache has shrunk"
+[ "$(find "$work/cache/mssim/meshes" -type f | wc -l)" -ge 9 ] || fail "the cache has shrunk"
 
 # Ctrl-C while TetGen runs: mssim ends by the signal, and neither TetGen nor its folder is left behind.
 slow=$(tetgen_that "echo \$\$ >'$work/slow-tetgen'; sleep 60; exit 1")
@@ -155,4 +155,4 @@ for signal in INT TERM; do
   soon 5 is_gone "$(cat slow-tetgen)" || fail "TetGen goes on after SIG$signal"
 done
 [ -z "$(ls -A "$TMPDIR")" ] || fail "temporary files are left: $(ls "$TMPDIR")"
-[ -z "$(find "$XDG_CACHE_HOME" -type f ! -name '*.mesh')" ] || fail "half-written meshes are left in the cache"
+[ -z "$(find "$work/cache/mssim/meshes" -type f ! -name '*.mesh')" ] || fail "half-written meshes are left in the cache"
