@@ -465,7 +465,7 @@ struct Simulation {
   }
 
   /// Handles a request and returns the answer.
-  std::string answer(const std::string& request) {
+  std::string answer(const std::string& request) const {
     if (request.rfind("step ", 0) == 0) {
       backend->step(std::stoi(request.substr(5)));
     } else if (request == "set") {
