@@ -91,7 +91,7 @@ typeset() {
 }
 
 # Several devices, and a long command.
-ends 0 table "$results/garment/emerald-rapids-h100" --format latex --out "$work/h100"
+ends 0 table "$results/garment/emerald-rapids-h100-busy" --format latex --out "$work/h100"
 typeset "$work/h100"
 
 for folder in table1 garment; do
@@ -181,6 +181,7 @@ PYTHON
 for folder in failed old others; do ends 0 table "$work/$folder" --format latex --out "$work/$folder-paper"; done
 grep -q 'beyond Tukey' "$work/table1/methods.tex" || fail "the outliers are missing"
 ! grep 'paragraph{Timing' "$work/failed-paper/methods.tex" || fail "nothing was timed"
+! grep -h '[^0-9]0 rounds' "$work/failed-paper"/*.tex || fail "rounds that were not taken"
 grep -q 'paragraph{Timing' "$work/old-paper/methods.tex" || fail "the paragraph on times is missing"
 ! grep -E '\(0 trials|the 0 beyond' "$work/old-paper/methods.tex" || fail "a number that an older file lacks"
 grep -q 'Neither paper has .*cloth200k} or .*cloth350k}\.' "$work/others-paper/methods.tex" || fail "other scenes: $(cat "$work/others-paper/methods.tex")"

@@ -76,15 +76,17 @@ def suite_of(claim):
 
 def outcome(claim, folder):
     """None if nothing in the folder can decide the claim."""
-    found = judged[f"results/{suite_of(claim)}/{folder}"].get(claim["name"])
+    found = judged.get(f"results/{suite_of(claim)}/{folder}", {}).get(claim["name"])
     return found if found and found["outcome"] != "not testable here" else None
 
 
 def outcomes(claim, machine):
-    """The outcomes in the machine's folders (NAME-...), by what their names say besides; first one that decides, if there is one."""
+    """The outcomes in the machine's folders (NAME-...), by what their names say besides; first one that decides, if there is one, and
+    of these one of a quiet machine."""
     found = [(os.path.basename(folder)[len(machine) + 1:].replace("-", " "), outcome(claim, os.path.basename(folder)))
              for folder in sorted(glob.glob(f"results/{suite_of(claim)}/{machine}*"))]
-    return sorted(((remark, one) for remark, one in found if one), key=lambda pair: pair[1]["outcome"] == "undecided")
+    return sorted(((remark, one) for remark, one in found if one),
+                  key=lambda pair: (pair[1]["outcome"] == "undecided", pair[0].startswith("busy")))
 
 
 def held(machine):
@@ -166,14 +168,15 @@ for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies
 without_gpu = [machine for machine in machines if machine != gpu]
 assert {cpus(f"results/table1/{machine}") for machine in without_gpu} == {2}
 readme.append(f"Of {len(claims)} claims in both papers, {len(testable)} can be decided by a ratio of times.")
-readme.append("Each machine's rows test some of these. Held, of those tested, without a GPU: " + ", ".join(f"{held(machine)} on {machines[machine]}" for machine in without_gpu) + ", 2 CPUs each.")
-readme.append(f"Held on {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100: {held(gpu)}.")
+by_machine = [f"{held(machine)} on {machines[machine]}" for machine in without_gpu]
+readme.append("Each machine's rows test some of these. On 2 CPUs without a GPU these held: " + ", ".join(by_machine[:-1]) + f" and {by_machine[-1]}.")
+readme.append(f"On {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100, {held(gpu)} held;")
 busy = sum(all[0][0].startswith("busy") and all[0][1]["outcome"] == "held" for all in (outcomes(claim, gpu) for claim in testable) if all)
-readme.append(f"{busy} of these held while the machine was busy; its quiet run has too few rounds.")
+readme.append(f"{busy} of these {'was' if busy == 1 else 'were'} measured only while the machine was busy.")
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
-slower = [machine for machine in machines if outcomes(locks, machine)[0][1]["outcome"] == "not held"]
-crowded = sum(outcomes(locks, machine)[0][0].startswith("busy") for machine in slower)
-readme.append(f"On {len(slower)} of {len(machines)} machines ({crowded} of them busy), threads that share a spring list and a lock took longer than one thread on at least one cloth")
+slower = [machine for machine in machines
+          if (first := outcomes(locks, machine)[0])[1]["outcome"] == "not held" and not first[0].startswith("busy")]
+readme.append(f"On {len(slower)} of {len(machines)} machines, threads that share a spring list and a lock took longer than one thread on at least one cloth")
 readme.append(f"With 2 threads `openmp` steps cloths {span(speedups('table1', 'zen4', 'openmp'))} times as fast as `serial`, a plain spring list (Zen 4, as in the chart)")
 shares = [1 / float(row["speedup_vs_serial"]) for threads in ("1-thread", "2-threads")
           for row in rows(f"results/peers/zen4/{threads}/timings.csv") if row["backend"] == "cpp-list" and row["status"] == "ok"]

@@ -250,7 +250,7 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      &ResultRow::link_gigabytes_per_second},
     {"setup_s", "s", "time to make the backend for the scene, once; of a program, to start and prepare it",
      &ResultRow::setup_s},
-    {"compile_s", "s", "part of it in which an OpenCL driver compiled; drivers keep kernels of earlier runs",
+    {"compile_s", "s", "part of `setup_s` in which an OpenCL driver compiled; drivers keep kernels of earlier runs",
      &ResultRow::compile_s},
     {"first_step_ms", "ms", "time of the first step after that, once", &ResultRow::first_step_ms},
     {"peak_memory_bytes", "",
@@ -266,8 +266,8 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      &ResultRow::joules_per_step},
     {"cycles_per_step", "", "processor cycles in user code of mssim's threads, in a sample that is not timed",
      &ResultRow::cycles_per_step},
-    {"instructions_per_step", "", "instructions there", &ResultRow::instructions_per_step},
-    {"cache_misses_per_step", "", "cache misses there; which cache it is depends on the processor",
+    {"instructions_per_step", "", "instructions in that sample", &ResultRow::instructions_per_step},
+    {"cache_misses_per_step", "", "cache misses in that sample; which cache it is depends on the processor",
      &ResultRow::cache_misses_per_step},
 });
 
