@@ -37,8 +37,10 @@ Document times_page(const ReportFolder& folder) {
   return page;
 }
 
+/// Empty if no row has a sample.
 std::string rounds_in(const ReportFolder& folder) {
-  return folder.rows.empty() ? "" : range_of(folder, &ResultRow::rounds) + " rounds.";
+  const std::string rounds = folder.rows.empty() ? "0" : range_of(folder, &ResultRow::rounds);
+  return rounds == "0" ? "" : rounds + " rounds.";
 }
 
 std::vector<Chart> charts_of(const ReportFolder& folder, const ReportInput& input) {
@@ -68,8 +70,8 @@ void add_figures(std::vector<FolderFile>& files, const std::string& prefix, cons
     files.push_back({name + ".svg", drawn.svg + '\n'});
     std::vector<std::string> said{chart.title,
                                   measured_on(pointers_to(folder.rows), folder.where_from()).text};
-    said.back().pop_back();  // its full stop
-    if (!folder.rows.empty()) said.push_back(range_of(folder, &ResultRow::rounds) + " rounds");
+    if (const std::string rounds = rounds_in(folder); !rounds.empty()) said.push_back(rounds);
+    for (std::size_t i = 1; i < said.size(); ++i) said[i].pop_back();  // the full stop
     said.insert(said.end(), drawn.notes.begin(), drawn.notes.end());
     figures.text += fmt::format(
         "\\begin{{figure}}[!htbp]\n\\centering\n\\IfFileExists{{{0}.pdf}}"
@@ -150,9 +152,9 @@ std::string timing_of(const ReportFolder& folder) {
       seconds.push_back(row.samples_ms[i] * row.sample_steps[i] / 1000);
   }
   std::string text = fmt::format(
-      "Before the first round each combination of scene, backend and integrator was run until its last two "
-      "trials were no faster than those before{}.\nEach of {} rounds took one sample of every "
-      "combination of a scene, in random order.\n",
+      "Before the first round each combination of scene, backend and integrator was run until neither of its "
+      "last two trials was more than \\qty{{2}}{{\\percent}} faster than the fastest before{}.\nEach of {} "
+      "rounds took one sample of every combination of a scene, in random order.\n",
       trials == "0" ? "" : " (" + trials + " trials)", rounds);
   if (!seconds.empty())
     text += fmt::format(

@@ -131,7 +131,7 @@ TimeBudget::TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> 
 }
 
 std::optional<TimeBudget::Clock::time_point> TimeBudget::deadline() const {
-  if (!end_) return std::nullopt;
+  if (!end_ || present_.round == 0) return end_;  // without a limit, or of a skipped scene
   const Clock::time_point now = Clock::now();
   const double scale = expected_ > 0 ? taken_ / expected_ : 1;
   std::vector<ExpectedTime> left = scenes_;
@@ -159,11 +159,14 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   const auto seconds =
       mapped<double>(times_of(plan.timed), [&](const ExpectedTime& time) { return time.with(rounds); });
   std::set<std::string> finished_ones;  // known before a scene is measured: --resume may refuse a later one
-  for (const PlannedScene& planned : plan.timed) {
+  for (std::size_t i = 0; i < plan.timed.size(); ++i) {
+    const PlannedScene& planned = plan.timed[i];
     BenchSettings settings = plan.settings;
     settings.backends = planned.backends;
-    if (is_finished(settings, planned.spec.name, results.of_scene(planned.spec.name), plan.output.folder))
-      finished_ones.insert(planned.spec.name);
+    if (!is_finished(settings, planned.spec.name, results.of_scene(planned.spec.name), plan.output.folder))
+      continue;
+    finished_ones.insert(planned.spec.name);
+    budget.skip(i);
   }
   ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
   for (PlannedScene& planned : plan.timed) {

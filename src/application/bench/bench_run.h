@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -46,6 +47,9 @@ class TimeBudget {
   /// round of each scene.
   TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> scenes);
 
+  /// Gives the time of a scene that has not begun, the `scene`-th from now, to the others: nothing of it is
+  /// measured.
+  void skip(std::size_t scene) { scenes_[scene] = {}; }
   /// When everything must have ended; none without a limit.
   std::optional<Clock::time_point> end() const { return end_; }
   /// When the next scene, which begins now, must have been measured and checked; none without a limit.

@@ -135,6 +135,15 @@ TEST(TimeBudget, GivesTheLastSceneAllThatIsLeft) {
   EXPECT_NEAR(seconds_until(budget.begin_scene()), 50, 0.5);
 }
 
+TEST(TimeBudget, ReservesNothingForASceneThatIsSkipped) {
+  TimeBudget budget(50, {{10, 1}, {10, 1}, {20, 2}});
+  budget.skip(1);
+  // 20 seconds are left for rounds of 1 + 2 seconds.
+  EXPECT_NEAR(seconds_until(budget.begin_scene()), 10 + 20. / 3, 0.5);
+  EXPECT_NEAR(seconds_until(budget.begin_scene()), 50, 0.5) << "the skipped one, which needs no rounds";
+  EXPECT_NEAR(seconds_until(budget.begin_scene()), 50, 0.5);
+}
+
 TEST(TimeBudget, BelievesWhatTheFirstRoundsTook) {
   TimeBudget budget(10, {{0.01, 0.01}, {0.01, 0.01}, {0.01, 0.02}});
   budget.begin_scene();
