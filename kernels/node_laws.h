@@ -43,8 +43,11 @@ MSSIM_LAW floor_rebound(Real vertical, Real restitution) {
 MSSIM_LAW floor_grip(Real normal_change, Real slide_squared, Real friction) {
   Real none = normal_change - normal_change;
   Real one = none + 1.0f;
-  /* 1e-30 keeps the reciprocal finite for a node that does not slide. */
-  Real kept = one - friction * normal_change * inverse_sqrt(slide_squared + 1e-30f);
+  /* The smallest normal number keeps the reciprocal finite for a node that does not slide. A larger one would
+   * be a speed below which friction is wrong: openmp's unit of time is the step, so its speeds are small. */
+  Real least = none + 1.17549435e-38f;
+  Real slide = where_less(least, slide_squared, slide_squared, least);
+  Real kept = one - friction * normal_change * inverse_sqrt(slide);
   return where_less(kept, none, none, kept);
 }
 

@@ -28,6 +28,17 @@ TEST(FloorLaw, TurnsAFallAroundAndSlowsASlide) {
   EXPECT_NEAR(v.z, -1.6, 1e-12);
 }
 
+// A speed has no unit that the law may know: openmp counts time in steps.
+TEST(FloorLaw, IsTheSameForSmallSpeeds) {
+  constexpr float scale = 0x1p-60F;  // exact, and no square of these speeds is denormal
+  for (const Vec3<float> v : {Vec3<float>{3, -2, 4}, Vec3<float>{0.5F, -8, 1}, Vec3<float>{0, -1, 0}}) {
+    const Vec3<float> after = floor_velocity(v, 0.5F, 0.25F), slow = floor_velocity(scale * v, 0.5F, 0.25F);
+    EXPECT_EQ(slow.x, scale * after.x);
+    EXPECT_EQ(slow.y, scale * after.y);
+    EXPECT_EQ(slow.z, scale * after.z);
+  }
+}
+
 TEST(FloorLaw, StopsASlideThatIsSlowerThanFriction) {
   EXPECT_EQ(floor_velocity(Vec3d{0.3, -4, 0.4}, 0.5, 0.5), (Vec3d{0, 2, 0}));
 }
