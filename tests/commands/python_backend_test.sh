@@ -35,9 +35,10 @@ fails_with 'the state is an array \[2\] instead of \[2500, 3\]' 'def prepare(sys
 fails_with 'prepare returned neither a function' 'def prepare(system, method): return 3'
 fails_with 'unsupported.*not semi-euler' 'def prepare(system, method): raise mssim_backend.Unsupported("not " + method.name)'
 fails_with 'unavailable.*no such device' 'def prepare(system, method): raise mssim_backend.Unavailable("no such device")'
+fails_with 'unsupported: no reason given' 'def prepare(system, method): raise mssim_backend.Unsupported'
 # The module is found beside folders of a description's own, and an empty text says nothing.
 mkdir described
-sed 's/^mssim_backend.serve.*/mssim_backend.serve(prepare, note="", device="", precision="")/' mine.py >described/silent.py
+sed 's/^mssim_backend.serve.*/mssim_backend.serve(prepare, note="", device=" ", precision="\\n")/' mine.py >described/silent.py
 chmod +x described/silent.py
 printf '{"command": ["./silent.py"], "environment": {"PYTHONPATH": "/nowhere"}}' >described/silent.json
 ends 0 bench --scene cloth2500 --backend silent --backend-folder described --integrator semi-euler --rounds 1

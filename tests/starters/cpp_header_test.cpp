@@ -48,5 +48,18 @@ TEST(CppHeader, StepsAsItsMethodSaysAndHoldsPins) {
   EXPECT_EQ(v, (Vectors{{1, -0.5, 0}, {}}));
 }
 
+/// The answer of a program whose `prepare` throws this.
+template <class Thrown>
+std::string answer_to(const Thrown& thrown) {
+  return mssim_backend::detail::outcome_of([&]() -> std::string { throw thrown; });
+}
+
+TEST(CppHeader, GivesAReasonWhereTheProgramHasNone) {
+  EXPECT_EQ(answer_to(mssim_backend::Unsupported("only\nred springs")), "unsupported only red springs");
+  EXPECT_EQ(answer_to(mssim_backend::Unsupported("")), "unsupported no reason given");
+  EXPECT_EQ(answer_to(mssim_backend::Unavailable(" \n")), "unavailable no reason given");
+  EXPECT_EQ(answer_to(std::runtime_error("")), "failed no reason given");
+}
+
 }  // namespace
 }  // namespace mssim

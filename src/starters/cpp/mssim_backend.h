@@ -268,6 +268,10 @@ inline std::string one_line(std::string text) {
   return text;
 }
 
+inline bool has_words(const std::string& text) {
+  return text.find_first_not_of(" \t\r\n") != std::string::npos;
+}
+
 /// Line-based I/O on the socket.
 class Lines {
  public:
@@ -482,16 +486,19 @@ struct Simulation {
 /// The result of `call`, or the answer for its exception.
 template <class Call>
 std::string outcome_of(Call call) {
+  const auto answer = [](const char* outcome, const std::string& reason) {
+    return outcome + (has_words(reason) ? one_line(reason) : "no reason given");
+  };
   try {
     return call();
   } catch (const MssimHasEnded&) {
     throw;
   } catch (const Unsupported& reason) {
-    return "unsupported " + one_line(reason.what());
+    return answer("unsupported ", reason.what());
   } catch (const Unavailable& reason) {
-    return "unavailable " + one_line(reason.what());
+    return answer("unavailable ", reason.what());
   } catch (const std::exception& error) {
-    return "failed " + one_line(error.what());
+    return answer("failed ", error.what());
   } catch (...) {
     return "failed an exception that is not a std::exception";
   }
@@ -503,10 +510,10 @@ inline void hold_conversation(Lines& lines, const Prepare& prepare) {
   const std::string outcome = outcome_of([&] {
     simulation = std::make_unique<Simulation>(lines, prepare);
     const About& about = simulation->backend->about;
-    if (!about.device.empty()) lines.tell("device " + one_line(about.device));
-    if (!about.precision.empty()) lines.tell("precision " + one_line(about.precision));
+    if (has_words(about.device)) lines.tell("device " + one_line(about.device));
+    if (has_words(about.precision)) lines.tell("precision " + one_line(about.precision));
     if (about.threads > 0) lines.tell("threads " + std::to_string(about.threads));
-    if (!about.note.empty()) lines.tell("note " + one_line(about.note));
+    if (has_words(about.note)) lines.tell("note " + one_line(about.note));
     return ready;
   });
   lines.tell(outcome);

@@ -143,7 +143,7 @@ def say(*, device=None, threads=None, precision=None, note=None):
     note        for readers of its times: version, settings
     """
     given = {"device": device, "threads": threads, "precision": precision, "note": note}
-    _said.update((field, value) for field, value in given.items() if value not in (None, ""))
+    _said.update((field, value) for field, value in given.items() if value is not None and _one_line(value))
 
 
 def serve(prepare, *, device=None, threads=None, precision=None, note=None):
@@ -260,9 +260,9 @@ class _Conversation:
         except _MssimHasEnded:
             raise
         except Unsupported as reason:
-            self._tell(f"unsupported {_one_line(reason)}")
+            self._tell(f"unsupported {_one_line(reason) or _no_reason}")
         except Unavailable as reason:
-            self._tell(f"unavailable {_one_line(reason)}")
+            self._tell(f"unavailable {_one_line(reason) or _no_reason}")
         except Exception as error:
             traceback.print_exc()
             sys.stderr.flush()
