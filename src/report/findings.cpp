@@ -43,6 +43,25 @@ std::string devices_of(std::span<const ResultRow> rows, const Provenance& proven
   return join(labels, "; ");
 }
 
+/// The first row for each reason and the number of others that have it; at most three reasons.
+std::string by_reason(const std::vector<const ResultRow*>& rows) {
+  constexpr std::size_t most = 3;
+  const auto reason_of = [](const ResultRow* row) { return status_of(*row); };
+  std::vector<std::string> parts;
+  std::size_t others = rows.size();
+  for (const std::string& reason : distinct<std::string>(rows, reason_of)) {
+    if (parts.size() == most) break;
+    const auto count = static_cast<std::size_t>(std::ranges::count(rows, reason, reason_of));
+    parts.push_back(fmt::format("{}{} ({})", row_name(**std::ranges::find(rows, reason, reason_of)),
+                                count > 1 ? fmt::format(" and {} more", count - 1) : "", reason));
+    others -= count;
+  }
+  if (others > 0)
+    parts.push_back(
+        fmt::format("the list *Rows without a time* has {} with other reasons", pluralize(others, "row")));
+  return join(parts, "; ");
+}
+
 Finding about_speedups(std::span<const ResultRow> rows) {
   const std::vector<const ResultRow*> pointers = pointers_to(rows);
   std::vector<std::string> near_one;
@@ -89,24 +108,30 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
   if (const std::string devices = devices_of(rows, provenance); !devices.empty())
     findings.push_back({false, fmt::format("The published GPU is that of a {}. Devices of these rows: {}.",
                                            paper_device, devices)});
-  std::vector<std::string> wrong;
-  std::size_t timed = 0, without_time = 0;
+  std::vector<const ResultRow*> wrong;
+  std::size_t timed = 0, unchecked = 0, without_time = 0;
   for (const ResultRow& row : rows)
-    if (counts(row))
+    if (counts(row)) {
       ++timed;
-    else if (is_wrong(row))
-      wrong.push_back(row_name(row));
-    else
+      if (has_unchecked_samples(row)) ++unchecked;
+    } else if (is_wrong(row)) {
+      wrong.push_back(&row);
+    } else {
       ++without_time;
+    }
   if (timed > 0)
     findings.push_back(
         {false, subject(timed, "row", " has a time, and is",
                         wrong.empty() ? " have a time, and all are" : " have a time, and are") +
-                    " verified against the double-precision reference."});
+                    " verified against the double-precision reference" +
+                    (unchecked > 0 ? fmt::format(", but the samples of {} are not checked yet",
+                                                 pluralize(unchecked, "row"))
+                                   : "") +
+                    "."});
   if (!wrong.empty())
     findings.push_back({true, subject(wrong.size(), "row", " failed or is not verified, and is",
                                       " failed or are not verified, and are") +
-                                  " excluded from all statistics: " + join(wrong, "; ") + "."});
+                                  " excluded from all statistics: " + by_reason(wrong) + "."});
   if (without_time > 0)
     findings.push_back({false, subject(without_time, "row", " has", " have") +
                                    " no time; the list *Rows without a time* says why."});

@@ -12,11 +12,17 @@
 namespace mssim {
 namespace {
 
+/// Any text as code. A Document's mark for code ends at a backtick, which the name of a file may have.
+std::string code(std::string_view text) {
+  std::string content;
+  for (const char character : latex_text(text))
+    content += character == '\'' ? std::string("\\textquotesingle{}") : std::string(1, character);
+  return "\\texttt{" + content + "}";
+}
+
 /// Names in a sentence, each as code.
 std::string names_in(const std::vector<std::string>& names, std::string_view last_word = "and") {
-  return listed(
-      mapped<std::string>(names, [](const std::string& name) { return latex_prose("`" + name + "`"); }),
-      last_word);
+  return listed(mapped<std::string>(names, code), last_word);
 }
 
 /// All rows, a table for each scene.
@@ -37,10 +43,15 @@ Document times_page(const ReportFolder& folder) {
   return page;
 }
 
+/// "1 round", "7 to 15 rounds": a range_of() and its noun.
+std::string counted(const std::string& range, std::string_view noun) {
+  return fmt::format("{} {}{}", range, noun, range == "1" ? "" : "s");
+}
+
 /// Empty if no row has a sample.
 std::string rounds_in(const ReportFolder& folder) {
   const std::string rounds = folder.rows.empty() ? "0" : range_of(folder, &ResultRow::rounds);
-  return rounds == "0" ? "" : rounds + " rounds.";
+  return rounds == "0" ? "" : counted(rounds, "round") + ".";
 }
 
 std::vector<Chart> charts_of(const ReportFolder& folder, const ReportInput& input) {
@@ -139,6 +150,12 @@ std::string scenes_of(const ReportFolder& folder, const ReportInput& input) {
   return text;
 }
 
+/// Whether `bench --verified` took the row's verification from an earlier process, by its note (job.cpp).
+/// Such a row has no warm-up before its samples, and no check of them.
+bool relies_on_earlier_process(const ResultRow& row) {
+  return row.note.find(verified_before) != std::string::npos;
+}
+
 /// Empty if no row has a sample. Files of older versions lack the trials and outliers.
 std::string timing_of(const ReportFolder& folder) {
   const std::string rounds = range_of(folder, &ResultRow::rounds),
@@ -151,16 +168,19 @@ std::string timing_of(const ReportFolder& folder) {
     for (std::size_t i = 0; i < row.samples_ms.size(); ++i)
       seconds.push_back(row.samples_ms[i] * row.sample_steps[i] / 1000);
   }
-  std::string text = fmt::format(
-      "Before the first round each combination of scene, backend and integrator was run until neither of its "
-      "last two trials was more than \\qty{{2}}{{\\percent}} faster than the fastest before{}.\nEach of {} "
-      "rounds took one sample of every combination of a scene, in random order.\n",
-      trials == "0" ? "" : " (" + trials + " trials)", rounds);
+  std::string text;
+  if (!std::ranges::any_of(folder.rows, relies_on_earlier_process))
+    text = fmt::format(
+        "Before the first round each combination of scene, backend and integrator was run until neither of "
+        "its last two trials was more than \\qty{{2}}{{\\percent}} faster than the fastest before{}.\n",
+        trials == "0" ? "" : " (" + counted(trials, "trial") + ")");
+  text += fmt::format("{} took one sample of every combination of a scene, in random order.\n",
+                      rounds == "1" ? "One round" : "Each of " + counted(rounds, "round"));
   if (!seconds.empty())
     text += fmt::format(
         "A sample is a number of steps between two readings of the clock; the median length of the {} "
-        "samples is \\qty{{{}}}{{\\second}}.\nAll samples count{}.\n",
-        seconds.size(), three_digits(median(seconds)),
+        "is \\qty{{{}}}{{\\second}}.\nAll samples count{}.\n",
+        pluralize(seconds.size(), "sample"), three_digits(median(seconds)),
         outliers == 0 ? "" : fmt::format(", also the {} beyond Tukey's fences", outliers));
   return text + fmt::format(
                     "Times are medians of the samples. Their intervals contain the median of the "
@@ -169,6 +189,27 @@ std::string timing_of(const ReportFolder& folder) {
                     "have none.\nA speed-up is the median of the "
                     "ratios within each round, with an interval of the same kind.",
                     decimal(100 * interval_confidence));
+}
+
+/// What was allowed beyond the tolerances, and of which rows the samples were compared. The page of mssim web
+/// does neither.
+std::string further_comparison_of(const ReportFolder& folder) {
+  if (is_from_page(folder)) return {};
+  std::size_t checked = 0, unchecked = 0;
+  for (const ResultRow& row : folder.rows)
+    if (counts(row) && !row.dressing)
+      ++(has_unchecked_samples(row) || relies_on_earlier_process(row) ? unchecked : checked);
+  std::string text = fmt::format(
+      "A second reference is rounded to single precision after every step. If four times its deviation "
+      "per rounding of a step is more, that much is allowed, up to \\num{{{}}} mean rest lengths and "
+      "\\qty{{{}}}{{\\percent}} of that energy.\n",
+      decimal(largest_tolerance), decimal(100 * largest_tolerance));
+  if (checked > 0)
+    text += fmt::format(
+        "The states at the end of one round of samples were compared, too{}, without these upper limits. "
+        "There the motion of four steps is added where nodes land on the floor.\n",
+        unchecked > 0 ? " (except those of " + pluralize(unchecked, "row") + ")" : "");
+  return text;
 }
 
 std::string verification_of(const ReportFolder& folder) {
@@ -187,8 +228,7 @@ std::string verification_of(const ReportFolder& folder) {
         "the number of roundings of a position and $|x|$ the largest coordinate. The total energy may differ "
         "by at most \\qty{{{}}}{{\\percent}} of the kinetic and elastic energy.\n{}Explicit "
         "integrators in one process also stepped a small scene with the same laws and a floor.\n",
-        verification_steps, decimal(100 * energy_tolerance),
-        is_from_page(folder) ? "" : "The states at the end of one round of samples were compared, too. ");
+        verification_steps, decimal(100 * energy_tolerance), further_comparison_of(folder));
   if (has_garments)
     text +=
         "Garments were compared with a double-precision reference in stretches of five steps, while their "
@@ -246,9 +286,9 @@ Document claims_of(const ReportFolder& folder, const ReportInput& input) {
 }
 
 /// A command or address, which may be broken after the commas of a list of names.
-std::string breakable_code(const std::string& code) {
+std::string breakable_code(const std::string& words) {
   std::string text;
-  for (const char character : latex_prose("`" + code + "`"))
+  for (const char character : code(words))
     text += character == ',' ? std::string(",\\allowbreak{}") : std::string(1, character);
   return text;
 }
@@ -275,8 +315,7 @@ std::string commands_of(const ReportFolder& folder) {
       from_page ? "writes the page that measured" : "measures",
       has_commit ? "" : "; the results do not name the commit",
       build.dirty ? "; the program that was measured had uncommitted changes" : "",
-      has_commit ? latex_prose("`git checkout " + build.commit + "`") + "\\\\\n" : "",
-      breakable_code(command));
+      has_commit ? code("git checkout " + build.commit) + "\\\\\n" : "", breakable_code(command));
   if (!settings.empty())
     text += "The page measures at once if its address ends in " + breakable_code(settings) + ".\n";
   if (minutes > 0)
@@ -359,7 +398,7 @@ std::vector<FolderFile> paper_files(const ReportInput& input) {
       part += "\\input{" + file.name.substr(0, file.name.rfind('.')) + "}\n";
       files.push_back(std::move(file));
     };
-    const std::string name = latex_prose("`" + short_name(folder).string() + "`");
+    const std::string name = code(short_name(folder).string());
     body += "\\section{Methods: " + name + "}\n";
     add(methods_of(folder, input, prefix), body);
     body += "\\section{Results: " + name + "}\n";

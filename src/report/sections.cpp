@@ -290,13 +290,13 @@ std::string headline_section(const ReportInput& input) {
   const auto times = [&](const ReportFolder& folder, const std::string&) {
     if (folder.rows.empty()) return paragraph("There are no rows.");
     const std::vector<const ResultRow*> rows = pointers_to(folder.rows);
-    const Table all = times_of(rows, folder);
+    const Table all = times_of(rows, folder), headlines = times_of(headline_rows(rows), folder);
     Document below;
     add_sentence(below, legend_of_ratios({all}));
     add_rows_without_a_time(below, rows);
     return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n{}", noise_note(folder),
-                       html_of(times_of(headline_rows(rows), folder)), pluralize(rows.size(), "row"),
-                       html_of(all), html_of(below, level_in(input)));
+                       headlines.rows.empty() ? paragraph("No row has a verified time.") : html_of(headlines),
+                       pluralize(rows.size(), "row"), html_of(all), html_of(below, level_in(input)));
   };
   return paragraph("Rows of the largest scene of each kind. " + html_prose(how_to_read_times)) +
          of_each_folder(input, times);

@@ -153,7 +153,7 @@ TEST(ThreadCharts, ShowSpeedUpsOverTheFewestThreadsBesideTheNumberOfThreads) {
                               measured_row("openmp:2", 0.625, 6.4), measured_row("openmp", 0.5, 8.0),
                               measured_row("hybrid:1", 2, 2.0),     measured_row("hybrid", 1, 4.0)};
   Provenance provenance = made_up_provenance();
-  provenance.threads = 4;
+  provenance.threads = rows[3].threads = rows[5].threads = 4;
   const auto charts = scaling_charts(folder_of(rows, provenance), of_papers(), "f1");
   ASSERT_EQ(charts.size(), 1U);
   EXPECT_EQ(charts[0].series.size(), 3U);

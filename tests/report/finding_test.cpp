@@ -272,13 +272,38 @@ TEST(RowFindings, NameRowsThatAreNotVerified) {
   const Provenance provenance = made_up_provenance();
   EXPECT_FALSE(warns(row_findings(rows, provenance), "2 rows have a time, and all are verified"));
   rows[1].verified = false;
-  EXPECT_TRUE(warns(row_findings(rows, provenance), ": `openmp` on `cloth2500`, semi-euler."));
+  EXPECT_TRUE(
+      warns(row_findings(rows, provenance), ": `openmp` on `cloth2500`, semi-euler (failed: not verified)."));
   rows[1] = failed_row("openmp", "failed: it deviates");
-  EXPECT_TRUE(warns(row_findings(rows, provenance), ": `openmp` on `cloth2500`, semi-euler."));
+  EXPECT_TRUE(
+      warns(row_findings(rows, provenance), ": `openmp` on `cloth2500`, semi-euler (failed: it deviates)."));
   EXPECT_FALSE(warns(row_findings(rows, provenance), "1 row has a time, and is verified"));
   rows[1] = failed_row("openmp", "unavailable: no device");
   EXPECT_FALSE(warns(row_findings(rows, provenance), "1 row has no time"));
   EXPECT_TRUE(row_findings({}, provenance).empty());
+}
+
+TEST(RowFindings, NameOneRowForEachReason) {
+  std::vector<ResultRow> rows(4, failed_row("openmp", "failed: it deviates"));
+  rows.push_back(failed_row("opencl", "failed: step 3"));
+  const auto only_warning = [&](const std::string& end) {
+    return warns(row_findings(rows, made_up_provenance()), " all statistics: " + end);
+  };
+  EXPECT_TRUE(only_warning(
+      "`openmp` on `cloth2500`, semi-euler and 3 more (failed: it deviates); `opencl` on `cloth2500`, "
+      "semi-euler (failed: step 3)."));
+  for (int step = 4; step < 8; ++step)
+    rows.push_back(failed_row("opencl", fmt::format("failed: step {}", step)));
+  EXPECT_TRUE(
+      warns(row_findings(rows, made_up_provenance()),
+            "semi-euler (failed: step 4); the list *Rows without a time* has 3 rows with other reasons."));
+}
+
+TEST(RowFindings, SayOfHowManyRowsTheSamplesAreNotChecked) {
+  std::vector<ResultRow> rows{small("serial", 1), small("openmp", 0.5)};
+  rows[1].note = "a remark; " + std::string(unchecked_samples);
+  EXPECT_FALSE(warns(row_findings(rows, made_up_provenance()),
+                     "reference, but the samples of 1 row are not checked yet."));
 }
 
 TEST(RowFindings, NameSpeedUpsThatMayBeOne) {

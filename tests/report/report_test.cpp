@@ -80,6 +80,17 @@ TEST_F(ReportFolderTest, GoesWithoutDamagedSamples) {
   EXPECT_THAT(found.problems[0], HasSubstr("has no samples of 2 rows"));
 }
 
+TEST_F(ReportFolderTest, SaysThatSamplesAreNotChecked) {
+  std::vector<ResultRow> unchecked = rows;
+  unchecked[1].note = unchecked_samples;
+  put_run(timings_csv(unchecked), samples);
+  const ReportFolder found = read();
+  ASSERT_EQ(found.problems.size(), 1U);
+  EXPECT_THAT(found.problems[0],
+              AllOf(HasSubstr("timings.csv: the samples of 1 row are not checked"), HasSubstr("--resume")));
+  EXPECT_TRUE(counts(found.rows[1]));
+}
+
 TEST_F(ReportFolderTest, LeavesOutARoundThatTimingsDoNotHave) {
   std::vector<ResultRow> behind = rows;
   for (ResultRow& row : behind) --row.rounds;
@@ -439,6 +450,15 @@ TEST(ReportPage, SaysWhyARowOfAnySceneHasNoTime) {
                            "<code>semi-euler</code>: unsupported: one reason",
                            "<code>semi-euler</code>: failed: another reason"})
     EXPECT_TRUE(has(page, text)) << text;
+}
+
+TEST(ReportPage, HasNoTableOfTheLargestScenesWithoutATime) {
+  const std::string without = "<p>No row has a verified time.</p>\n<details>";
+  ReportFolder folder;
+  folder.rows = {measured_row("serial", 1, 1.0), failed_row("openmp", "failed: step 3")};
+  EXPECT_FALSE(has(report_page(input_of(folder)), without));
+  folder.rows[0] = failed_row("serial", "failed: step 3");
+  EXPECT_TRUE(has(report_page(input_of(folder)), without));
 }
 
 TEST(ReportPage, MarksARatioThatItsTimesContradict) {

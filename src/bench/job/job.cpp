@@ -239,7 +239,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   static_cast<Agreement&>(row) = static_cast<const Agreement&>(*found);
   row.dressing = found->dressing;
   row.verified = true;
-  append_sentence(row.note, "verified by an earlier process");
+  append_sentence(row.note, verified_before);
   if (found->status != "ok") drop(combination, found->status);
 }
 

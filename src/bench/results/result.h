@@ -216,8 +216,8 @@ inline constexpr auto result_columns = std::to_array<ResultColumn>({
      "empty if nothing could be compared",
      &ResultRow::position_error},
     {"energy_drift", "",
-     "total energy less the reference's, over the reference's kinetic plus elastic energy; of a scene at "
-     "rest, over a hundred times the elastic energy that rounding to single precision would cause",
+     "total energy less the reference's, over the reference's kinetic plus elastic energy, or over a hundred "
+     "times the elastic energy that rounding to single precision would cause, if that is more",
      &ResultRow::energy_drift},
     {"verified", "", "whether the steps agree with the reference, and the samples have the right end states",
      &ResultRow::verified},
@@ -306,6 +306,9 @@ inline bool counts(const ResultRow& row) { return row.status == "ok" && row.veri
 
 /// Note of a row whose run has not ended, or ended before the checks that follow its last round.
 inline constexpr std::string_view unchecked_samples = "its samples are not checked yet";
+
+/// Note of a row of bench --verified, which has neither trials nor a check of its samples.
+inline constexpr std::string_view verified_before = "verified by an earlier process";
 
 /// Whether the checks that follow the last round are still to be made.
 inline bool has_unchecked_samples(const ResultRow& row) {

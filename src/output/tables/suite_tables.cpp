@@ -239,10 +239,11 @@ Document page_of(RowPointers rows, const Provenance& provenance) {
 }
 
 constexpr std::string_view how_to_read_threads =
-    "The same steps on different numbers of threads. Times are medians. *Times as fast*: as the same backend "
-    "on the fewest threads, the median of the ratios of each round with its 95 % interval. *Efficiency*: "
-    "that divided by the ratio of the numbers of threads. *Processors*: the number of CPUs that the steps "
-    "kept busy.";
+    "The same steps on different numbers of threads. *Threads*: those that computed the steps, which may be "
+    "fewer than requested; of rows with the same number only the first is shown. Times are medians. "
+    "*Times as fast*: as the same backend on the fewest threads, the median of the ratios of each round with "
+    "its 95 % interval. *Efficiency*: that divided by the ratio of the numbers of threads. *Processors*: the "
+    "number of CPUs that the steps kept busy.";
 
 ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenance& provenance) {
   const auto all = mapped<const ResultRow*>(rows, &ThreadRow::row);
@@ -297,21 +298,30 @@ ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenanc
 }  // namespace
 
 std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenance) {
-  std::vector<ThreadRow> compared;
+  std::vector<ThreadRow> lines, compared;
+  const auto same_but_threads = [](const ThreadRow& a, const ThreadRow& b) {
+    return a.backend == b.backend && a.row->scene == b.row->scene && a.row->integrator == b.row->integrator;
+  };
   for (const ResultRow* row : rows) {
-    const auto [backend, threads] = asked_processors(provenance, row->backend);
-    if (threads > provenance.threads) continue;
-    ThreadRow found{row, backend, threads, row, threads};
+    const auto [backend, asked] = asked_processors(provenance, row->backend);
+    if (asked > provenance.threads) continue;
+    const bool has_fewer = counts(*row) && row->threads > 0 && row->threads < asked;
+    const int threads = has_fewer ? row->threads : asked;
+    const ThreadRow found{row, backend, threads, row, threads};
+    if (std::ranges::none_of(lines, [&](const ThreadRow& line) {
+          return same_but_threads(line, found) && line.threads == threads &&
+                 counts(*line.row) == counts(*row);
+        }))
+      lines.push_back(found);
+  }
+  for (ThreadRow found : lines) {
     bool alone = true;
-    for (const ResultRow* other : rows) {
-      const AskedProcessors its = asked_processors(provenance, other->backend);
-      if (other == row || its.backend != backend || its.count > provenance.threads ||
-          other->scene != row->scene || other->integrator != row->integrator)
-        continue;
+    for (const ThreadRow& other : lines) {
+      if (!same_but_threads(found, other) || other.threads == found.threads) continue;
       alone = false;
-      if (its.count < found.fewest_threads) {
-        found.fewest = other;
-        found.fewest_threads = its.count;
+      if (other.threads < found.fewest_threads) {
+        found.fewest = other.row;
+        found.fewest_threads = other.threads;
       }
     }
     if (!alone) compared.push_back(found);

@@ -110,16 +110,57 @@ TEST(ThreadTable, MarksARatioThatItsTimesContradict) {
 TEST(ThreadTable, HasEfficienciesOverTheFewestThreadsThatAreSeveral) {
   Provenance provenance = made_up_provenance();
   provenance.threads = 8;
-  const std::vector<ResultRow> rows{measured_row("openmp:2", 1, 1.0), measured_row("openmp", 0.4, 2.5)};
+  std::vector<ResultRow> rows{measured_row("openmp:2", 1, 1.0), measured_row("openmp", 0.4, 2.5)};
+  rows[1].threads = 8;
   EXPECT_THAT(table_csv(thread_table_of(rows, provenance).data),
               HasSubstr(",8,1.5,0.4,0.2,0.8,2.5,,,0.625,ok\n"))
       << "three rounds have no interval";
 }
 
+/// Rows of `openmp` on a cloth so narrow that at most two threads compute its steps, of a run on 16.
+std::vector<ResultRow> rows_of_narrow_cloth() {
+  std::vector<ResultRow> rows{measured_row("openmp:1", 1, 1.0), measured_row("openmp:2", 0.625, 1.6),
+                              measured_row("openmp:8", 0.5, 2.0), measured_row("openmp", 0.5, 2.0)};
+  rows[0].threads = 1;
+  return rows;
+}
+
+TEST(ThreadTable, HasTheThreadsThatComputedIfTheyAreFewerThanRequested) {
+  Provenance provenance = made_up_provenance();
+  provenance.threads = 16;
+  std::vector<ResultRow> rows = rows_of_narrow_cloth();
+  rows.erase(rows.begin() + 1, rows.begin() + 3);
+  const ResultTable table = thread_table_of(rows, provenance);
+  // Twice as fast on two threads as on one; on 16 that would be an efficiency of 0.125.
+  EXPECT_THAT(table_csv(table.data), HasSubstr("openmp,2,1.5,0.5,0.25,1,2,,,1,ok\n"));
+  EXPECT_THAT(markdown(table.page), AllOf(HasSubstr("| `openmp` | 2 | **0.500** | 2.00× | – | 1.00 |"),
+                                          HasSubstr("may be fewer than requested")));
+  rows[1].threads = 17;
+  EXPECT_THAT(markdown(thread_table_of(rows, provenance).page),
+              HasSubstr("| `openmp` | 16 | **0.500** (!) |"));
+}
+
+TEST(ThreadTable, ShowsEachNumberOfThreadsOnce) {
+  Provenance provenance = made_up_provenance();
+  provenance.threads = 16;
+  std::vector<ResultRow> rows = rows_of_narrow_cloth();
+  const std::string page = markdown(thread_table_of(rows, provenance).page);
+  EXPECT_THAT(page, HasSubstr("| `openmp` | 2 | **0.625** | 1.60× | – | 0.800 |"));
+  EXPECT_THAT(page, Not(HasSubstr("**0.500**"))) << "two threads as well, however many were requested";
+  rows[1] = failed_row("openmp:2", "failed: step 3");
+  EXPECT_THAT(table_csv(thread_table_of(rows, provenance).data),
+              AllOf(HasSubstr("openmp,2,,,,,,,,,failed: step 3\n"), HasSubstr("openmp,2,1.5,0.5,")))
+      << "a failure hides no time";
+  rows.erase(rows.begin(), rows.begin() + 2);
+  EXPECT_THAT(with_thread_table(race_tables({}))(rows, provenance), IsEmpty()) << "one number of threads";
+}
+
 TEST(ThreadTable, LeavesOutMoreThreadsThanTheRunHas) {
   const auto maker = with_thread_table(peer_tables());
-  const std::vector<ResultRow> rows{measured_row("threads-mutex", 1, 1.0),
-                                    measured_row("threads-mutex:10", 2, 0.5)};
+  std::vector<ResultRow> rows{measured_row("threads-mutex", 1, 1.0),
+                              measured_row("threads-mutex:10", 2, 0.5)};
+  rows[0].threads = 16;
+  rows[1].threads = 10;
   Provenance provenance = made_up_provenance();
   EXPECT_EQ(maker(rows, provenance).size(), 1U);
   provenance.threads = 16;

@@ -1,0 +1,89 @@
+#include "report/report.h"
+#include "tests/support/result_fixture.h"
+#include "tests/support/testing.h"
+
+namespace mssim {
+namespace {
+
+ReportFolder folder_of(std::vector<ResultRow> rows) {
+  ReportFolder folder;
+  folder.name = "results/run";
+  folder.rows = std::move(rows);
+  folder.provenance = made_up_provenance();
+  return folder;
+}
+
+/// The text of one of the files of a paper about this folder.
+std::string text_in(const ReportFolder& folder, const std::string& name) {
+  ReportInput input;
+  input.legend = legend;
+  input.published = published_tables();
+  input.folders.push_back(folder);
+  for (const FolderFile& file : paper_files(input))
+    if (file.name == name) return file.text;
+  ADD_FAILURE() << "there is no " << name;
+  return {};
+}
+
+class PaperTest : public testing::Test {
+ protected:
+  std::string methods() const { return text_in(folder, "methods.tex"); }
+
+  ReportFolder folder = folder_of({measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)});
+};
+
+TEST_F(PaperTest, SaysWhatAComparisonAllowsAtMost) {
+  // Of verification.h: energy_tolerance, and largest_tolerance of positions and energies.
+  EXPECT_THAT(methods(), AllOf(HasSubstr("\\qty{1}{\\percent} of the kinetic"), HasSubstr("four times"),
+                               HasSubstr("up to \\num{0.1} mean rest lengths and \\qty{10}{\\percent}"),
+                               HasSubstr("samples were compared, too, without these upper limits")));
+  for (ResultRow& row : folder.rows) row.backend = "javascript";
+  EXPECT_THAT(methods(),
+              AllOf(HasSubstr("\\qty{1}{\\percent} of the kinetic"), Not(HasSubstr("\\qty{10}{\\percent}"))))
+      << "the page has no second reference";
+}
+
+TEST_F(PaperTest, SaysOnlyOfCheckedSamplesThatTheyWereCompared) {
+  folder.rows[1].note = unchecked_samples;
+  EXPECT_THAT(methods(), HasSubstr("samples were compared, too (except those of 1 row)"));
+  folder.rows[0].note = unchecked_samples;
+  EXPECT_THAT(methods(), AllOf(Not(HasSubstr("samples were compared")), HasSubstr("Before the first round"),
+                               HasSubstr("the samples of 2 rows are not checked yet")));
+}
+
+TEST_F(PaperTest, DescribesNoWarmUpOfRowsThatAnEarlierProcessVerified) {
+  for (ResultRow& row : folder.rows) row.warm_up_trials = 0;
+  EXPECT_THAT(methods(), HasSubstr("Before the first round")) << "older versions wrote no trials";
+  for (ResultRow& row : folder.rows) row.note = "verified by an earlier process";
+  EXPECT_THAT(methods(), AllOf(Not(HasSubstr("Before the first round")),
+                               Not(HasSubstr("samples were compared")), HasSubstr("Each of 3 rounds took")));
+}
+
+TEST_F(PaperTest, CountsOneRound) {
+  for (ResultRow& row : folder.rows) {
+    row.rounds = 1;
+    row.samples_ms.resize(1);
+    row.sample_steps.resize(1);
+  }
+  EXPECT_THAT(methods(), HasSubstr("\nOne round took one sample of every combination"));
+  EXPECT_THAT(text_in(folder, "times.tex"), AllOf(HasSubstr(" 1 round.}"), Not(HasSubstr("1 rounds"))));
+}
+
+TEST_F(PaperTest, KeepsABacktickInItsPlace) {
+  for (ResultRow& row : folder.rows) {
+    row.scene = "a`b'c";
+    row.scene_as_shipped = false;
+  }
+  folder.name = "results/d`e";
+  folder.provenance->command_line = {"mssim", "bench", "--scene", "=cmd|x`$_%&#.json"};
+  EXPECT_THAT(methods(), HasSubstr("Neither paper has \\texttt{a\\textasciigrave{}b\\textquotesingle{}c}."));
+  EXPECT_THAT(text_in(folder, "mssim.tex"),
+              HasSubstr("\\section{Methods: \\texttt{results/d\\textasciigrave{}e}}"));
+  EXPECT_THAT(
+      text_in(folder, "artifact.tex"),
+      HasSubstr("\\texttt{scripts/mssim bench -{}-{}scene "
+                "\\textquotesingle{}=cmd|x\\textasciigrave{}\\$\\_\\%\\&\\#.json\\textquotesingle{}}"));
+}
+
+}  // namespace
+}  // namespace mssim
