@@ -70,8 +70,8 @@ std::vector<FolderFile> pdfs_of(std::span<const FolderFile> files) {
                  "package librsvg2-bin and give --overwrite, too\n";
     return pdfs;
   }
-  const fs::path folder = temporary_folder_of_process(), from = folder / "chart.svg",
-                 to = folder / "chart.pdf";
+  const fs::path& folder = temporary_folder_of_process();
+  const fs::path from = folder / "chart.svg", to = folder / "chart.pdf";
   for (const FolderFile& chart : files) {
     if (!is_chart(chart)) continue;
     write_file_atomically(from, chart.text);

@@ -83,7 +83,9 @@ template <class Number, class Row, class Of = std::identity>
 void write_list(hid_t file, const std::string& path, const std::string& unit, const std::vector<Row>& rows,
                 const Of& of = {}) {
   using Value = std::remove_cvref_t<std::invoke_result_t<Of, const Row&>>;
-  constexpr std::size_t rows_at_once = 65536, width = sizeof(Value) / sizeof(Number);
+  constexpr std::size_t rows_at_once = 65536;
+  constexpr std::size_t width =
+      sizeof(Value) / sizeof(Number);  // NOLINT(bugprone-sizeof-expression): often 1
   const std::string action = "writing " + path;
   Hdf5Dataset dataset = create<Number>(
       file, path, unit,

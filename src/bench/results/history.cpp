@@ -22,7 +22,8 @@ void add_rows(MachineHistory& machine) {
       return same_combination(known, row) && known.device == row.device && known.nodes == row.nodes;
     });
     if (series == machine.series.end())
-      series = machine.series.insert(series, HistorySeries{{row}, {}, {}, {}, {}, {}, {}});
+      series = machine.series.insert(
+          series, HistorySeries{{static_cast<const HistoryCombination&>(row)}, {}, {}, {}, {}, {}, {}});
     series->at.push_back(machine.entries.size() - 1);
     series->ms.push_back(*row.ms_per_step);
     const bool covers = has_interval(row.samples);
@@ -50,7 +51,7 @@ HistoryEntry entry_of(const Provenance& provenance, std::span<const ResultRow> r
                      {}};
   for (const ResultRow& row : rows) {
     HistoryRow& kept = entry.rows.emplace_back();
-    static_cast<CombinationNames&>(kept) = row;
+    static_cast<CombinationNames&>(kept) = static_cast<const CombinationNames&>(row);
     kept.device = row.device;
     kept.nodes = static_cast<std::uint32_t>(row.nodes);
     kept.verified = row.verified;

@@ -130,7 +130,7 @@ class ClothContactSearch {
     float distance_squared;
     std::uint32_t triangle;  // 2 * cell + half
 
-    auto operator<=>(const Nearest&) const = default;
+    auto operator<=>(const Nearest&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   struct Candidate {
     std::uint32_t slot;

@@ -179,7 +179,7 @@ TableMaker peer_tables();
 struct ThreadRow {
   const ResultRow* row = nullptr;
   std::string_view backend;  ///< without the number of threads
-  int threads = 0;           ///< requested
+  int threads = 0;           ///< that computed its steps; if these were more than requested, the request
   /// The row on the fewest threads, and their number.
   const ResultRow* fewest = nullptr;
   int fewest_threads = 0;
@@ -189,7 +189,9 @@ struct ThreadRow {
 };
 
 /// The rows with several numbers of threads, in order. Rows with more threads than the run are left out, such
-/// as `threads-mutex:10` on two processors: their threads share CPUs, which is no scaling.
+/// as `threads-mutex:10` on two processors: their threads share CPUs, which is no scaling. Of rows that count
+/// and have the same number only the first is taken: `openmp` uses fewer threads on a narrow cloth, however
+/// many are requested. A row that does not count has the requested number.
 std::vector<ThreadRow> thread_rows(RowPointers rows, const Provenance& provenance);
 
 /// Adds the table `threads` of thread_rows after the tables of `maker`: times, speed-ups over the fewest
