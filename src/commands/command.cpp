@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <new>
+#include <system_error>
 #include <vector>
 
 #include "application/outputs.h"
@@ -59,10 +61,10 @@ constexpr auto table = std::to_array<Command>({
 
 constexpr std::string_view exit_codes =
     "Exit codes: 0 success; 1 a row is not verified, a simulation blew up, a garment\n"
-    "does not fit, a guide had too little time, a measured body takes no jeans, or a\n"
-    "comparison or a history shows a regression; 2 bad usage or input; 3 a requested\n"
-    "device or program is missing; 4 a file could not be written, or the system\n"
-    "refused to read a trace.";
+    "does not fit, a guide had too little time or a program of it failed, a measured\n"
+    "body takes no jeans, or a comparison or a history shows a regression; 2 bad\n"
+    "usage or input; 3 a requested device or program is missing; 4 a file could not\n"
+    "be written, or the system refused to read a trace.";
 
 /// mssim's first argument when a shell asks what may stand in the place of the last of the words that follow
 /// (src/completion).
@@ -74,6 +76,17 @@ std::string option_of_scene(const std::string& word) { return is_scene(word) ? "
 int fail(int code, const std::string& sentence) {
   std::cerr << "mssim: " << escaped(sentence) << '\n';  // names may contain control characters
   return code;
+}
+
+/// Why writing to standard output has failed. The stream does not keep the system's reason, and what has
+/// happened since may have replaced errno, so it tries once more.
+std::string lost_output() {
+  std::cout.clear();
+  errno = 0;
+  std::cout << '\n' << std::flush;
+  const std::string reason = errno != 0 ? fmt::format(" ({})", std::generic_category().message(errno)) : "";
+  return "standard output could not be written" + reason +
+         ": free some space, or redirect it to another file";
 }
 
 /// The standard library's message contains the name of a function.
@@ -160,7 +173,7 @@ int run_program(int argc, char** argv) {
     code = run_guarded(run.at(request.command));
   }
   // Results that could not be written are lost (a full disk; a closed pipe ends the program by SIGPIPE).
-  if (!std::cout.flush()) return fail(exit_file_error, "standard output could not be written");
+  if (!std::cout.flush()) return fail(exit_file_error, lost_output());
   return code;
 }
 

@@ -23,6 +23,7 @@
 #include "platform/counters.h"
 #include "platform/files.h"
 #include "platform/machine.h"
+#include "platform/process.h"
 #include "scene/fields/fields.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -144,19 +145,33 @@ void look_at_mpi(Checkup& finding) {
   if (!launcher)
     throw MissingProgram("mpirun is not in PATH; install Debian's package openmpi-bin, or give --launcher");
   finding.found = escaped(launcher->string());
+  if (::geteuid() != 0 ||
+      (variable("OMPI_ALLOW_RUN_AS_ROOT") == "1" && variable("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM") == "1"))
+    return;
+  ChildProcess asked;
+  asked.program = *launcher;
+  asked.arguments = {"--version"};
+  asked.folder = ".";
+  asked.elapsed_seconds = 10;
+  const ChildResult version = run(asked);
+  if (version.output.find("Open MPI") == std::string::npos) return;
+  finding.state = limited;
+  finding.remedy =
+      "Open MPI starts nothing as root: set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1";
 }
 
-/// A cache that cannot be written costs only time.
+/// A cache that cannot be written costs only time. Makes its folder, as a bench would: only writing shows
+/// whether that is possible.
 Checkup cache_finding(const std::string& name, std::string use) {
-  std::filesystem::path folder = cache_folder(name);
+  const std::filesystem::path folder = cache_folder(name);
   Checkup finding{"cache of " + name,
                   ok,
                   folder.empty() ? "no home folder" : escaped(folder.string()),
                   std::move(use),
                   {}};
-  std::error_code error;
-  while (folder.has_relative_path() && !std::filesystem::exists(folder, error)) folder = folder.parent_path();
-  if (!std::filesystem::is_directory(folder, error) || ::access(folder.c_str(), W_OK) != 0) {
+  try {
+    const TemporaryFolder trial(make_folder(folder));
+  } catch (const WriteError&) {
     finding.state = limited;
     finding.remedy =
         "it cannot be written, so each run starts anew: set XDG_CACHE_HOME to a folder that can be";
@@ -178,6 +193,12 @@ std::vector<Checkup> findings_here() {
   add_opencl(findings);
   findings.push_back(looked_at("TetGen", "meshes of bodies: --suite table2 and table3", look_at_tetgen));
   findings.push_back(looked_at("MPI", "backend mpi: several processes or machines", look_at_mpi));
+  findings.push_back(looked_at("temporary folder",
+                               "meshes of bodies, backends that are programs, pictures of scenes",
+                               [](Checkup& finding) {
+                                 finding.found = escaped(variable("TMPDIR", "/tmp"));
+                                 const TemporaryFolder trial;
+                               }));
   findings.push_back(looked_at("font", "letters on pictures of mssim render", [](Checkup& finding) {
     require_font();
     finding.found = "DejaVu Sans";
@@ -262,7 +283,8 @@ std::vector<Checkup> machine_findings(const Provenance& provenance) {
                                  "threads that stay on their CPUs", [&](Provenance& chosen) {
                                    chosen.threads = provenance.threads;
                                    chosen.allowed_cpus = provenance.allowed_cpus;
-                                   chosen.thread_environment = provenance.thread_environment;
+                                   chosen.thread_places = provenance.thread_places;
+                                   chosen.machine.smt = machine.smt;
                                  });
   if (allowed < cpus) {
     affinity.state = limited;

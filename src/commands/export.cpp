@@ -75,6 +75,7 @@ std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<
   const fs::path out =
       options.out.empty() ? "." / fs::path(options.trace).stem().concat(extensions_of(options.format).front())
                           : fs::path(options.out);
+  require_file_name(out);  // before it gets the number of a frame
   require_extension({"--out", out}, name_of(options.format), extensions_of(options.format));
   if (options.format == ExportFormat::vtkhdf || frames.size() == 1) return {target_of(out)};
   return mapped<fs::path>(frames, [&](std::size_t frame) { return target_of(numbered(out, frame)); });

@@ -12,7 +12,15 @@ function __mssim_complete
     set -l name (string sub -s (math (string length -- "$first[2]") + 1) -- "$current")
     switch "$first[1]"
         case file
-            string join -- \n "$first[2]"(__fish_complete_path "$name")
+            # fish expands no ~ in quotes, and __fish_complete_path quotes the name.
+            set -l home
+            string match -q '~/*' -- "$name"
+            and set home $HOME/
+            and set name $home(string sub -s 3 -- "$name")
+            set -l paths (__fish_complete_path "$name")
+            test -n "$home"
+            and set paths "~/"(string sub -s (math (string length -- "$home") + 1) -- $paths)
+            string join -- \n "$first[2]"$paths
         case directory
             string join -- \n "$first[2]"(__fish_complete_directories "$name")
     end

@@ -213,7 +213,15 @@ std::string kept_in_part(const fs::path& file, std::string_view what, std::size_
   return fmt::format("; {} keeps the {} written before: {}", temporary_of(file).string(), what, count);
 }
 
+void require_file_name(const fs::path& file) {
+  if (file == "-")
+    throw UsageError(
+        "cannot write -: no file is written to standard output; give another name, or ./- for a file that is "
+        "called so");
+}
+
 fs::path target_of(const fs::path& file) {
+  require_file_name(file);
   constexpr int most_links = 40;  // Linux's limit
   fs::path target = file;
   std::error_code error;
@@ -341,8 +349,9 @@ TemporaryFolder::TemporaryFolder(const fs::path& parent) {
   const fs::path whole = fs::absolute(parent, none);
   std::string name = ((none ? parent : whole) / "mssim-XXXXXX").string();
   if (!::mkdtemp(name.data()))
-    throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +
-                             std::strerror(errno) + "); set TMPDIR to a writable folder whose path is short");
+    throw WriteError(
+        "cannot make a temporary folder in {} ({}); set TMPDIR to a writable folder whose path is short",
+        parent.string(), std::strerror(errno));
   path_ = name;
 }
 

@@ -51,8 +51,12 @@ std::filesystem::path temporary_of(const std::filesystem::path& file);
 /// End of a WriteError's sentence: FILE.part keeps `count` of `what` ("frames"); empty for none.
 std::string kept_in_part(const std::filesystem::path& file, std::string_view what, std::size_t count);
 
+/// Throws UsageError for "-", by which a user means standard output, where no file of mssim goes.
+void require_file_name(const std::filesystem::path& file);
+
 /// The file to write for a name given by the user: the file itself, or the target of a link or chain of
-/// links. Throws WriteError if the target cannot be replaced or links form a circle.
+/// links. Throws WriteError if the target cannot be replaced or links form a circle, and like
+/// require_file_name().
 std::filesystem::path target_of(const std::filesystem::path& file);
 
 /// Throws WriteError if `file` exists and is neither a regular file nor a link, because a rename would
@@ -123,7 +127,7 @@ const std::filesystem::path& make_folder(const std::filesystem::path& folder);
 Descriptor lock_folder(const std::filesystem::path& folder);
 
 /// A new, empty folder in the system's folder for temporary files; the destructor removes it with its
-/// contents. Throws std::runtime_error with one sentence if it cannot be made.
+/// contents. Throws WriteError if it cannot be made.
 class TemporaryFolder {
  public:
   TemporaryFolder();

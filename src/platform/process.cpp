@@ -81,7 +81,7 @@ StartError become(const ChildProcess& child, char* const* arguments, char* const
   if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return {"opening /dev/null", errno};
   if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0)
     return {"redirecting its output", errno};
-  limit(RLIMIT_CPU, child.cpu_seconds, child.cpu_seconds + 1);
+  if (child.cpu_seconds > 0) limit(RLIMIT_CPU, child.cpu_seconds, child.cpu_seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
   if (child.memory_bytes > 0) limit(RLIMIT_AS, child.memory_bytes, child.memory_bytes);
   std::signal(SIGXFSZ, SIG_DFL);  // mssim itself ignores it

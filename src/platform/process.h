@@ -74,7 +74,7 @@ struct ChildProcess {
   std::vector<std::string> arguments;    ///< without the program's name
   std::vector<std::string> environment;  ///< NAME=VALUE, added to this process's or replacing it
   std::filesystem::path folder;          ///< working directory
-  unsigned cpu_seconds = 0;              ///< CPU time after which the system ends it with SIGXCPU
+  unsigned cpu_seconds = 0;              ///< CPU time after which the system ends it with SIGXCPU; 0: none
   /// Elapsed time after which it, its descendants and all programs run together with it are killed; 0: none.
   unsigned elapsed_seconds = 0;
   std::uint64_t memory_bytes = 0;  ///< limit of its address space; 0: that of this process

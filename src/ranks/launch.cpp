@@ -186,8 +186,14 @@ int launch_ranks(bool copies) {
       std::cerr << launcher << " was ended by signal " << *signal << '\n';
       return 1;
     }
+    std::string reason = printed.reason();
+    if (reason.find("attempt to run as root") != std::string::npos) {
+      // Open MPI's own advice follows in a later paragraph.
+      if (reason.ends_with('.')) reason.pop_back();
+      append_sentence(reason, "set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
+    }
     std::cerr << (printed.ranks_started() ? "" : launcher + " has not started " + ranks + " ranks: ")
-              << printed.reason() << '\n';
+              << reason << '\n';
   } catch (const Unsupported& unsupported) {
     return answer_alone(std::string("unsupported ") + unsupported.what());
   } catch (const std::exception& error) {

@@ -49,7 +49,8 @@ std::string header(std::string_view head, std::string_view name) {
 }
 
 struct Request {
-  std::string line, body;  ///< the first line, for example "GET / HTTP/1.1"
+  std::string line, body;                ///< the first line, for example "GET / HTTP/1.1"
+  std::string status = {}, reason = {};  ///< of the answer if it is refused
 };
 
 /// When a client that sends or reads little by little is given up: others wait meanwhile.
@@ -57,8 +58,8 @@ std::chrono::steady_clock::time_point deadline_of_client() {
   return std::chrono::steady_clock::now() + std::chrono::seconds(10);
 }
 
-/// Reads a request; an empty line if it is none, or too large.
-Request read_request(int socket) {
+/// Reads a request; all empty if none arrives as a whole. `address`: the page's.
+Request read_request(int socket, const std::string& address) {
   const auto deadline = deadline_of_client();
   std::string text;
   std::size_t end = std::string::npos, length = 0;
@@ -66,18 +67,31 @@ Request read_request(int socket) {
   while (end == std::string::npos || text.size() < end + 4 + length) {
     if (std::chrono::steady_clock::now() > deadline) return {};
     const ssize_t count = ::recv(socket, bytes.data(), bytes.size(), 0);
-    if (count <= 0 || text.size() > largest_request_bytes) return {};
+    if (count <= 0) return {};
     text.append(bytes.data(), static_cast<std::size_t>(count));
+    const auto refused = [&](const char* status, const std::string& reason) {
+      return Request{text.substr(0, text.find("\r\n")), {}, status, reason};
+    };
+    const auto too_large = [&] {
+      return refused(
+          "413 Content Too Large",
+          fmt::format("the request is longer than {} MiB: send fewer results", largest_request_bytes >> 20));
+    };
+    if (text.size() > largest_request_bytes) return too_large();
     if (end != std::string::npos || (end = text.find("\r\n\r\n")) == std::string::npos) continue;
     const std::string_view head = std::string_view(text).substr(0, end + 2);
     // A page of another host must not post results: neither under a name of its own that leads here, nor from
     // its own origin.
     const std::string host = header(head, "host"), origin = header(head, "origin");
     const std::string name = host.substr(0, host.find(':'));  // a client leaves port 80 out
-    if (name != "localhost" && name != "127.0.0.1") return {};
-    if (!origin.empty() && origin != "http://" + host) return {};
+    if (name != "localhost" && name != "127.0.0.1")
+      return refused("403 Forbidden", fmt::format("the request is for the host \"{}\": open the page as {}",
+                                                  printable(host), address));
+    if (!origin.empty() && origin != "http://" + host)
+      return refused("403 Forbidden", fmt::format("the request is from a page of \"{}\": open mssim's as {}",
+                                                  printable(origin), address));
     length = number_in<std::size_t>(header(head, "content-length")).value_or(0);
-    if (length > largest_request_bytes) return {};
+    if (length > largest_request_bytes) return too_large();
   }
   return {text.substr(0, text.find("\r\n")), text.substr(end + 4, length)};
 }
@@ -100,6 +114,16 @@ void answer(int socket, std::string_view status, std::string_view type, std::str
   }
 }
 
+/// Reads what a client still sends after its answer. Closing the connection instead would take the answer
+/// away from it.
+void drain(int socket) {
+  ::shutdown(socket, SHUT_WR);
+  const auto deadline = deadline_of_client();
+  std::array<char, 65536> bytes;
+  while (std::chrono::steady_clock::now() < deadline && ::recv(socket, bytes.data(), bytes.size(), 0) > 0) {
+  }
+}
+
 }  // namespace
 
 void serve_page(int port, bool once, const std::function<std::string(const std::string& text)>& taken) {
@@ -114,10 +138,13 @@ void serve_page(int port, bool once, const std::function<std::string(const std::
     const timeval patience{.tv_sec = 2, .tv_usec = 0};
     for (const int wait : {SO_RCVTIMEO, SO_SNDTIMEO})
       ::setsockopt(connection.get(), SOL_SOCKET, wait, &patience, sizeof patience);
-    Request request = read_request(connection.get());
+    Request request = read_request(connection.get(), address);
     const bool only_head = request.line.starts_with("HEAD ");
     if (only_head) request.line.replace(0, 4, "GET");
-    if (request.line.starts_with("GET / ") || request.line.starts_with("GET /?")) {
+    if (!request.status.empty()) {
+      answer(connection.get(), request.status, "text/plain", request.reason, only_head);
+      drain(connection.get());
+    } else if (request.line.starts_with("GET / ") || request.line.starts_with("GET /?")) {
       answer(connection.get(), "200 OK", "text/html", page, only_head);
     } else if (request.line.starts_with("POST /results ")) {
       try {

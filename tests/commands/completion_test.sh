@@ -80,6 +80,11 @@ if command -v fish >/dev/null; then
   sort <<<"${cloths//cloth/bodies3858,cloth}" | cmp - ../found || fail "fish: $(cat ../found)"
   PATH="${mssim%/*}:$PATH" fish --no-config -c "source $completions/mssim.fish; complete -C 'mssim report two\\\\ w'" >../found
   grep -q "^two words" ../found || fail "fish: $(cat ../found)"
+  mkdir '../h.me (+x' && touch '../h.me (+x/fewest.json' # a name that is no regular expression
+  for word in \~/few cloth2500,\~/few; do
+    HOME="$work/h.me (+x" PATH="${mssim%/*}:$PATH" fish --no-config -c "source $completions/mssim.fish; complete -C 'mssim bench --scene $word'" >../found
+    [ "$(cut -f 1 ../found)" = "${word}est.json" ] || fail "fish in the home folder: $(cat ../found)"
+  done
 else
   echo "not tried: fish (not installed)"
 fi

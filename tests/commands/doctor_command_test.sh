@@ -13,7 +13,7 @@ is() { says "^$2  *$1\( \|\$\)"; }
 ends 0 doctor
 is 'main job' ok
 for item in processor threads 'processor caches' affinity 'container limits' governor load memory 'energy counters' 'event counters' \
-  'OpenCL de' TetGen MPI font 'cache of meshes' 'cache of references'; do
+  'OpenCL de' TetGen MPI 'temporary folder' font 'cache of meshes' 'cache of references'; do
   says "^\(ok\|limited\|missing\)  *$item"
 done
 [ ! -s err ] || fail "stderr is not empty: $(cat err)"
@@ -44,12 +44,54 @@ env -u XDG_CACHE_HOME HOME=/dev/null "$mssim" doctor >out 2>err || fail "without
 is 'cache of meshes' limited
 says XDG_CACHE_HOME
 
+mkdir -p caches/mssim
+ln -s "$work/nowhere/deep" caches/mssim/meshes # not even root can use or make it
+XDG_CACHE_HOME=$work/caches TMPDIR=$work/nowhere saying TMPDIR ends 0 doctor
+is 'cache of meshes' limited
+is 'cache of references' ok
+is 'temporary folder' missing
+
+# Open MPI needs leave to run as root. Other launchers do not, and stand-ins serve other users.
+mkdir launchers
+printf '#!/bin/sh\necho "mpirun (Open MPI) 4.1.4"\n' >launchers/mpirun
+chmod +x launchers/mpirun
+leave='OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1'
+# mpi_as LEAVE...: what doctor says of MPI, with these variables
+mpi_as() { env -u OMPI_ALLOW_RUN_AS_ROOT -u OMPI_ALLOW_RUN_AS_ROOT_CONFIRM PATH="$work/launchers:$PATH" "$@" "$mssim" doctor --format csv >out 2>err; }
+mpi_as
+if [ "$(field MPI state)" = missing ]; then
+  echo "not tried: launchers of MPI (this build has no backend mpi)"
+else
+  wanted=ok
+  [ "$EUID" -ne 0 ] || wanted=limited
+  [ "$(field MPI state)" = $wanted ] || fail "MPI without leave is not $wanted: $(cat out)"
+  [ $wanted = ok ] || says "$leave"
+  mpi_as OMPI_ALLOW_RUN_AS_ROOT=1
+  [ "$(field MPI state)" = $wanted ] || fail "MPI with half a leave is not $wanted: $(cat out)"
+  mpi_as OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  [ "$(field MPI state)" = ok ] || fail "MPI with leave: $(cat out)"
+  printf '#!/bin/sh\necho "HYDRA build details"\n' >launchers/mpirun
+  mpi_as
+  [ "$(field MPI state)" = ok ] || fail "another MPI: $(cat out)"
+  dashes=$(printf '%76s' '' | tr ' ' -)
+  printf '#!/bin/sh\nprintf "%%s\\n" %s "mpirun has detected an attempt to run as root." "" "Running as root is strongly discouraged." %s >&2\nexit 1\n' \
+    "$dashes" "$dashes" >launchers/mpirun
+  warning "attempt to run as root; set $leave" ends 1 bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --rounds 1 \
+    --launcher "$work/launchers/mpirun"
+  TMPDIR=$work/nowhere expect 4 'set TMPDIR' run --scene cloth2500 --duration 0.001 --backend mpi
+fi
+
 # The CPUs that threads may use.
 if cpus=$(taskset -pc $$ 2>/dev/null | sed 's/.*: //') && [ "$(nproc)" -gt 1 ]; then
   OMP_PROC_BIND=true taskset -c "${cpus%%[-,]*}" "$mssim" doctor >out 2>err || fail "on one CPU: $? $(cat err)"
   is affinity limited
   says '^limited  *affinity  *1 of '
   is threads ok
+  # Where OpenMP puts all threads on one CPU, or understands nothing and lets them move.
+  OMP_PROC_BIND=master saying OMP_PROC_BIND=true ends 0 doctor
+  is affinity limited
+  GOMP_CPU_AFFINITY=9999 saying OMP_PROC_BIND=true ends 0 doctor
+  is affinity limited
 else
   echo "not tried: fewer CPUs (there is one, or no taskset)"
 fi

@@ -18,7 +18,7 @@ class MadeUpMachineFindings : public TemporaryFolderTest {
     put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n");
     provenance.threads = 6;
     provenance.allowed_cpus = {0, 1, 2, 3, 4, 5};
-    provenance.thread_environment = {{"OMP_PROC_BIND", "true"}};
+    provenance.thread_places = {{0}, {1}, {2}, {3}, {4}, {5}};
   }
   Checkup finding(const std::string& item) {
     provenance.machine = read_machine(folder());
@@ -51,7 +51,15 @@ TEST_F(MadeUpMachineFindings, SayWhichCpusThreadsMayUse) {
   provenance.allowed_cpus = {0, 1, 2, 3, 4, 5, 6, 7};
   EXPECT_EQ(finding("affinity").state, ok);
   EXPECT_EQ(finding("affinity").remedy, "");
-  provenance.thread_environment.clear();
+  provenance.thread_places = {{0}};
+  EXPECT_EQ(finding("affinity").state, limited);
+  EXPECT_THAT(finding("affinity").remedy, AllOf(HasSubstr("master"), HasSubstr("OMP_PROC_BIND=true")));
+  // Two CPUs are a core only where cores have two.
+  provenance.thread_places = {{0, 1}, {2, 3}, {4, 5}};
+  EXPECT_EQ(finding("affinity").state, limited);
+  put("sys/devices/system/cpu/smt/active", "1\n");
+  EXPECT_EQ(finding("affinity").state, ok);
+  provenance.thread_places.clear();
   EXPECT_EQ(finding("affinity").state, limited);
   EXPECT_THAT(finding("affinity").remedy, HasSubstr("OMP_PROC_BIND"));
 }

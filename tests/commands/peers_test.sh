@@ -15,6 +15,12 @@ described=$(find "$peers" -name '*.json' | wc -l)
 [ "$described" -eq 10 ] || fail "there are $described descriptions"
 [ "$(grep -c "^bodies38233 .* $((described + 2)) " "$work/out")" -eq 1 ] || fail "not all are in the suite: $(cat "$work/out")"
 
+# Far from the programs that they name, they say who makes them.
+mkdir unbuilt
+cp "$peers"/*.json unbuilt
+ends 0 list backends --backend-folder unbuilt --format csv
+[ "$(grep -c 'there is no file.*scripts/peers' "$work/out")" -eq "$described" ] || fail "not all say how to get them: $(cat "$work/out")"
+
 [ $# -lt 3 ] || exit 77 # the peer would be of the machine that emulates
 pkg-config --exists hdf5 && command -v c++ >/dev/null || exit 77
 root=$source

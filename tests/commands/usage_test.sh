@@ -21,6 +21,7 @@ commands=$(sed -nE 's/^  ([a-z-]+)  +[A-Z].*/\1/p' "$work/help" | grep -v '^-')
 for command in bench run new-backend help; do grep -qx -e "$command" <<<"$commands" || fail "--help does not name $command: $commands"; done
 page help
 cmp "$work/page" "$work/help" || fail "mssim help shows another page than --help"
+tr -s '\n ' ' ' <page | grep -q 'Exit codes: .* 1 .*guide .*a program of it failed.* 2 ' || fail "exit code 1 is not that of a program that fails"
 for command in $commands; do
   page "$command" --help
   cp "$work/page" "$work/help"
@@ -67,6 +68,18 @@ expect 2 '^mssim: "jeans4k" is a scene, not a trace: did you mean --scene jeans4
 expect 2 '^mssim: WHAT is missing: give what to list: scenes, ' list
 expect 2 '^mssim: unexpected argument "twice" of mssim list: ' list scenes twice
 expect 2 '^mssim: --resume and --overwrite exclude each other: leave out one of them;' bench --scene cloth2500 --resume --overwrite
+
+# Files are no streams, and a stream that takes nothing is told with its reason.
+ends 0 run --scene cloth2500 --duration 0.01 --fps 200 --trace fall.h5
+for writer in 'report f1 --out' 'render --scene jeans4k --out' 'export fall.h5 --format obj --frames all --out'; do
+  # shellcheck disable=SC2086 # the words of a command
+  expect 2 '^mssim: cannot write -: .*\./-' $writer -
+done
+[ -z "$(find . -name '-*')" ] || fail "written: $(find . -name '-*')"
+for listing in suites columns; do
+  "$mssim" list $listing >/dev/full 2>err && fail "a full standard output is no error"
+  warns 'No space left on device.*redirect'
+done
 
 # Values.
 expect 2 '^mssim: --threads: "x" is not a whole number from 1 to 4096; see mssim bench --help$' bench --scene cloth2500 --threads x

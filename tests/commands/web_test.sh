@@ -20,16 +20,16 @@ ends 0 web --out page.html
 (($(stat -c %s page.html) < 8000000)) || fail "the page has more than 8 MB"
 if grep -qE '(src|href)="?https?:|@import|import\(' page.html; then fail "the page needs something beside it"; fi
 
-# HEAD is answered like GET, without the body. A Host without a port is that of port 80; another host's page gets no answer.
+# HEAD is answered like GET, without the body. A Host without a port is that of port 80; another host's page is refused.
 begins web --serve
 soon 300 test -s "$work/out" || fail "mssim does not serve the page"
 python3 - "$(grep -o '[0-9]*' "$work/out")" <<'PYTHON' || fail "requests are not answered as they should be"
 import socket, sys
 
-def answer(method, path, host="localhost:1"):
+def answer(method, path, host="localhost:1", more=""):
     """Head and body of all that comes until the connection is closed."""
     with socket.create_connection(("localhost", int(sys.argv[1]))) as connection:
-        connection.sendall(f"{method} {path} HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
+        connection.sendall(f"{method} {path} HTTP/1.1\r\nHost: {host}\r\n{more}\r\n".encode())
         return b"".join(iter(lambda: connection.recv(1 << 16), b"")).split(b"\r\n\r\n", 1)
 
 for path, status in (("/", b"200"), ("/?auto=cloth2500", b"200"), ("/nothing", b"404")):
@@ -39,7 +39,13 @@ for path, status in (("/", b"200"), ("/?auto=cloth2500", b"200"), ("/nothing", b
 for host in "localhost", "127.0.0.1", "127.0.0.1:80":
     assert b"200" in answer("GET", "/", host)[0].splitlines()[0], host
 for host in "localhost.example.org", "example.org:80", "":
-    assert answer("GET", "/", host) == [b""], host
+    head, body = answer("GET", "/", host)
+    assert b"403" in head.splitlines()[0] and f'"{host}": open the page as http://localhost:{sys.argv[1]}/'.encode() in body, (head, body)
+    assert answer("HEAD", "/", host) == [head, b""], host
+head, body = answer("POST", "/results", more="Origin: http://example.org\r\nContent-Length: 9\r\n")
+assert b"403" in head.splitlines()[0] and b"example.org" in body, (head, body)
+head, body = answer("POST", "/results", more=f"Content-Length: {(64 << 20) + 1}\r\n")
+assert b"413" in head.splitlines()[0] and b"64 MiB" in body, (head, body)
 PYTHON
 is_ended 143 TERM
 # Both are packages of the tests. Only a build that was configured before they came has no module.
@@ -120,7 +126,7 @@ with socket.create_connection(("localhost", port)) as slow:
     time.sleep(1)
     for model, folder in (("phone A", ""), ("phone B", "-2"), ("phone A", ""), ("phone B", "-2")):
         assert "taken/2026-01-31T12-00-00Z" + folder == sent(model, start).split("\r\n\r\n")[1], model
-assert sent("phone C", start, "Origin: https://example.org\r\n") == ""
+assert "403" in (said := sent("phone C", start, "Origin: https://example.org\r\n")) and "localhost" in said, said
 for wrong in ("", "../..", "2026-01-31"):
     assert "400" in (said := sent("phone C", wrong)) and "started_utc" in said, said
 assert sorted(path.name for path in pathlib.Path("taken").iterdir()) == ["2026-01-31T12-00-00Z", "2026-01-31T12-00-00Z-2"]

@@ -79,6 +79,8 @@ TEST_F(AtomicFileTest, RefusesFoldersOfTheSystemButForSharedMemory) {
     EXPECT_THAT([&] { require_replaceable(file); },
                 ThrowsMessage<WriteError>(AllOf(HasSubstr(file), HasSubstr("choose another file name"))));
   EXPECT_THAT([] { target_of("/dev/stdout"); }, ThrowsMessage<WriteError>(HasSubstr("/dev/stdout")));
+  EXPECT_THAT([] { target_of("-"); }, ThrowsMessage<UsageError>(HasSubstr("./-")));
+  EXPECT_EQ(target_of("./-"), "./-");
   EXPECT_NO_THROW(require_replaceable("/dev/shm/new"));
   EXPECT_NO_THROW(require_replaceable("/devices"));
 }
@@ -162,6 +164,16 @@ TEST_F(AtomicFileTest, IsKeptOrRemovedWhenItsWriterGivesUp) {
   }
   EXPECT_EQ(text_of(temporary_of(file)), "kept");
   EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST(TemporaryFolders, ThatCannotBeMadeAreAnErrorOfFiles) {
+  try {
+    const TemporaryFolder made("/dev/null/nowhere");
+    FAIL() << "made " << made.path();
+  } catch (const WriteError& error) {
+    EXPECT_EQ(error.exit_code, exit_file_error);
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("/dev/null/nowhere"), HasSubstr("set TMPDIR")));
+  }
 }
 
 class WholeFile : public TemporaryFolderTest {

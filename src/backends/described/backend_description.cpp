@@ -43,6 +43,8 @@ struct Description {
 };
 
 void visit(FieldVisitor& fields, Description& description) {
+  std::string schema;  // for editors; not part of the description
+  fields.text({"$schema", "Path of this schema, for editors; mssim ignores it."}, Presence::optional, schema);
   fields.texts(
       {"command", "The program, in PATH or with a slash relative to this file's folder, and its arguments."},
       Presence::required, 1, most_words, longest_word, description.command);

@@ -82,7 +82,7 @@ std::string last_line(std::string_view output) {
 }
 
 /// Calls `work`. A failure with files, sockets or processes concerns only this program: throws BackendFailure
-/// for it.
+/// for it, with the exit code of the failure if that has one.
 template <class Work>
 std::invoke_result_t<Work> failing_alone(const Work& work) {
   try {
@@ -93,6 +93,10 @@ std::invoke_result_t<Work> failing_alone(const Work& work) {
     throw;
   } catch (const BackendFailure&) {
     throw;
+  } catch (const Error& error) {
+    BackendFailure failure(error.what(), "");
+    failure.exit_code = error.exit_code;
+    throw failure;
   } catch (const std::runtime_error& error) {
     throw BackendFailure(error.what(), "");
   }

@@ -1,5 +1,6 @@
 #include "bench/machine/provenance.h"
 
+#include <omp.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -223,26 +224,35 @@ std::string now_utc() {
 /// Smallest load of other programs, as an average of the last minute, that is worth a warning.
 constexpr double least_load = 0.25;
 
-/// Whether the variables let OpenMP keep threads on their CPUs. A list of words has one for each level of
-/// nested regions, and only the first counts. A word that is none of OpenMP's says nothing.
-bool binds_threads(const Provenance& provenance) {
-  bool has_places = false;
-  for (const auto& [name, value] : provenance.thread_environment) {
-    std::string word = to_lower(value);
-    word.erase(0, word.find_first_not_of(' '));
-    word.erase(std::min(word.size(), word.find_first_of(" ,(")));
-    const auto is_one_of = [&](std::initializer_list<std::string_view> words) {
-      return std::ranges::find(words, word) != words.end();
-    };
-    const char first = word.empty() ? ' ' : word[0];
-    if (name == "OMP_PROC_BIND" && word == "false") return false;
-    if (name == "OMP_PROC_BIND" && is_one_of({"true", "close", "spread", "master", "primary"})) return true;
-    if (name == "OMP_PLACES" && (first == '{' || first == '!' ||
-                                 is_one_of({"threads", "cores", "sockets", "ll_caches", "numa_domains"})))
-      has_places = true;
-    if (name == "GOMP_CPU_AFFINITY" && first >= '0' && first <= '9') has_places = true;
+/// Asks OpenMP, because it ignores variables that it does not understand. Under OMP_PROC_BIND=master or
+/// primary all threads share the place of the first one.
+std::vector<std::vector<int>> places_of_threads() {
+  const omp_proc_bind_t binding = omp_get_proc_bind();
+  std::vector<std::vector<int>> places;
+  for (int place = 0; binding != omp_proc_bind_false && place < omp_get_num_places(); ++place) {
+    if (binding == omp_proc_bind_master && place != omp_get_place_num()) continue;
+    places.emplace_back(static_cast<std::size_t>(omp_get_place_num_procs(place)));
+    omp_get_place_proc_ids(place, places.back().data());
   }
-  return has_places;
+  return places;
+}
+
+/// What is wrong with where OpenMP keeps the threads of a parallel run; empty if they stay on their CPUs.
+std::string binding_noise(const Provenance& provenance) {
+  if (provenance.thread_places.empty()) return "threads may move from CPU to CPU: set OMP_PROC_BIND=true";
+  std::set<int> cpus;
+  for (const std::vector<int>& place : provenance.thread_places) cpus.insert(place.begin(), place.end());
+  const auto threads = static_cast<std::size_t>(provenance.threads);
+  if (cpus.size() < std::min(threads, provenance.allowed_cpus.size()))
+    return fmt::format("OMP_PROC_BIND, which is master or primary, keeps {} on {}: set OMP_PROC_BIND=true",
+                       pluralize(threads, "thread"), pluralize(cpus.size(), "logical CPU"));
+  // Moves within a core cost nothing.
+  const std::size_t cpus_of_core = provenance.machine.smt.value_or(false) ? 2 : 1;
+  const std::size_t largest = std::ranges::max(provenance.thread_places, {}, &std::vector<int>::size).size();
+  if (largest > cpus_of_core)
+    return fmt::format("threads may move among the {} of a place: set OMP_PLACES=threads",
+                       pluralize(largest, "logical CPU"));
+  return "";
 }
 
 }  // namespace
@@ -292,6 +302,7 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
   provenance.threads = threads;
   provenance.allowed_cpus = process_cpus();
   provenance.thread_environment = thread_environment();
+  provenance.thread_places = places_of_threads();
   for (const std::string& argument : arguments)
     provenance.command_line.push_back(provenance.command_line.empty()
                                           ? escaped(std::filesystem::path(argument).filename().string())
@@ -347,8 +358,8 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
         "this container's quota limits {} to the time of {:.1f} processors: {}",
         pluralize(provenance.threads, "thread"), *machine.cpu_quota,
         provenance.threads > 1 ? "give fewer with --threads, or raise the quota" : "raise the quota"));
-  if (provenance.threads > 1 && !binds_threads(provenance))
-    noise.emplace_back("threads may move from CPU to CPU: set OMP_PROC_BIND=true");
+  if (provenance.threads > 1)
+    if (std::string moves = binding_noise(provenance); !moves.empty()) noise.push_back(std::move(moves));
   return noise;
 }
 

@@ -115,7 +115,11 @@ struct Provenance {
   std::vector<int> allowed_cpus;                  ///< process_cpus()
   /// OMP_ and GOMP_ variables, by name.
   std::vector<std::pair<std::string, std::string>> thread_environment;
-  std::string device_memory;                ///< how backends with a device exchange data, if requested
+  /// CPUs of each place to which OpenMP binds threads; empty if it binds none. No file has them.
+  std::vector<std::vector<int>> thread_places;
+  /// How backends with a device exchange data, how vector code computes roots ("fast" or "exact"), and its
+  /// instruction set, if one was requested; empty from older versions.
+  std::string device_memory, roots, instruction_set;
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
   std::vector<std::string> noise;  ///< conditions that make times longer or less certain
@@ -157,7 +161,8 @@ void add_scene(Provenance& provenance, std::string_view name, std::string_view f
                std::optional<std::uint64_t> files_fnv1a_64 = {});
 
 /// Conditions that make times on this machine longer or less repeatable: one sentence each, with a remedy.
-/// Considers load, governor and turbo of the machine, the requested threads, and the CPUs where they may run.
+/// Considers load, governor and turbo of the machine, the requested threads, the CPUs where they may run, and
+/// the places to which they are bound.
 /// Conditions that the system does not report are ignored.
 std::vector<std::string> noise_of(const Provenance& provenance);
 

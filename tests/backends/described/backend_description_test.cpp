@@ -39,7 +39,8 @@ TEST_F(BackendDescriptionTest, HasWindowsInRanksAlone) {
 }
 
 TEST_F(BackendDescriptionTest, TakesEveryField) {
-  const BackendProgram program = parse(R"({"command": ["sh"], "description": "a shell", "scenes": ["bodies"],
+  const BackendProgram program =
+      parse(R"({"$schema": "s.json", "command": ["sh"], "description": "a shell", "scenes": ["bodies"],
       "integrators": ["rk4", "semi-euler"], "environment": {"A": "1", "B": ""}, "time_limit_s": 2.5, "processes": "ranks",
       "states": "windows", "install": "nothing to install"})");
   EXPECT_EQ(program.description, "a shell");

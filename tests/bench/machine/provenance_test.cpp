@@ -216,7 +216,7 @@ Provenance quiet() {
   Provenance provenance;
   provenance.threads = 4;
   provenance.allowed_cpus = {0, 1, 2, 3};
-  provenance.thread_environment = {{"OMP_PROC_BIND", "true"}};
+  provenance.thread_places = {{0}, {1}, {2}, {3}};
   provenance.machine.load_average = {0.05, 3, 3};
   provenance.machine.governor = "performance";
   provenance.machine.turbo = false;
@@ -258,33 +258,31 @@ TEST(Noise, ComesFromAQuotaThatThreadsExceed) {
 
 TEST(Noise, ComesFromThreadsThatMayMove) {
   Provenance provenance = quiet();
-  provenance.thread_environment = {{"OMP_PROC_BIND", "false"}};
+  provenance.thread_places = {};
   EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")));
-  provenance.thread_environment = {};
-  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")));
-  using Variables = std::vector<std::pair<std::string, std::string>>;
-  for (const Variables& binds : {Variables{{"OMP_PLACES", "cores"}},
-                                 {{"OMP_PLACES", " {0}:4:1"}},
-                                 {{"GOMP_CPU_AFFINITY", "0-3"}},
-                                 {{"OMP_PROC_BIND", "Spread, close"}},
-                                 {{"OMP_PLACES", "LL_CACHES(2)"}, {"OMP_PROC_BIND", "nonsense"}}}) {
-    provenance.thread_environment = binds;
-    EXPECT_THAT(noise_of(provenance), ElementsAre()) << binds[0].first << '=' << binds[0].second;
-  }
-  for (const Variables& moves : {Variables{{"OMP_PROC_BIND", " False"}},
-                                 {{"OMP_PROC_BIND", ""}},
-                                 {{"OMP_PROC_BIND", "nonsense"}},
-                                 {{"OMP_PLACES", "nonsense"}},
-                                 {{"GOMP_CPU_AFFINITY", ""}},
-                                 {{"OMP_PLACES", "cores"}, {"OMP_PROC_BIND", "FALSE"}},
-                                 {{"GOMP_CPU_AFFINITY", "0-1"}, {"OMP_PROC_BIND", "false"}}}) {
-    provenance.thread_environment = moves;
-    EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")))
-        << moves[0].first << '=' << moves[0].second;
-  }
-  provenance.thread_environment = {};
+  provenance.thread_places = {{0, 1}, {2, 3}};
+  EXPECT_THAT(noise_of(provenance),
+              ElementsAre(AllOf(HasSubstr("2 logical CPUs"), HasSubstr("OMP_PLACES=threads"))));
+  provenance.machine.smt = true;  // each place is a core
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
+  provenance.thread_places = {{0, 1, 2, 3}};
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("4 logical CPUs")));
+  provenance.thread_places = {};
   provenance.threads = 1;
   EXPECT_THAT(noise_of(provenance), ElementsAre());
+}
+
+TEST(Noise, ComesFromThreadsOnOneCpu) {
+  Provenance provenance = quiet();
+  provenance.thread_places = {{2}};
+  EXPECT_THAT(noise_of(provenance),
+              ElementsAre(AllOf(HasSubstr("4 threads on 1 logical CPU:"), HasSubstr("OMP_PROC_BIND=true"))));
+  provenance.threads = 1;
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
+  // One CPU is all that the process has: another sentence says so.
+  provenance.threads = 2;
+  provenance.allowed_cpus = {2};
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("2 threads share 1 logical CPU")));
 }
 
 }  // namespace
