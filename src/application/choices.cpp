@@ -48,6 +48,12 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
+/// A link that leads nowhere counts: whoever reads it says so.
+bool is_file_or_link(const fs::path& path) {
+  std::error_code error;
+  return is_file(path) || fs::is_symlink(path, error);
+}
+
 /// Whether both are the same file or folder, however their paths are written.
 bool is_same(const fs::path& a, const fs::path& b) {
   std::error_code error;
@@ -168,6 +174,8 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
       asked.empty() ? std::vector<std::string>(by_default.begin(), by_default.end()) : asked;
   if (names == std::vector<std::string>{"all"}) return {all_integrators.begin(), all_integrators.end()};
   std::vector<const Integrator*> named, chosen;
+  if (std::ranges::find(names, "all") != names.end())
+    throw UsageError("--integrator all stands for every integrator: give no other name with it");
   for (const std::string& name : names) named.push_back(&require_integrator(name));
   for (const Integrator* integrator : all_integrators)
     if (std::ranges::find(named, integrator) != named.end()) chosen.push_back(integrator);
@@ -181,6 +189,7 @@ std::string_view require_instruction_set(const std::string& name) {
 }
 
 std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
+std::string name_of(Roots roots) { return roots == Roots::exact ? "exact" : "fast"; }
 
 void require_few_threads(int threads, std::string_view asked) {
   if (const auto excess = thread_excess(threads))
@@ -244,7 +253,8 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
   for (const std::string& folder : options.folders) {
     std::error_code error;
     if (!fs::is_directory(folder, error))
-      throw UsageError("--backend-folder {} is not a folder", escaped(folder));
+      throw UsageError("--backend-folder {} is not a folder: give one with descriptions, NAME.json",
+                       escaped(folder));
     folders_.emplace_back(folder);
   }
   if (const fs::path folder = xdg_folder("XDG_CONFIG_HOME", ".config"); !folder.empty())
@@ -392,14 +402,14 @@ std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs
   for (const fs::path& folder : folders) {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == description_extension && is_file(entry.path()))
+      if (entry.path().extension() == description_extension && is_file_or_link(entry.path()))
         files.push_back(entry.path());
   }
   std::ranges::sort(files, {}, [](const fs::path& file) { return file.stem(); });
   std::vector<const BackendInfo*> infos;
   for (const fs::path& file : files) {
     try {
-      infos.push_back(&require(file.stem().string()));
+      add_once(infos, &require(file.stem().string()));  // a folder may be given twice
     } catch (const Error& error) {
       if (broken == nullptr) throw;
       add_once(*broken, error.what());  // two of one name have one reason
@@ -420,7 +430,7 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
     std::error_code error;
     const bool known =
         std::ranges::any_of(found, [&](const fs::path& other) { return fs::equivalent(other, file, error); });
-    if (is_file(file) && !known) found.push_back(file);
+    if (is_file_or_link(file) && !known) found.push_back(file);
   };
   std::ranges::for_each(folders_, look);
   if (in_table && !found.empty())
@@ -454,8 +464,11 @@ const BackendInfo& BackendChoice::add(BackendProgram program) {
   return rows_.emplace_back(std::make_unique<Row>(std::move(program)))->info;
 }
 
-void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
-                  const ExecutionOptions& execution) {
+void add_execution(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
+                   const ExecutionOptions& execution) {
+  provenance.device_memory = name_of(execution.memory);
+  provenance.roots = name_of(execution.roots);
+  provenance.instruction_set = execution.instruction_set;
   for (const BackendInfo* info : rows) {
     const BackendProgram* program = info->program;
     if (!program || info->threads > 0) continue;  // the row with the requested number has the program

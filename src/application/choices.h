@@ -33,8 +33,9 @@ inline constexpr int most_ranks = 65536;
 /// Throws UsageError with a list if this CPU, or mssim's vector code, has none of that name.
 std::string_view require_instruction_set(const std::string& name);
 
-/// The value of --memory.
+/// The values of --memory and --roots.
 std::string name_of(DeviceMemory memory);
+std::string name_of(Roots roots);
 
 /// Throws UsageError if thread_excess() or OMP_THREAD_LIMIT does not allow so many. `asked`: what says the
 /// number, if it is not --threads.
@@ -154,9 +155,9 @@ class BackendChoice {
   std::vector<std::unique_ptr<Row>> rows_;
 };
 
-/// Adds the programs of the rows that have one to the provenance.
-void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
-                  const ExecutionOptions& execution);
+/// Adds to the provenance what the rows run with: the settings, and the programs of those that have one.
+void add_execution(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
+                   const ExecutionOptions& execution);
 
 /// Throws UsageError if --ranks, --launcher, --device or --instruction-set is given but none of these rows
 /// uses it, and Unavailable if no device has the name that --device gives.

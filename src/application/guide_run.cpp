@@ -229,8 +229,7 @@ int run_guide(const GuideOptions& options) {
   require_available(options, request.backends, request.execution);
   const bool uses_device = std::ranges::any_of(request.backends, &BackendInfo::uses_device);
   Provenance provenance = run_provenance(request.execution.threads, uses_device);
-  add_programs(provenance, choice.own(), request.execution);
-  provenance.device_memory = name_of(request.execution.memory);
+  add_execution(provenance, choice.own(), request.execution);
   for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
   const std::unique_ptr<ResultFolder> folder = result_folder(options, provenance);
   for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';

@@ -44,10 +44,12 @@ std::int64_t count_steps(const SimulationPlan& plan) {
 /// The frames of a simulation with steps of `dt_s`. Throws UsageError for more than one frame per step.
 FrameGrid frame_grid(double frames_per_second, double dt_s) {
   const double steps_per_frame = 1 / (frames_per_second * dt_s);
-  if (!(steps_per_frame >= 1))
+  if (!(steps_per_frame >= 1)) {
+    const double unit = std::pow(10, std::floor(std::log10(1 / dt_s)) - 5);  // of the last digit shown
     throw UsageError(
         "{:.6g} frames per second are more than one per step of {:.6g} s; give --fps {:.6g} or less",
-        frames_per_second, dt_s, dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s));
+        frames_per_second, dt_s, std::floor(1 / dt_s / unit) * unit);
+  }
   return {steps_per_frame};
 }
 
@@ -301,11 +303,33 @@ std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, c
   return (curve.back().energy.total() + losses.total() - curve.front().energy.total()) / in_motion;
 }
 
+/// A sentence if the total energy has grown by more than all energy that could move: the kinetic and elastic
+/// energy at the start, and what gravity gave. Then the steps of an explicit integrator are too long, though
+/// all numbers are finite. (With long steps implicit ones stretch springs, too, and recover.)
+std::string blow_up_of_energy(const System& system, const Integrator& integrator,
+                              const std::vector<EnergySample>& curve, std::string_view remedy) {
+  if (is_implicit(integrator)) return "";
+  const Energy& first = curve.front().energy;
+  double given = 0;
+  for (const EnergySample& sample : curve)
+    given = std::max(given, first.gravitational - sample.energy.gravitational);
+  const double could_move =
+      std::max(first.kinetic + first.elastic + given, energy_in_motion(system, system.start, Energy{}));
+  const EnergySample& largest =
+      *std::ranges::max_element(curve, {}, [](const EnergySample& sample) { return sample.energy.total(); });
+  const double growth = largest.energy.total() - first.total();
+  if (growth <= could_move) return "";
+  return fmt::format(
+      "the simulation blew up: its energy has grown by {:.3g} J at {:.6g} s, and the scene has {:.3g} J that "
+      "can move; {}",
+      growth, largest.time_s, could_move, remedy);
+}
+
 FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                        const Backend& backend, const Integrator& integrator) {
   if (!options.files.any()) return {};
   Provenance provenance = run_provenance(backend.threads(), info.uses_device);
-  add_programs(provenance, {&info}, complete(options.execution));
+  add_execution(provenance, {&info}, complete(options.execution));
   add_scene(provenance, scene.spec.name, scene.spec.source);
   FileHeaders headers{trace_header(scene, backend, info, integrator, provenance),
                       join(mapped<std::string>(provenance.command_line, shell_word), " "), options.pictures};
@@ -449,7 +473,9 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
              {"integration_loss_j", loss(&EnergyLosses::integration)},
              {"energy_imbalance", losses ? Cell(energy_imbalance(curve, *losses)) : Cell()}});
   if (!options.silent) std::cout << record_text(table, terminal_of(STDOUT_FILENO).width);
-  return exit_ok;
+  const std::string blow_up = blow_up_of_energy(scene.system, integrator, curve, plan.remedy);
+  if (!blow_up.empty()) std::cerr << "mssim: " << blow_up << '\n';
+  return blow_up.empty() ? exit_ok : exit_not_verified;
 }
 
 }  // namespace
@@ -483,8 +509,14 @@ int run_scene(RunOptions options) {
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
                             options.fps.value_or(std::min(options.usual_fps, 1 / scene.dt_s)), options.losses,
                             options.dt_s ? "take a smaller --dt, or leave it out" : shorter_scene_step};
-  return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
-                                  : run_simulation(options, info, scene, integrator, plan);
+  try {
+    return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
+                                    : run_simulation(options, info, scene, integrator, plan);
+  } catch (const BackendFailure& failure) {
+    // A bench keeps it in a file.
+    std::cerr << failure.output << (failure.output.empty() || failure.output.ends_with('\n') ? "" : "\n");
+    throw;
+  }
 }
 
 }  // namespace mssim

@@ -186,7 +186,7 @@ int run_guide_suite(const BenchRequest& options) {
   refuse(options.instruction_sets.size() > 1, "a list of --instruction-set");
   refuse(options.format != ListingFormat::table, "--format");
   GuideOptions guide;
-  static_cast<AskedCombinations&>(guide) = options;
+  static_cast<AskedCombinations&>(guide) = static_cast<const AskedCombinations&>(options);
   guide.scenes = scenes_of_suite(options.suite, true);
   guide.scenes.insert(guide.scenes.end(), options.scenes.begin(), options.scenes.end());
   guide.time_budget_s = options.time_budget_s;
@@ -221,6 +221,7 @@ int run(const BenchRequest& options) {
     std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
     if (!format && results.folder() && !results.rows().empty())
       results.folder()->write_for_github(results.rows());
+    tell_unchecked_samples(results.rows(), "");
     const BenchVerdict verdict =
         verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
     tell_first(verdict.reasons);

@@ -96,6 +96,8 @@ int compare_runs(const CompareOptions& options) {
   };
   const MeasuredRun base = read(options.ab.base), next = read(options.ab.next);
   require_comparable(base, next, options.force);
+  tell_unchecked_samples(base.rows, options.ab.base);
+  tell_unchecked_samples(next.rows, options.ab.next);
   const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
   tell("only BASE has", comparison.only_base);
   tell("only NEW has", comparison.only_new);
@@ -122,7 +124,10 @@ int run(CompareOptions options) {
   if (!options.programs) return compare_runs(options);
   require_few_threads(options.ab.execution.threads);
   if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
-  return report(compare_programs(options.ab), options);
+  StopRequest stop;
+  const int code = report(compare_programs(options.ab), options);
+  stop.throw_if_requested();
+  return code;
 }
 
 }  // namespace

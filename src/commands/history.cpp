@@ -36,6 +36,7 @@ int add(const HistoryOptions& options) {
                                  {"--last", options.last.has_value()},
                                  {"--format", options.format != ListingFormat::table}});
   const MeasuredRun run = read_run(options.folder);
+  tell_unchecked_samples(run.rows, options.folder);
   // As it reads back: the entries that it is compared with have been cut and escaped.
   const std::string line = history_line(entry_of(run.provenance, run.rows, options.commit));
   std::size_t entries = 0;

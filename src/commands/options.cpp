@@ -245,7 +245,8 @@ std::vector<Argument> declare_execution(Arguments& arguments, ExecutionOptions& 
           "How host and OpenCL device exchange data: shared (without copying if the device can) or copy "
           "(default: shared)"),
       arguments.add_choice<Roots>(
-          "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
+          "--roots", options.roots,
+          {{name_of(Roots::exact), Roots::exact}, {name_of(Roots::fast), Roots::fast}},
           "How openmp and gather-vectors compute the lengths of springs: fast (with AVX-512, an estimate and "
           "a Newton step) or exact (bitwise identical on every processor with fused multiply-adds) "
           "(default: fast)"),

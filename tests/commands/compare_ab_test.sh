@@ -133,7 +133,9 @@ fi
 # What is wrong is found before anything is sampled; and what turns out not to be verified does not count.
 saying 'lost  *failed: not verified' ab 1 new-steady new-wrong
 warns '^mssim: 0 rounds in'
-warning 'nothing to compare' ab 2 new-wrong new-steady
+# Both programs may have run at the same time: that is no time of BASE.
+saying '"base_ms": null' ab 1 new-steady new-wrong --format json
+warning 'new-wrong has no verified time of what both have' ab 2 new-wrong new-steady
 saying 'lost  *failed: not verified' ab 1 new-steady new-unsure
 warning 'none in a later round (failed: not verified)' ab 2 new-unsure new-steady
 warns 'nothing is left to compare'
@@ -183,6 +185,13 @@ begins compare --ab "$work/sleepy" "$work/sleepy" --scene cloth2500
 is_ended 130 INT 10 test -s "$work/sleepy.pid"
 is_gone "$(cat "$work/sleepy.pid")" || fail "the program under way goes on"
 [ -z "$(ls -A "$TMPDIR")" ] || fail "interrupted it leaves something in $TMPDIR"
+# What the rounds before show is judged and written.
+rm -f "$work/wild2.runs"
+begins compare --ab "$work/wild" "$work/wild2" --scene cloth2500 --out "$work/interrupted"
+is_ended 130 INT 20 bash -c "[ \"\$(wc -l <'$work/wild2.runs')\" -ge 3 ]"
+grep -q 'rounds* in .*a signal ended it before every verdict was settled' "$work/err" || fail "interrupted it says $(cat "$work/err")"
+grep -q '^cloth2500 *openmp .*undecided' "$work/out" || fail "interrupted it prints $(cat "$work/out")"
+grep -q '"verdict": "undecided"' "$work/interrupted/comparison.json" || fail "interrupted it writes no comparison"
 
 # The real thing against itself: whatever the noise, never slower by more than a factor of 20. A small cloth is soon verified; a build with a
 # sanitizer takes minutes for ten rounds.

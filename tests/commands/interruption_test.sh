@@ -36,6 +36,11 @@ begins "${bench[@]}" --out int
 is_ended 130 INT 60 test -e int/timings.csv
 grep -q 'results so far are in int; --resume continues' err || fail "SIGINT: $(cat err)"
 grep -q '^cloth2500: ' out && grep -q '^  [a-z0-9-]*  *serial ' out || fail "after SIGINT nothing is printed"
+# Others that read the folder hear that nothing has checked the samples.
+unchecked='the samples of [1-4] rows* are not checked, because the run was ended before that; bench --resume'
+grep -q "$unchecked" err || fail "SIGINT does not tell of unchecked samples: $(cat err)"
+warning "int: $unchecked" ends 0 compare int int
+warning "int: $unchecked" ends 0 history add int --file history.jsonl
 whole int
 case $(rounds int) in
   '6 6 6 6 ') fail "SIGINT came too late to be tested" ;;
@@ -76,6 +81,7 @@ sed -i '/"allowed_cpus": \[/,/\]/ s/[0-9][0-9]*/1234/' elsewhere/provenance.json
 expect 2 'cannot continue in elsewhere: the CPUs that it may use were 1234.* and are [0-9,]*; choose another' "${bench[@]}" --out elsewhere --resume
 OMP_WAIT_POLICY=passive expect 2 'cannot continue in int: the environment of OpenMP was .* and is .*OMP_WAIT_POLICY=passive' \
   "${bench[@]}" --out int --resume
+expect 2 'cannot continue in int: --roots was fast and is exact; choose another' "${bench[@]}" --roots exact --out int --resume
 OMP_DISPLAY_AFFINITY=false ends 0 "${bench[@]}" --out int --resume
 expect 2 'resume' bench --scene cloth2500 --resume
 expect 2 'cannot continue in int: it has results of cloth2500, which this command leaves out; choose another' \
@@ -83,7 +89,14 @@ expect 2 'cannot continue in int: it has results of cloth2500, which this comman
 ends 0 "${scenes[@]}" --backend opencl --rounds 2 --memory copy --out copied
 cp copied/timings.csv kept.csv
 ends 2 "${scenes[@]}" --backend opencl --rounds 3 --out copied --resume
-warns 'cannot continue in copied: the device of opencl was .* (copied memory) and is '
+warns 'cannot continue in copied: --memory was copy and is shared; choose another'
+for changed in 's/driver [0-9]/driver 99/:the OpenCL devices or their drivers' 's/"tetgen": .*/"tetgen": "0.1",/:TetGen'; do
+  cp -r copied other
+  sed -i "${changed%:*}" other/provenance.json
+  expect 2 "cannot continue in other: ${changed##*:}.* not the same; choose another" "${scenes[@]}" --backend opencl --rounds 3 \
+    --memory copy --out other --resume
+  rm -r other
+done
 cmp -s kept.csv copied/timings.csv || fail "a refused --resume has changed the rows"
 expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
 cp -r int before

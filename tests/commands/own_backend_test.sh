@@ -180,15 +180,20 @@ for name in 'openmp:1' 'serial:double' 'x,y'; do
   printf '{"command": ["../spring_list"]}' >"odd/$name.json"
   expect 2 "$name.json: in the name of a backend" "${bench[@]}" --backend "./odd/$name.json"
 done
-# One that cannot be used costs no other its place in a list, nor in a message.
+# One that cannot be used costs no other its place in a list, nor in a message. A folder may be named twice.
 cp wrong.json odd/broken.json
 cp backends/here.json odd
-saying '^here ' ends 0 list backends --backend-folder odd
-for reason in 'broken.json: /comand is not a known key' 'openmp:1.json: in the name of a backend' 'x,y.json: in the name of a backend'; do
+ln -s nothing odd/dangling.json
+saying '^here ' ends 0 list backends --backend-folder odd,./odd
+[ "$(grep -c '^here ' "$work/out")" -eq 1 ] || fail "a folder that is named twice has a backend twice: $(cat "$work/out")"
+for reason in 'broken.json: /comand is not a known key' 'dangling.json' 'openmp:1.json: in the name of a backend' 'x,y.json: in the name of a backend'; do
   warns "a backend is not shown: .*$reason"
 done
 expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder odd
 expect 2 'broken.json: /comand is not a known key' "${bench[@]}" --backend broken --backend-folder odd
+expect 2 'dangling.json' "${bench[@]}" --backend dangling --backend-folder odd
+expect 2 'no-folder is not a folder: give one' "${bench[@]}" --backend here --backend-folder no-folder
+expect 2 'integrator all stands for every integrator: give no other' bench --scene cloth2500 --integrator all,rk4
 # One file in two spellings is one backend, and no other has the name of one of mssim's.
 ends 0 "${bench[@]}" --backend "./spring_list,$work/spring_list" --out spellings
 [ "$(column_of spellings/timings.csv backend | xargs)" = spring_list ] || fail "one file is two backends: $(cat spellings/timings.csv)"
@@ -206,7 +211,8 @@ grep -q 'spring_list' "$work/out" || fail "compare --ab says: $(cat "$work/out")
 # run has them too.
 ends 0 run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fall.h5
 grep -q ' spring_list ' "$work/out" || fail "run says: $(cat "$work/out")"
-expect 1 'exits ended with exit code 3 before it answered' run --scene cloth2500 --backend exits --backend-folder backends
+warning 'exits ended with exit code 3 before it answered' ends 1 run --scene cloth2500 --backend exits --backend-folder backends
+warns '^out of cake$'  # all that it has printed
 # Its reasons name the backend as it was asked for, and the scenes and integrators that the backend has.
 expect 2 '^mssim: here: .*bodies' run --scene cloth2500 --backend here --backend-folder backends
 describe slow '"integrators": ["rk4", "xpbd"]'

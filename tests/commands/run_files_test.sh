@@ -89,6 +89,13 @@ expect 2 '--size needs --pictures' "${fall[@]}" --size 160x120
 expect 2 '"up" is not a view' "${fall[@]}" --pictures unseen --view up
 [ ! -e unseen ] || fail "a refused run leaves a folder"
 
+# Steps that are too long: a simulation may blow up in finite numbers. The remedy of too many frames works as it is printed.
+ends 1 "${fall[@]}" --duration 0.01 --dt 1e-3 --energy-curve grown.csv
+warns 'blew up: its energy has grown by .* J at 0.01 s, and the scene has .* J that can move; take a smaller --dt'
+[ "$(grep -c '^[0-9]' grown.csv)" -eq 2 ] || fail "the curve of a simulation that blew up: $(cat grown.csv)"
+expect 2 'give --fps 1.66666e+06 or less' "${fall[@]}" --dt 6e-7 --fps 1e9 --duration 3e-6
+ends 0 "${fall[@]}" --dt 6e-7 --fps 1.66666e+06 --duration 3e-6
+
 # A disk that is full: the trace and the energies of its frames are kept.
 on_full_disk 2000 'cannot write full.h5: .*full.h5.part keeps the frames .*; full.csv.part keeps the energies written before: ' \
   "${fall[@]}" --duration 10 --trace full.h5 --energy-curve full.csv

@@ -6,9 +6,13 @@ set -euo pipefail
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
-# valid SCHEMA ARGUMENTS...: the arguments of check_json.py; the schema without docs/schemas/ and .schema.json
+# valid SCHEMA ARGUMENTS...: the arguments of check_json.py; the schema without docs/schemas/ and .schema.json. What is valid by a
+# definition is valid by the whole schema, which is all that an editor is pointed at.
 valid() {
   local name=${1%%#*}
+  [[ $1 == "$name" ]] || /usr/bin/python3 -W ignore -c 'import json, jsonschema, sys
+jsonschema.validate(*(json.load(open(file)) for file in sys.argv[1:]))' "$2" "$source/docs/schemas/$name.schema.json" >whole 2>&1 ||
+    fail "$1 by the whole schema: $(grep -m 1 Error whole)"
   /usr/bin/python3 -W ignore "$source/tests/support/check_json.py" "$source/docs/schemas/$name.schema.json${1#"$name"}" "${@:2}" || fail "$*"
 }
 
@@ -68,10 +72,11 @@ ends 0 "${bench[@]}" --dry-run --format json
 valid listings#bench-plan out
 
 # Descriptions of backends.
-optional=description,scenes,integrators,environment,time_limit_s,install,processes,states
+optional=\$schema,description,scenes,integrators,environment,time_limit_s,install,processes,states
 for description in "$source"/src/ranks/*.json "$source"/scripts/lib/peers/*.json; do
   valid backend "$description" --maps environment --optional "$optional"
 done
-echo '{"command": ["./mine"], "description": "mine", "scenes": ["cloth"], "integrators": ["rk4"], "environment": {"A": "b"},
-  "time_limit_s": 9, "install": "make it", "processes": "ranks", "states": "windows"}' >mine.json
+# shellcheck disable=SC2016 # a key
+echo '{"$schema": "backend.schema.json", "command": ["./mine"], "description": "mine", "scenes": ["cloth"], "integrators": ["rk4"],
+  "environment": {"A": "b"}, "time_limit_s": 9, "install": "make it", "processes": "ranks", "states": "windows"}' >mine.json
 valid backend mine.json --maps environment --optional "$optional" --wrong time_limit_s=0 --wrong 'command=[]' --wrong 'processes="two"'

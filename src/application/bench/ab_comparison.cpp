@@ -173,34 +173,36 @@ class AbProgram {
 std::vector<PairedTimes> combinations_of(const std::vector<CombinationTime>& base,
                                          const std::vector<CombinationTime>& next, const AbOptions& options) {
   std::vector<PairedTimes> series;
+  bool untimed = false;
   const auto tell_only = [](const std::string& program, const CombinationTime& time) {
     std::cerr << "mssim: only " << program << " has " << combination_name(time) << '\n';
   };
   for (const CombinationTime& time : base) {
-    if (!find_combination(next, time))
+    if (!find_combination(next, time)) {
       tell_only(options.base, time);
-    else if (!time.least_ms)
+    } else if (time.least_ms) {
+      series.push_back({static_cast<const CombinationNames&>(time), {}, {}, {}});
+    } else {
+      untimed = true;
       std::cerr << "mssim: " << options.base << " has no time for " << combination_name(time) << ": "
                 << time.status << '\n';
-    else
-      series.push_back({time, {}, {}, {}});
+    }
   }
   for (const CombinationTime& time : next)
     if (!find_combination(base, time)) tell_only(options.next, time);
+  if (series.empty() && untimed)
+    throw UsageError(
+        "there is nothing to compare: {} has no verified time of what both have; the reasons are above",
+        options.base);
   if (series.empty())
     throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
                      " have no measured combination in common; choose other backends or integrators");
   return series;
 }
 
-/// Marks a combination without a time in NEW as lost; a time of BASE shows what it was.
-void lose(PairedTimes& pairs, const CombinationTime& base, const std::string& why) {
-  if (pairs.base_ms.empty()) pairs.base_ms.push_back(*base.least_ms);
-  pairs.lost = why;
-}
-
-/// Adds a round to a combination. If BASE has no time for it any more, there is nothing to compare with:
-/// reports that and returns false.
+/// Adds a round to a combination, or marks it as lost if it has no time in NEW; a time of BASE then shows
+/// what it was. If BASE has no time for it any more, there is nothing to compare with: reports that and
+/// returns false.
 bool add_round(PairedTimes& pairs, const std::vector<CombinationTime>& base,
                const std::vector<CombinationTime>& next, const AbOptions& options) {
   const CombinationTime *a = find_combination(base, pairs), *b = find_combination(next, pairs);
@@ -211,7 +213,8 @@ bool add_round(PairedTimes& pairs, const std::vector<CombinationTime>& base,
     return false;
   }
   if (!b || !b->least_ms) {
-    lose(pairs, *a, b ? b->status : "missing in a later round");
+    if (pairs.base_ms.empty()) pairs.base_ms.push_back(*a->least_ms);
+    pairs.lost = b ? b->status : "missing in a later round";
     return true;
   }
   pairs.base_ms.push_back(*a->least_ms);
@@ -241,7 +244,7 @@ std::vector<std::string> backends_wanted(const AbOptions& options, const std::ve
 /// estimate: a compared program may have scenes or backends that this one does not know.
 bool both_fit(const AbOptions& options) {
   BenchOptions bench;
-  static_cast<AskedCombinations&>(bench) = options;
+  static_cast<AskedCombinations&>(bench) = static_cast<const AskedCombinations&>(options);
   bench.dry_run = true;
   try {
     return std::ranges::all_of(plan_of(bench).timed, [](const PlannedScene& scene) {
@@ -272,9 +275,8 @@ std::vector<PairedTimes> verify(std::array<AbProgram, 2>& programs, const AbOpti
   const std::array rows{programs[0].take_verification(results[0]), programs[1].take_verification(results[1])};
   for (AbProgram& program : programs) program.allow(watch.seconds());
   std::vector<PairedTimes> series = combinations_of(rows[0], rows[1], options);
-  for (PairedTimes& one : series)
-    if (const CombinationTime& next = *find_combination(rows[1], one); !next.least_ms)
-      lose(one, *find_combination(rows[0], one), next.status);
+  for (PairedTimes& one : series)  // without a time of BASE: both may have run at the same time
+    if (const CombinationTime& next = *find_combination(rows[1], one); !next.least_ms) one.lost = next.status;
   return series;
 }
 
@@ -298,10 +300,17 @@ RunComparison compare_programs(const AbOptions& options) {
       const bool all = series.empty();
       std::array<std::vector<CombinationTime>, 2> times;
       const std::size_t first = random() & 1U;
-      for (const std::size_t which : {first, 1 - first})
-        times[which] = programs[which].bench(
-            all ? options.backends : backends_wanted(options, series),
-            all ? options.integrators : still_wanted(&PairedTimes::integrator, series, options), all);
+      try {
+        throw_if_ending_signal_noted();
+        for (const std::size_t which : {first, 1 - first})
+          times[which] = programs[which].bench(
+              all ? options.backends : backends_wanted(options, series),
+              all ? options.integrators : still_wanted(&PairedTimes::integrator, series, options), all);
+      } catch (const Interrupted& interrupted) {
+        if (rounds == 0) throw;
+        note_ending_signal(interrupted.signal);
+        break;
+      }
       if (all) series = combinations_of(times[0], times[1], options);
       std::erase_if(series, [&](PairedTimes& one) {
         return !is_one_settled(one) && !add_round(one, times[0], times[1], options);
@@ -316,7 +325,10 @@ RunComparison compare_programs(const AbOptions& options) {
   }
   std::cerr << "mssim: " << rounds << (rounds == 1 ? " round in " : " rounds in ")
             << std::lround(watch.seconds()) << " s"
-            << (settled() ? "" : "; the time budget ended before every verdict was settled") << '\n';
+            << (settled()               ? ""
+                : noted_ending_signal() ? "; a signal ended it before every verdict was settled"
+                                        : "; the time budget ended before every verdict was settled")
+            << '\n';
   RunComparison comparison;
   comparison.threshold = options.threshold;
   for (const PairedTimes& one : series) comparison.rows.push_back(compare_pairs(one, options.threshold));

@@ -26,7 +26,8 @@ struct AbOptions : AskedCombinations {
 /// again, and stderr says so.
 ///
 /// A combination is measured until it is settled. The comparison ends when all are, or before a round that
-/// would exceed the time budget, which includes the verification. Prints the number of rounds to stderr.
+/// would exceed the time budget, which includes the verification. An ending signal ends it, too, and stays
+/// noted; before the first round has ended it is thrown. Prints the number of rounds to stderr.
 /// Throws UsageError if a program fails, if it takes far longer than the budget, or if there is nothing to
 /// compare; MissingProgram if one cannot be run; Unavailable if one lacks a device; CsvError for results that
 /// cannot be read; and Interrupted, after the running program has been ended.

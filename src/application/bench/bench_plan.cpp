@@ -58,7 +58,14 @@ double dt_of(const SceneSpec& spec, const SceneParts& parts) {
 PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
   const SceneCounts counts = scene.parts.counts;
   SceneSize size = size_of(scene.spec, counts);
-  if (settings.fps) size.frame_steps = steps_of_frame(*settings.fps, dt_of(scene.spec, scene.parts));
+  if (settings.fps) {
+    const double dt_s = dt_of(scene.spec, scene.parts);
+    if (1 / (*settings.fps * dt_s) > most_frame_steps)
+      throw UsageError("--fps {:.6g} makes frames of more than {} steps of {:.6g} s on {}: give more",
+                       *settings.fps, grouped(static_cast<std::uint64_t>(most_frame_steps)), dt_s,
+                       scene.spec.name);
+    size.frame_steps = steps_of_frame(*settings.fps, dt_s);
+  }
   std::uint64_t memory_bytes = bench_memory_needed(settings, size);
   const bool can = size.grid && std::ranges::all_of(settings.backends, [](const BackendInfo* backend) {
                      return has_windows(*backend);
@@ -235,8 +242,7 @@ BenchPlan plan_of(const BenchOptions& options) {
   plan.provenance = run_provenance(plan.settings.execution.threads, plan.uses_device && !options.dry_run);
   if (!options.new_references && plan.provenance.program_fnv1a_64)
     plan.settings.references = {cache_folder("references"), *plan.provenance.program_fnv1a_64};
-  add_programs(plan.provenance, plan.backends.own(), plan.settings.execution);
-  plan.provenance.device_memory = name_of(plan.settings.execution.memory);
+  add_execution(plan.provenance, plan.backends.own(), plan.settings.execution);
   for (const UnbuiltScene& scene : plan.described)
     add_scene(plan.provenance, scene.spec.name, scene.spec.source, scene.parts.files_fnv1a_64);
   for (const SceneSpec& spec : timed)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iostream>
 #include <iterator>
 #include <set>
 #include <system_error>
@@ -126,10 +127,30 @@ std::string thread_variables(const Provenance& provenance) {
   return variables.empty() ? "empty" : join(variables, " ");
 }
 
+/// What differs of that on which times and results depend.
+std::vector<std::string> changed_conditions(const Provenance& then, const Provenance& now) {
+  std::vector<std::string> all = differences(then, now);
+  const auto add_setting = [&](const char* option, const std::string& was, const std::string& is) {
+    const auto shown = [](const std::string& value) {
+      return value.empty() ? "not given" : printable(value);
+    };
+    if (was != is) all.push_back(fmt::format("{} was {} and is {}", option, shown(was), shown(is)));
+  };
+  add_setting("--memory", then.device_memory, now.device_memory);
+  add_setting("--roots", then.roots, now.roots);
+  add_setting("--instruction-set", then.instruction_set, now.instruction_set);
+  // A bench whose backends need no OpenCL device records none.
+  if (!then.opencl_devices.empty() && !now.opencl_devices.empty() &&
+      then.opencl_devices != now.opencl_devices)
+    all.emplace_back("the OpenCL devices or their drivers are not the same");
+  if (then.tetgen != now.tetgen) all.emplace_back("TetGen is not the same");
+  return all;
+}
+
 /// A table must not mix results of different programs or machines, nor contain rows that its provenance does
 /// not describe.
 void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
-  std::vector<std::string> all = differences(earlier, now);
+  std::vector<std::string> all = changed_conditions(earlier, now);
   if (revision(earlier.build) != revision(now.build))
     all.push_back(fmt::format("the program was built from commit {} and is now from {}",
                               revision(earlier.build), revision(now.build)));
@@ -179,18 +200,12 @@ std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan)
 
 /// Reasons why an earlier verification may not hold now.
 std::vector<std::string> doubts(const Provenance& then, const Provenance& now) {
-  std::vector<std::string> all = differences(then, now);
+  std::vector<std::string> all = changed_conditions(then, now);
   if (!then.program_fnv1a_64 || then.program_fnv1a_64 != now.program_fnv1a_64)
     all.emplace_back("it was written by another program");
-  if (then.device_memory != now.device_memory)
-    all.push_back(fmt::format("--memory was {} and is {}", then.device_memory, now.device_memory));
-  // A bench whose backends need no OpenCL device records none.
-  if (!now.opencl_devices.empty() && then.opencl_devices != now.opencl_devices)
-    all.emplace_back("the OpenCL devices are not the same");
   for (const BackendProgramRecord& program : now.backend_programs)
     if (std::ranges::find(then.backend_programs, program) == then.backend_programs.end())
       all.push_back(fmt::format("the program {} is not the same", program.name));
-  if (then.tetgen != now.tetgen) all.emplace_back("TetGen is not the same");
   for (const SceneHash& scene : now.scenes)
     if (std::ranges::find(then.scenes, scene.name, &SceneHash::name) == then.scenes.end())
       all.push_back("it has no scene " + scene.name);
@@ -230,6 +245,15 @@ std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance
     throw UsageError("--verified cannot rely on {}: {}; leave it out to verify again", folder,
                      join(all, "; "));
   return std::move(earlier.rows);
+}
+
+void tell_unchecked_samples(std::span<const ResultRow> rows, const std::string& folder) {
+  const auto unchecked = static_cast<std::size_t>(std::ranges::count_if(rows, has_unchecked_samples));
+  if (unchecked > 0)
+    std::cerr << fmt::format(
+        "mssim: {}the samples of {} are not checked, because the run was ended before that; bench --resume "
+        "checks them\n",
+        folder.empty() ? "" : printable(folder) + ": ", pluralize(unchecked, "row"));
 }
 
 void require_rows(const std::vector<ResultRow>& verified, const std::string& scene,

@@ -94,7 +94,7 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
     if (row.status != "ok" || (keep_existing && std::filesystem::exists(file))) continue;
     if (watch.stop()) break;
     const auto fail = [&](const char* reason) {
-      row.status = std::string("failed: ") + reason;
+      row.status = fmt::format("failed: {}, while it was traced", reason);
       row.verified = false;
       static_cast<SampleStatistics&>(row) = {};
       if (row.backend == baseline_backend().name)

@@ -72,9 +72,13 @@ struct BenchSettings {
 /// Frames of a row that are timed: the 99th percentile is the third largest.
 inline constexpr int timed_frames = 300;
 
-/// Steps of `dt_s` (s) in a frame of 1 / `fps` s of simulated time, rounded; at least 1.
+/// Largest number of steps of a frame.
+inline constexpr double most_frame_steps = 1e9;
+
+/// Steps of `dt_s` (s) in a frame of 1 / `fps` s of simulated time, rounded; at least 1, at most
+/// most_frame_steps.
 inline int steps_of_frame(double fps, double dt_s) {
-  return static_cast<int>(std::clamp(std::round(1 / (fps * dt_s)), 1.0, 1e9));
+  return static_cast<int>(std::clamp(std::round(1 / (fps * dt_s)), 1.0, most_frame_steps));
 }
 
 /// Begins the note of a row whose samples are too short for a frame of `steps`.

@@ -32,7 +32,7 @@ constexpr std::size_t fewest_samples = 5;
 ComparedRow row_of(const CombinationNames& combination, const std::vector<double>& base_ms) {
   ComparedRow row;
   static_cast<CombinationNames&>(row) = combination;
-  row.base_ms = median(base_ms);
+  if (!base_ms.empty()) row.base_ms = median(base_ms);
   row.base_samples_ms = base_ms;
   return row;
 }

@@ -34,7 +34,7 @@ inline constexpr double significance = 0.01;
 
 /// Two measurements of one combination of scene, backend and integrator.
 struct ComparedRow : CombinationNames {
-  double base_ms = 0;                  ///< median
+  std::optional<double> base_ms;       ///< median; none if the row was lost before the first round
   std::optional<double> new_ms;        ///< median; none if the row is lost
   std::optional<RatioEstimate> ratio;  ///< NEW / BASE; none if the row is lost
   Verdict verdict = Verdict::undecided;

@@ -1,5 +1,6 @@
 #include "output/folders/provenance_file.h"
 
+#include <array>
 #include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -31,6 +32,15 @@ json caches_json(const std::vector<Cache>& caches) {
                     {"logical_cpus_sharing", cache.sharing}});
   return list;
 }
+
+/// Members that are a text, or null if it is empty; older versions do not have all.
+struct SettingMember {
+  const char* name;
+  std::string Provenance::*value;
+};
+constexpr std::array<SettingMember, 3> setting_members{{{"device_memory", &Provenance::device_memory},
+                                                        {"instruction_set", &Provenance::instruction_set},
+                                                        {"roots", &Provenance::roots}}};
 
 /// A value of the document and its place: the root is the file, a member is reached by its key.
 class Place {
@@ -213,7 +223,8 @@ Provenance read_document(const Place& document) {
   provenance.opencl_devices = document["opencl_devices"].list(text_of);
   if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
   if (const auto program = document.known("program_fnv1a_64")) provenance.program_fnv1a_64 = program->hash();
-  if (const auto memory = document.known("device_memory")) provenance.device_memory = memory->text();
+  for (const SettingMember& member : setting_members)
+    if (const auto setting = document.known(member.name)) provenance.*member.value = setting->text();
   for (const FileHash& scene : read_hashes(document["scenes_fnv1a_64"]))
     provenance.scenes.push_back({scene.name, scene.fnv1a_64});
   if (const auto files = document.find("scene_files_fnv1a_64"))
@@ -238,7 +249,7 @@ json to_json(const Provenance& provenance) {
     scenes[scene.name] = to_hex(scene.fnv1a_64);
     if (scene.files_fnv1a_64) scene_files[scene.name] = to_hex(*scene.files_fnv1a_64);
   }
-  return {
+  json all{
       {"format_version", folder_format_version},
       {"started_utc", provenance.started_utc},
       {"earlier_starts_utc", provenance.earlier_starts_utc},
@@ -271,13 +282,17 @@ json to_json(const Provenance& provenance) {
        {{"asked_for", provenance.threads},
         {"allowed_cpus", provenance.allowed_cpus},
         {"environment", variables_json(provenance.thread_environment)}}},
-      {"device_memory", provenance.device_memory.empty() ? json() : json(provenance.device_memory)},
       {"opencl_devices", provenance.opencl_devices},
       {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
       {"backend_programs", programs_json(provenance.backend_programs)},
       {"noise", provenance.noise},
       {"scenes_fnv1a_64", scenes},
       {"scene_files_fnv1a_64", scene_files}};
+  for (const SettingMember& member : setting_members) {
+    const std::string& setting = provenance.*member.value;
+    all[member.name] = setting.empty() ? json() : json(setting);
+  }
+  return all;
 }
 
 }  // namespace

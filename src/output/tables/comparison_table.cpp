@@ -18,7 +18,7 @@ Cell remark(const ComparedRow& row) {
 Cell ratio_cell(const ComparedRow& row, bool utf8 = true) {
   if (!row.ratio) return {};
   Cell cell = row.ratio->ratio;
-  const std::string_view mark = mark_of_ratio(row.ratio->ratio, *row.new_ms, row.base_ms);
+  const std::string_view mark = mark_of_ratio(row.ratio->ratio, *row.new_ms, *row.base_ms);
   cell.suffix = mark.empty() || utf8 ? mark : ascii_ratio_mark;
   return cell;
 }

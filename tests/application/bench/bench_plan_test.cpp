@@ -47,6 +47,15 @@ TEST_F(BenchPlanTest, HoldsWhatABenchOfItsScenesTakes) {
   EXPECT_FALSE(plan.uses_device);
 }
 
+TEST_F(BenchPlanTest, RefusesFramesOfMoreStepsThanCanBeCounted) {
+  options_.fps = 1e-5;  // 2e9 steps of 5e-5 s
+  const std::string sentence = sentence_of<UsageError>([&] { plan_of(options_); });
+  for (const char* part : {"--fps 1e-05", "1,000,000,000 steps of 5e-05 s", "mine", "give more"})
+    EXPECT_THAT(sentence, HasSubstr(part));
+  options_.fps = 1e-4;
+  EXPECT_EQ(plan_of(options_).timed.front().size.frame_steps, 200'000'000);
+}
+
 TEST_F(BenchPlanTest, ExpectsTheFramesOfAScenesAutomaticStep) {
   options_.fps = 60;
   for (const char* shipped : {"scenes/cloth2500.json", "scenes/box-small.json"}) {

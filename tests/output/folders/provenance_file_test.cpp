@@ -32,6 +32,8 @@ Provenance full_provenance() {
   provenance.tetgen = "1.5";
   provenance.program_fnv1a_64 = 0x123456789abcdef0;
   provenance.device_memory = "copy";
+  provenance.roots = "exact";
+  provenance.instruction_set = "AVX2";
   provenance.backend_programs = {
       {"mine.py", {"./mine.py"}, {{"./mine.py", 2}}},
       {"mpi", {"mssim-mpi"}, {{"mssim-mpi", 5}}, {{"A", "b"}, {"C", ""}}, 4, 2, "srun"},
@@ -132,8 +134,9 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
         pointer.find("/environment/") != std::string::npos ||
         pointer.find("files_fnv1a_64/") != std::string::npos || pointer == "/cpu/turbo" ||
         pointer == "/cpu/smt" || pointer == "/cpu/numa_nodes" || pointer == "/cpu/generation" ||
-        pointer == "/program_fnv1a_64" || pointer == "/device_memory" || pointer == "/cpu/cpu_quota" ||
-        pointer == "/memory_limit_bytes" || pointer == "/format_version")
+        pointer == "/program_fnv1a_64" || pointer == "/device_memory" || pointer == "/roots" ||
+        pointer == "/instruction_set" || pointer == "/cpu/cpu_quota" || pointer == "/memory_limit_bytes" ||
+        pointer == "/format_version")
       continue;
     EXPECT_EQ(refusal_with(pointer, gone), pointer + " is missing: give a provenance.json that mssim wrote");
     ++values;
@@ -144,8 +147,9 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
 TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   json document = json_of(full_provenance());
   for (const char* later : {"turbo", "smt", "numa_nodes", "generation"}) document["cpu"].erase(later);
-  for (const char* later : {"format_version", "noise", "earlier_starts_utc", "program_fnv1a_64",
-                            "device_memory", "backend_programs", "scene_files_fnv1a_64"})
+  for (const char* later :
+       {"format_version", "noise", "earlier_starts_utc", "program_fnv1a_64", "device_memory", "roots",
+        "instruction_set", "backend_programs", "scene_files_fnv1a_64"})
     document.erase(later);
   const Provenance old = read_provenance(put("old.json", document.dump()));
   EXPECT_EQ(old.machine.turbo, std::nullopt);
