@@ -172,7 +172,8 @@ std::vector<std::string> failures(const std::vector<SceneGuide>& guides, std::si
 /// Methods whose backend or integrator was asked for by name, and could run on a scene with none.
 std::vector<std::string> missed(const std::vector<SceneGuide>& guides, const GuideOptions& options) {
   const auto ran = [](const GuidedMethod& method) {
-    return !method.status.starts_with("unavailable") && !method.status.starts_with("unsupported");
+    return std::ranges::none_of(std::array{"unavailable", "unsupported", "not timed"},
+                                [&](const char* reason) { return method.status.starts_with(reason); });
   };
   const bool names_integrators =
       !options.integrators.empty() && options.integrators != std::vector<std::string>{"all"};

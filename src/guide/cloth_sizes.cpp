@@ -38,7 +38,8 @@ std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& 
   SizeCurve::Sample sample{cloth.system.nodes(), 0};
   std::vector<LateProgram> late;  // unused: the curve ends in any case
   const auto measure = [&] {
-    const auto backend = make_backend(*curve.backend, cloth.system, *curve.integrator, curve.dt_s, execution);
+    const auto backend =
+        make_timed_backend(*curve.backend, cloth.system, *curve.integrator, curve.dt_s, execution);
     sample.seconds_a_step = time_steps(*backend, cloth.system, steps, enough_s).seconds;
   };
   if (!succeeds(*curve.backend, curve.status, late, measure)) return std::nullopt;

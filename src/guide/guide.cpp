@@ -183,12 +183,10 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
                     const GuideClock& clock) {
   for (const GuidedMethod& method : guide.methods) {
     SizeCurve curve{.integrator = method.integrator, .backend = method.backend, .samples = {}, .status = {}};
-    if (const WorkPoint* point = point_for_sizes(guide, method)) {
-      curve.dt_s = point->dt_s;
-      curve.keeps_error = point->counts() && *point->position_error <= request.wish.error;
-    } else {
+    curve.dt_s = step_for_sizes(guide, method);
+    curve.keeps_error = cost_at_error(guide.points, method, request.wish.error).has_value();
+    if (curve.dt_s == 0)
       curve.status = method.status.empty() ? "no step that was measured is stable" : method.status;
-    }
     guide.sizes.push_back(curve);
   }
   const double end = clock.end_of_part(share_of_sizes, 0);
@@ -198,13 +196,12 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
   });
 }
 
-/// Seconds, rounded up to two digits.
-double rounded_up(double seconds) {
-  const double places = 1 - std::floor(std::log10(seconds)), scale = std::pow(10, std::abs(places));
-  return places > 0 ? std::ceil(seconds * scale - 1e-9) / scale : std::ceil(seconds / scale - 1e-9) * scale;
-}
-
 }  // namespace
+
+double rounded_up(double value) {
+  const double places = 1 - std::floor(std::log10(value)), scale = std::pow(10, std::abs(places));
+  return places > 0 ? std::ceil(value * scale - 1e-9) / scale : std::ceil(value / scale - 1e-9) * scale;
+}
 
 double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed) {
   constexpr double steps_of_a_limit = 80;  // eight runs of ten steps, the minimum for a search
@@ -218,7 +215,8 @@ double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* con
   for (const GuidedMethod* method : missed) {
     if (method->next) {
       const double step = expected_step(guide, *method->integrator).value_or(method->next->dt_s);
-      const double halvings = std::max(0.0, std::ceil(std::log2(method->next->dt_s / step) - 1e-9));
+      const double halvings =
+          std::clamp<double>(std::ceil(std::log2(method->next->dt_s / step) - 1e-9), 0, method->next->later);
       longest = std::max(longest, method->next->seconds * std::exp2(halvings));
     }
     const StepLimit* limit = limit_of(guide, method->integrator);
@@ -227,9 +225,12 @@ double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* con
                                     static_cast<double>(guide.limits.size()) / share_of_limits);
   }
   double points = guide.seconds_on_points;
-  for (const GuidedMethod& method : guide.methods)
-    if (method.next)
-      for (double seconds = method.next->seconds; seconds <= longest; seconds *= 2) points += seconds;
+  for (const GuidedMethod& method : guide.methods) {
+    if (!method.next) continue;
+    int left = method.next->later + 1;
+    for (double seconds = method.next->seconds; left-- > 0 && seconds <= longest; seconds *= 2)
+      points += seconds;
+  }
   return rounded_up(std::max(needed, points / share_of_points));
 }
 

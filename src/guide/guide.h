@@ -28,7 +28,7 @@ inline constexpr std::array<double, 3> frame_rates{30, 60, 120};
 struct SizeCurve {
   const Integrator* integrator = nullptr;
   const BackendInfo* backend = nullptr;
-  double dt_s = 0;          ///< a step that is stable and, if possible, keeps the error
+  double dt_s = 0;          ///< a step that is stable and, if possible, keeps the error; 0: none
   bool keeps_error = true;  ///< else no measured step is accurate enough, and this one is only stable
   struct Sample {
     std::uint64_t nodes = 0;
@@ -82,7 +82,9 @@ struct Recommendation {
   std::optional<std::size_t> best;  ///< point_at_error of the cheapest method at the requested error
   /// point_at_error of the cheapest method with another integrator, else on another backend.
   std::optional<std::size_t> runner_up;
-  std::optional<std::size_t> nearest;  ///< the most accurate point, if none is accurate enough
+  /// The most accurate point, if none is accurate enough, nor too accurate to be told apart from the
+  /// reference.
+  std::optional<std::size_t> nearest;
   /// Wall time, s, with which the guide would have recommended a method; none: the time sufficed, or the
   /// guide was stopped. If set, none of the above is.
   std::optional<double> needed_s;
@@ -166,8 +168,9 @@ std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& met
 std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide);
 
 /// Wall time, s, with which the curves of these methods would have reached the requested error, with the
-/// points of other methods that take no longer. Rounded up to two digits, and at least twice the time of the
-/// request.
+/// points of other methods that take no longer; no curve gets more points than NextPoint::later. Rounded up
+/// to two digits, and at least twice the time of the request. A lower bound if the horizon ended for lack of
+/// time.
 double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed);
 
 /// Recommends the cheapest method at the requested error, with the longest measured step that keeps it, its

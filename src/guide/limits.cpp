@@ -54,6 +54,21 @@ bool fit(StepSearch& search, double seconds_a_step, double seconds) {
   return runs * steps >= fewest_steps;
 }
 
+/// Throws BackendFailure if a few of the shortest steps that were tried are unstable on the backend but not
+/// in the reference.
+void require_sound_steps(const StepMaker& make, StepSearch search, const LimitRequest& request,
+                         const StepLimit& limit) {
+  search.span_s = 0;
+  const double dt_s = limit.measured.unstable_s;
+  if (!is_stable(*make(dt_s), *request.system, dt_s, search) &&
+      is_stable(*make_reference(*request.system, *limit.integrator, dt_s, request.stop), *request.system,
+                dt_s, search))
+    throw BackendFailure(
+        fmt::format("its energy grows or is not finite even with a step of {} s, unlike the reference's",
+                    two_digits(dt_s)),
+        "");
+}
+
 /// Finds the limit with this backend. Throws the backend's failures.
 void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& request, StepLimit& limit) {
   const Integrator& integrator = *limit.integrator;
@@ -70,6 +85,7 @@ void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& r
     return;
   }
   limit.measured = largest_stable_step(*request.system, make, search);
+  if (limit.lack() == Lack::stable_step) require_sound_steps(make, search, request, limit);
   if (is_shorter_than_theory(limit.measured, limit.theory)) {
     const System in_the_air = without_floor(*request.system);
     const double dt_s = limit.measured.unstable_s;
@@ -193,6 +209,14 @@ std::string why_they_differ(const Integrator& integrator, const StableStep& meas
     return "the measured step is " + percent_more(limit / measured.stable_s) +
            " shorter: springs that strain during the run stiffen sideways, where they have no damping";
   return {};
+}
+
+std::unique_ptr<Backend> make_timed_backend(const BackendInfo& info, const System& system,
+                                            const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& execution) {
+  auto backend = make_backend(info, system, integrator, dt_s, execution);
+  if (const std::string reason = backend->reason_not_to_time(); !reason.empty()) throw NotTimed(reason);
+  return backend;
 }
 
 StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s) {

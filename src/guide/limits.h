@@ -134,7 +134,7 @@ enum class Lack {
   nothing,      ///< all points are measured
   time,         ///< wall time
   stable_step,  ///< no step that was tried is stable
-  backend       ///< the backend cannot run here, cannot run this method, or fails
+  backend       ///< the backend cannot run or be timed here, cannot run this method, or fails
 };
 
 /// Largest usable step over the largest stable one, which is accurate to 2 % and from other runs than those
@@ -167,6 +167,7 @@ struct StepLimit {
 struct NextPoint {
   double seconds = 0;  ///< approximate wall time to measure it
   double dt_s = 0;     ///< its step
+  int later = 0;       ///< points that the curve may have after it
 };
 
 /// A method: an integrator on a backend.
@@ -185,8 +186,18 @@ inline bool is_of(const WorkPoint& point, const GuidedMethod& method) {
   return point.integrator == method.integrator && point.backend == method.backend->name;
 }
 
-/// Calls `work`, which uses a backend. False if the backend cannot run here, cannot run this, or its program
-/// fails; `status` gives the reason.
+/// Thrown for a backend whose times mean nothing here; what() is its reason.
+struct NotTimed : ErrorWith<exit_unavailable> {
+  using ErrorWith::ErrorWith;
+};
+
+/// A backend to be timed, like make_backend. Throws NotTimed, too.
+std::unique_ptr<Backend> make_timed_backend(const BackendInfo& info, const System& system,
+                                            const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& execution);
+
+/// Calls `work`, which uses a backend. False if the backend cannot run or be timed here, cannot run this, or
+/// its program fails; `status` gives the reason.
 template <class Work>
 bool succeeds(const BackendInfo& backend, std::string& status, std::vector<LateProgram>& late,
               const Work& work) {
@@ -198,6 +209,8 @@ bool succeeds(const BackendInfo& backend, std::string& status, std::vector<LateP
     status = std::string("unsupported: ") + reason.what();
   } catch (const Unavailable& reason) {
     status = std::string("unavailable: ") + reason.what();
+  } catch (const NotTimed& reason) {
+    status = std::string("not timed: ") + reason.what();
   } catch (const BackendFailure& reason) {
     status = std::string("failed: ") + reason.what();
     if (reason.late) late.push_back({&backend, watch.seconds(), status});
@@ -237,7 +250,8 @@ inline constexpr double stability_span_s = 0.2;
 
 /// Measures the integrator's largest stable step on the first backend that runs it, and explains differences
 /// from theory. `openmp` comes first, because it is almost always the fastest, and the limit depends on the
-/// integrator, not on the backend.
+/// integrator, not on the backend. A backend on which not even the shortest step is stable, unlike in the
+/// double-precision reference, counts as one that fails.
 StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& request);
 
 }  // namespace mssim

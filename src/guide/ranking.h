@@ -20,8 +20,9 @@ std::vector<Ranked> by_cost(const SceneGuide& guide, double error);
 /// The cheapest method after the first, with another integrator, else on another backend; null without one.
 const Ranked* second_of(std::span<const Ranked> ranked);
 
-/// The method's longest step that keeps the error, else its cheapest stable point; null without any.
-const WorkPoint* point_for_sizes(const SceneGuide& guide, const GuidedMethod& method);
+/// The longest step, s, with which the method keeps the requested error (cost_at_error), else that of its
+/// cheapest stable point; 0 without any.
+double step_for_sizes(const SceneGuide& guide, const GuidedMethod& method);
 
 /// The integrator's limit of stability; null if it was not looked for.
 const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator);
@@ -29,5 +30,8 @@ const StepLimit* limit_of(const SceneGuide& guide, const Integrator* integrator)
 /// The longest step, s, with which the integrator should keep the requested error; none if no measurement
 /// shows it.
 std::optional<double> expected_step(const SceneGuide& guide, const Integrator& integrator);
+
+/// The positive number, rounded up to two digits.
+double rounded_up(double value);
 
 }  // namespace mssim

@@ -24,6 +24,21 @@ std::optional<std::size_t> least(std::span<const WorkPoint> points, const Takes&
 double cost_of(const WorkPoint& point) { return point.seconds_a_second(); }
 double error_of(const WorkPoint& point) { return *point.position_error; }
 
+/// Whether the point is stable but its error is too small to be told apart from the reference's.
+bool is_beyond_trust(const WorkPoint& point) {
+  return point.beyond_trust && point.within_limit && !point.diverged;
+}
+
+/// With two digits, or as many more as show on which side of `limit` the number is.
+std::string digits_beside(double value, double limit) {
+  for (int digits = 2; value != limit && digits < 17; ++digits) {
+    std::string text = fmt::format("{:.{}g}", value, digits);
+    const double shown = number_in<double>(text).value_or(limit);
+    if (value < limit ? shown < limit : shown > limit) return text;
+  }
+  return decimal(value);
+}
+
 std::string named(const WorkPoint& point) {
   return fmt::format("{} on {}", point.integrator->name, point.backend);
 }
@@ -62,7 +77,7 @@ std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const 
                   pluralize(steps_a_frame(point.dt_s, rate), "step"), decimal(rate));
   if (steps)
     text += fmt::format(" A step of about {} s should suffice, too, but was not measured.",
-                        two_digits(guide.trusted.horizon_s / *steps));
+                        digits_beside(guide.trusted.horizon_s / *steps, point.dt_s));
   return text;
 }
 
@@ -70,7 +85,17 @@ std::string what_is_nearest(const WorkPoint& point, const Wish& wish) {
   return fmt::format(
       "No measured method keeps the error within {} of a mean rest length: the most accurate is {} with a "
       "step of {} s.",
-      two_digits(wish.error), named(point), two_digits(point.dt_s));
+      decimal(wish.error), named(point), two_digits(point.dt_s));
+}
+
+/// Why it is not known whether a method keeps the error. `nearest`: the most accurate point that counts.
+std::string why_not_judged(const SceneGuide& guide, const WorkPoint* nearest) {
+  const double shown = guide.trusted.least_error(), error = guide.wish.error;
+  return fmt::format(
+      "No method can be judged at an error of {}: errors below {} of a mean rest length cannot be told apart "
+      "from the reference's own. Give --error {} or more.",
+      decimal(error), two_digits(shown),
+      two_digits(rounded_up(nearest == nullptr || error < shown ? shown : error_of(*nearest))));
 }
 
 std::string what_it_costs(const WorkPoint& point, const SceneGuide& guide) {
@@ -78,7 +103,7 @@ std::string what_it_costs(const WorkPoint& point, const SceneGuide& guide) {
       "A simulated second takes {} s, {}. After {} s of simulation, the largest error of a node is {} of a "
       "mean rest length, and that of the energy {} of the kinetic and elastic energy.",
       three_digits(cost_of(point)), frames_sentence(point, guide.wish), two_digits(guide.trusted.horizon_s),
-      two_digits(error_of(point)), two_digits(std::abs(point.energy_error.value_or(0))));
+      digits_beside(error_of(point), guide.wish.error), two_digits(std::abs(point.energy_error.value_or(0))));
 }
 
 /// A half-open range of errors, [from, to); without `to`, it has no end.
@@ -127,15 +152,15 @@ std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const G
   return ranges;
 }
 
-/// At most three ranges, in words.
-std::string in_words(std::span<const ErrorRange> ranges) {
+/// At most three ranges, none of which has the requested error in it, in words.
+std::string in_words(std::span<const ErrorRange> ranges, double wished) {
   constexpr std::size_t most = 3;
   std::vector<std::string> texts;
   for (const ErrorRange& range : ranges.first(std::min(most, ranges.size()))) {
-    const std::string from = two_digits(range.from);
+    const std::string from = digits_beside(range.from, wished);
     if (!range.to)
       texts.push_back(from + " or more");
-    else if (const std::string to = two_digits(*range.to); to != from)
+    else if (const std::string to = digits_beside(*range.to, wished); to != from)
       texts.push_back(fmt::format("{} to below {}", from, to));
     else
       texts.push_back("about " + from);
@@ -153,16 +178,18 @@ std::string who_comes_second(const SceneGuide& guide, const Ranked& winner, cons
       "The runner-up is {} with a step of {} s, which takes {} times as long at an error of {}{}",
       named(*point), two_digits(point->dt_s), three_digits(ratio), decimal(guide.wish.error),
       wins.empty() ? "; it is cheaper at no error."
-                   : fmt::format("; it is cheaper at errors of {}.", in_words(wins)));
+                   : fmt::format("; it is cheaper at errors of {}.", in_words(wins, guide.wish.error)));
 }
 
 /// Whether more time would have given the method a cost at the requested error.
 bool lacks_time(const SceneGuide& guide, const GuidedMethod& method) {
   if (cost_at_error(guide.points, method, guide.wish.error)) return false;
   // Errors grow with the horizon, and smaller errors count with a better reference.
-  const auto is_beyond = [&](const WorkPoint& point) { return is_of(point, method) && point.beyond_trust; };
-  return method.lack == Lack::time ||
-         (guide.trusted.short_of_s > 0 && std::ranges::any_of(guide.points, is_beyond));
+  const bool lacks_reference = guide.trusted.short_of_s > 0;
+  if (method.lack == Lack::time) return lacks_reference || guide.wish.error >= guide.trusted.least_error();
+  return lacks_reference && std::ranges::any_of(guide.points, [&](const WorkPoint& point) {
+           return is_of(point, method) && point.beyond_trust;
+         });
 }
 
 /// Whether the curve of its integrator on another backend is complete but does not reach the requested error.
@@ -207,9 +234,13 @@ std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
   if (!missed.empty())
     text += fmt::format(", and any of these methods could be the cheapest at an error of {}: {}",
                         decimal(guide.wish.error), names_of(missed));
-  return needed_s ? text + fmt::format(". About {} s for this scene would suffice (--time-budget).",
-                                       decimal(*needed_s))
-                  : text + '.';
+  if (!needed_s) return text + '.';
+  // A longer horizon takes more time for each point, and its errors are larger.
+  const bool is_cut = guide.trusted.failure.empty() && guide.trusted.short_of_s > 0;
+  const std::string seconds = decimal(*needed_s);
+  return text + (is_cut
+                     ? fmt::format(". At least {} s for this scene would be needed (--time-budget).", seconds)
+                     : fmt::format(". About {} s for this scene would suffice (--time-budget).", seconds));
 }
 
 constexpr std::array<std::string_view, 3> paper_integrators{"semi-euler", "midpoint", "rk4"};
@@ -302,14 +333,14 @@ std::optional<double> expected_step(const SceneGuide& guide, const Integrator& i
   return std::min(longest.value_or(limit->usable_s()), limit->usable_s());
 }
 
-const WorkPoint* point_for_sizes(const SceneGuide& guide, const GuidedMethod& method) {
-  if (const auto place = point_at_error(guide.points, method, guide.wish.error)) return &guide.points[*place];
+double step_for_sizes(const SceneGuide& guide, const GuidedMethod& method) {
+  if (const auto cost = cost_at_error(guide.points, method, guide.wish.error)) return cost->dt_s;
   const WorkPoint* cheapest = nullptr;
   for (const WorkPoint& point : guide.points)
     if (is_of(point, method) && !point.diverged && point.within_limit &&
         (cheapest == nullptr || cost_of(point) < cost_of(*cheapest)))
       cheapest = &point;
-  return cheapest;
+  return cheapest != nullptr ? cheapest->dt_s : 0;
 }
 
 std::vector<Ranked> by_cost(const SceneGuide& guide, double error) {
@@ -381,21 +412,26 @@ Recommendation recommend(const SceneGuide& guide) {
     return chosen;
   }
   if (!guide.trusted.failure.empty()) return chosen;
-  if (guide.points.empty()) {
-    chosen.sentences = {"Nothing was measured: the remark of each method gives the reason."};
-    return chosen;
-  }
   const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
   if (ranked.empty()) {
     chosen.nearest = least(
         guide.points, [](const WorkPoint&) { return true; }, error_of);
-    if (chosen.nearest) {
-      const WorkPoint& point = guide.points[*chosen.nearest];
-      chosen.sentences = {what_is_nearest(point, guide.wish), what_it_costs(point, guide)};
+    const WorkPoint* nearest = chosen.nearest ? &guide.points[*chosen.nearest] : nullptr;
+    const bool any_beyond = std::ranges::any_of(guide.points, is_beyond_trust),
+               is_too_small = guide.wish.error < guide.trusted.least_error();
+    if ((any_beyond && nearest != nullptr) ||
+        (is_too_small &&
+         (any_beyond || std::ranges::count(guide.methods, Lack::time, &GuidedMethod::lack) > 0))) {
+      chosen.nearest.reset();
+      chosen.sentences = {why_not_judged(guide, nearest)};
+    } else if (nearest != nullptr) {
+      chosen.sentences = {what_is_nearest(*nearest, guide.wish), what_it_costs(*nearest, guide)};
+    } else if (guide.points.empty()) {
+      chosen.sentences = {"Nothing was measured: the remark of each method gives the reason."};
     } else {
-      chosen.sentences = {
-          "No measured method can be recommended: no point is both stable and far enough from the "
-          "reference's error."};
+      chosen.sentences = {any_beyond ? "No method can be recommended: the errors of all stable points cannot "
+                                       "be told apart from the reference's own."
+                                     : "No method can be recommended: no measured point is stable."};
     }
     return chosen;
   }
@@ -413,16 +449,21 @@ Recommendation recommend(const SceneGuide& guide) {
 }
 
 std::vector<std::string> what_was_measured(const SceneGuide& guide) {
-  std::vector<const GuidedMethod*> measured, late, unavailable, unstable, uncompared, late_at_error, others;
+  std::vector<const GuidedMethod*> measured, late, unavailable, untimed, failed, unstable, beyond,
+      late_at_error, others;
   for (const GuidedMethod& method : guide.methods) {
     const bool counts = !counting(guide.points, method).empty();
     if (counts) measured.push_back(&method);
     if (counts && cost_at_error(guide.points, method, guide.wish.error)) continue;
-    auto& group = counts                             ? method.lack == Lack::time ? late_at_error : others
-                  : method.lack == Lack::time        ? late
-                  : method.lack == Lack::backend     ? unavailable
-                  : method.lack == Lack::stable_step ? unstable
-                                                     : uncompared;
+    const bool is_beyond = std::ranges::any_of(
+        guide.points, [&](const WorkPoint& point) { return is_of(point, method) && is_beyond_trust(point); });
+    auto& group = method.status.starts_with("failed")      ? failed
+                  : method.status.starts_with("not timed") ? untimed
+                  : method.lack == Lack::backend           ? unavailable
+                  : is_beyond                              ? beyond
+                  : method.lack == Lack::time              ? counts ? late_at_error : late
+                  : counts                                 ? others
+                                                           : unstable;
     group.push_back(&method);
   }
   std::vector<std::string> sentences{
@@ -433,8 +474,12 @@ std::vector<std::string> what_was_measured(const SceneGuide& guide) {
   const std::string error = decimal(guide.wish.error);
   say("Not measured, for lack of time", late);
   say("Not measured, because the backend cannot run them here", unavailable);
+  say("Not measured, because their times mean nothing here", untimed);
+  say("Not measured down to an error of " + error + ", because the backend fails", failed);
   say("Not measured, because no step that was tried is stable", unstable);
-  say("Not compared, because no point is both stable and far enough from the reference's error", uncompared);
+  say("Not compared at an error of " + error +
+          ", because their smaller errors cannot be told apart from the reference's",
+      beyond);
   say("Not measured down to an error of " + error + ", for lack of time", late_at_error);
   say("Not within an error of " + error + " with any step that was tried", others);
   return sentences;

@@ -105,6 +105,7 @@ Horizon find_horizon(const System& system, double dt_s, int looks, int steps,
 }
 
 constexpr double enough_s = 0.03;  // for the runs of a point
+constexpr int fewest_points = 4, most_points = 11;
 
 /// Wall seconds per step of rk4 in double precision.
 double seconds_a_step(const System& system, double dt_s) {
@@ -188,7 +189,7 @@ void take_state(WorkPoint& point, const System& system, const TrustedState& trus
   point.position_error = deviation.position;
   point.energy_error = deviation.energy;
   point.diverged = !(energy_of(system, state).total() <= energy_bound(system, trusted.horizon_s));
-  point.beyond_trust = deviation.position < trusted_margin * trusted.error();
+  point.beyond_trust = deviation.position < trusted.least_error();
 }
 
 }  // namespace
@@ -330,6 +331,7 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
       execution_(execution),
       wanted_error_(wanted_error),
       stable_s_(limit.measured.stable_s),
+      stable_span_s_(limit.measured.span_s),
       steps_(first_steps(*method.integrator, limit.measured, trusted.horizon_s)),
       setup_seconds_(limit.first_seconds) {
   const bool is_explicit = !is_implicit(*method.integrator);
@@ -358,7 +360,7 @@ void WorkCurve::end(Lack lack, std::string_view why) {
 }
 
 void WorkCurve::end_without_time() {
-  method_.next = NextPoint{next_seconds_, trusted_.horizon_s / steps_};
+  method_.next = NextPoint{next_seconds_, trusted_.horizon_s / steps_, most_points - points_ - 1};
   end(Lack::time, points_ == 0 ? "no time was left for any step"
                   : counted_   ? "no time was left for smaller steps"
                                : "no time was left for a step that is stable");
@@ -371,8 +373,8 @@ double WorkCurve::seconds_of(int steps) const {
 void WorkCurve::time_step() {
   const auto run = [&] {
     const Stopwatch watch;
-    const auto backend = make_backend(*method_.backend, system_, *method_.integrator,
-                                      trusted_.horizon_s / (2 * steps_), execution_);
+    const auto backend = make_timed_backend(*method_.backend, system_, *method_.integrator,
+                                            trusted_.horizon_s / (2 * steps_), execution_);
     setup_seconds_ = watch.seconds();
     method_.step_seconds = seconds_of_step(*backend, system_);
   };
@@ -385,18 +387,40 @@ void WorkCurve::time_step() {
   }
 }
 
-bool WorkCurve::goes_on_after(const WorkPoint& point) {
-  constexpr int fewest = 4, most = 11;
+bool WorkCurve::ends_with_same_error(const WorkPoint& point) {
   constexpr double largest_rounding = 0.02;  // of a rest length: seen as rounding error within a horizon
-  if (points_ >= most) return false;
-  if (points_ < fewest || !point.counts()) return !point.beyond_trust;
-  if (*point.position_error <= wanted_error_ / 4) return false;
-  if (last_error_ && *point.position_error >= 0.9 * *last_error_ &&
-      *point.position_error < largest_rounding) {
-    end(Lack::nothing, "smaller steps are no more accurate: roundings");
+  constexpr double same = 0.01;
+  const double error = *point.position_error;
+  const bool is_rounded = error < largest_rounding;
+  // Errors of implicit steps that are far too long hardly change at first.
+  unchanged_ =
+      !is_implicit(*method_.integrator) && last_error_ && std::abs(error - *last_error_) < same * *last_error_
+          ? unchanged_ + 1
+          : 0;
+  if (points_ < fewest_points || error <= wanted_error_ / 4) return false;
+  if (unchanged_ < 2 && !(is_rounded && last_error_ && error >= 0.9 * *last_error_)) return false;
+  end(Lack::nothing, is_rounded ? "smaller steps are no more accurate: roundings"
+                                : "smaller steps are no more accurate: roundings, or the backend steps "
+                                  "another system");
+  return true;
+}
+
+bool WorkCurve::goes_on_after(const WorkPoint& point) {
+  constexpr int enough_diverged = 3;
+  if (point.counts() && ends_with_same_error(point)) return false;
+  diverged_ += point.diverged && point.within_limit ? 1 : 0;
+  // A step that is stable for a shorter time may diverge within the horizon.
+  if (diverged_ == enough_diverged && !counted_ && stable_span_s_ >= trusted_.horizon_s) {
+    end(Lack::backend,
+        fmt::format("failed: its energy grows or is not finite with {} steps that should be stable",
+                    enough_diverged));
     return false;
   }
-  return true;
+  if (points_ == most_points && !counted_)
+    end(Lack::stable_step, "no step that was tried is stable over the horizon");
+  if (points_ == most_points) return false;
+  if (points_ < fewest_points || !point.counts()) return !point.beyond_trust;
+  return *point.position_error > wanted_error_ / 4;
 }
 
 std::optional<MeasuredPoint> WorkCurve::measure(int steps) {
@@ -407,7 +431,8 @@ std::optional<MeasuredPoint> WorkCurve::measure(int steps) {
   point.dt_s = trusted_.horizon_s / steps;
   State state;
   const auto run = [&] {
-    const auto backend = make_backend(*method_.backend, system_, *method_.integrator, point.dt_s, execution_);
+    const auto backend =
+        make_timed_backend(*method_.backend, system_, *method_.integrator, point.dt_s, execution_);
     const StepTime time = time_steps(*backend, system_, steps, enough_s);
     point.seconds_a_step = time.seconds;
     point.samples = time.runs;

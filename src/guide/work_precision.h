@@ -55,6 +55,8 @@ struct TrustedState {
 
   /// The larger of own_error and confirmed; errors that are shown exceed it trusted_margin times.
   double error() const { return confirmed && *confirmed > own_error ? *confirmed : own_error; }
+  /// The smallest error that is compared.
+  double least_error() const { return trusted_margin * error(); }
 };
 
 /// Computes a trusted state by classical Runge-Kutta in double precision (backends/backends.h), at least
@@ -117,17 +119,21 @@ class WorkCurve {
   double seconds_of(int steps) const;
 
  private:
-  /// Whether the curve continues. If it ends because rounding limits its accuracy, the method's status says
-  /// so.
+  /// Whether the curve continues. If it ends before it is accurate enough, the method's status says why.
   bool goes_on_after(const WorkPoint& point);
+  /// Ends the curve if the error of the point, which counts, shows that smaller steps do not help.
+  bool ends_with_same_error(const WorkPoint& point);
 
   const System& system_;
   const TrustedState& trusted_;
   GuidedMethod& method_;
   ExecutionOptions execution_;
   double wanted_error_, stable_s_;
+  double stable_span_s_;  ///< for which stable_s_ was stable
   int steps_;
   int points_ = 0;
+  int diverged_ = 0;   ///< points with steps that should be stable
+  int unchanged_ = 0;  ///< halvings in a row that left the error as it was
   bool has_next_ = true, counted_ = false;
   double setup_seconds_, next_seconds_ = 0;
   std::optional<double> last_error_;

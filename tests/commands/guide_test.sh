@@ -38,8 +38,8 @@ grep -q '^No .* error within 1e-09 of a mean rest length' "$work/folder/guide.md
 
 # Too little time: nothing is recommended, what was measured is written, and the time that would do is named.
 program=$(realpath "${mssim%/*}/../bin/own_backend")  # tests/support/own_backend.cpp
-printf '{"command": ["%s", "slow"]}' "$program" >"$work/slow.json"  # 30 ms per step on every machine, and thousands of steps to 1e-6
-ends 1 guide --scene "$work/tiny.json" --backend "$work/slow.json" --integrator semi-euler --horizon 0.01 --time-budget 5 --error 1e-6 \
+printf '{"command": ["%s", "slow"]}' "$program" >"$work/slow.json"  # 30 ms per step on every machine, and hundreds of steps to 1e-4
+ends 1 guide --scene "$work/tiny.json" --backend "$work/slow.json" --integrator semi-euler --horizon 0.01 --time-budget 5 --error 1e-4 \
   --out "$work/short"
 named=$(sed -n 's/^mssim: tiny: nothing is recommended.*--time-budget \([0-9.]*\) .*/\1/p' "$work/err")
 awk -v named="${named:-0}" 'BEGIN { exit !(named >= 10) }' || fail "stderr says: $(cat "$work/err")"
@@ -72,6 +72,40 @@ for text in ',semi-euler,exits,.*failed: exits ended with exit code 3' ',semi-eu
   grep -q "$text" "$work/programs/guide.csv" || fail "guide.csv does not say $text: $(cat "$work/programs/guide.csv")"
 done
 grep -q '^Take \(semi-euler\|rk4\) on serial with a step of ' "$work/programs/guide.md" || fail "other programs cost serial its points"
+
+# One whose states are wrong has failed.
+printf '{"command": ["%s", "nan"]}' "$program" >"$work/nan.json"
+ends 1 guide --scene "$work/tiny.json" --backend nan --integrator semi-euler --threads 1 --horizon 0.01 --time-budget 60 --error 1e-2
+warns '^mssim: tiny, nan, semi-euler: failed: its energy grows or is not finite '
+says '^Not measured down to an error of 0.01, because the backend fails: semi-euler on nan\.'
+
+# One that says that its times mean nothing has none. This one's state stays as it is.
+cat >"$work/crowded.py" <<'PYTHON'
+import os, socket
+with socket.socket(socket.AF_UNIX) as mssim:
+    mssim.connect(os.environ["MSSIM_SOCKET"])
+    lines = mssim.makefile("rw")
+    for word, _, rest in (line.rstrip("\n").partition(" ") for line in lines):
+        if word == "state":
+            file = rest
+        elif word == "prepare":
+            lines.write("untimed too crowded\nready 1\n")
+        elif word == "set":
+            state = open(file, "rb").read()
+        elif word == "get":
+            open(file, "r+b").write(state)
+        elif word == "end":
+            break
+        if word in ("set", "step", "get"):
+            lines.write("done\n")
+        lines.flush()
+PYTHON
+printf '{"command": ["/usr/bin/python3", "%s"]}' "$work/crowded.py" >"$work/crowded.json"
+ends 3 guide --scene "$work/tiny.json" --backend crowded,serial --integrator semi-euler --threads 1 --horizon 0.01 --time-budget 60 \
+  --error 1e-2 --out "$work/untimed"
+warns '^mssim: tiny, crowded, semi-euler: not timed: too crowded'
+says '^Take semi-euler on serial '
+grep -q '^[^,]*,[^,]*,[^,]*,semi-euler,crowded,,.*,not timed: too crowded,' "$work/untimed/guide.csv" || fail "guide.csv: $(cat "$work/untimed/guide.csv")"
 
 expect 2 '^mssim: --scene NAME|FILE,... is missing: give .*list scenes.*; see mssim guide --help$' guide
 expect 2 'jeans1k is a garment' guide --scene jeans1k

@@ -102,6 +102,92 @@ TEST(WorkCurve, EndsWithAProgramThatPostponesItsSteps) {
   EXPECT_THAT(method.status, StartsWith("failed: it reports steps before they are done"));
 }
 
+/// A backend whose steps take a while but change nothing.
+class Frozen : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void step(int /*count*/) override {
+    for (const Stopwatch watch; watch.seconds() < 1e-4;) {
+    }
+  }
+};
+constexpr BackendInfo frozen{"frozen", "", "stays at its start", false, {}, make_other<Frozen>, {}, {}};
+
+class Astray final : public Frozen {
+ public:
+  using Frozen::Frozen;
+  State state() const override {
+    State state = Frozen::state();
+    state.position[7].y = std::numeric_limits<double>::quiet_NaN();
+    return state;
+  }
+};
+constexpr BackendInfo astray{"astray", "", "is not finite", false, {}, make_other<Astray>, {}, {}};
+
+class Crowded final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  std::string reason_not_to_time() const override { return "too crowded"; }
+};
+constexpr BackendInfo crowded{"crowded", "", "has too few processors", false, {}, make_other<Crowded>,
+                              {},        {}};
+
+/// The number of points of semi-euler on the backend over 10 ms, and why there are no more.
+std::pair<int, GuidedMethod> curve_on(const BackendInfo& backend, double stable_span_s) {
+  const System system = cloth_system(8, 8);
+  const TrustedState trusted = trusted_after_10_ms(system);
+  StepLimit limit = limit_of("semi-euler");
+  limit.measured.span_s = stable_span_s;
+  GuidedMethod method{limit.integrator, &backend, {}};
+  WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-6);
+  int points = 0;
+  while (curve.has_next()) points += curve.next() ? 1 : 0;
+  return {points, method};
+}
+
+TEST(WorkCurve, EndsWithABackendWhoseStableStepsDiverge) {
+  // The first step is longer than the largest stable one.
+  const auto [points, method] = curve_on(astray, 0.2);
+  EXPECT_EQ(points, 4);
+  EXPECT_EQ(method.lack, Lack::backend);
+  EXPECT_THAT(method.status, StartsWith("failed: its energy grows or is not finite with 3 steps"));
+  // Where steps were stable for a shorter time than the horizon, smaller ones may not diverge.
+  const auto [all, unstable] = curve_on(astray, 0.005);
+  EXPECT_EQ(all, 11);
+  EXPECT_EQ(unstable.lack, Lack::stable_step);
+  EXPECT_THAT(unstable.status, HasSubstr("no step that was tried is stable"));
+}
+
+TEST(WorkCurve, EndsWhereTwoHalvingsLeaveALargeError) {
+  // In 10 ms free nodes fall by 0.05 of a rest length.
+  const auto [points, method] = curve_on(frozen, 0.2);
+  EXPECT_EQ(points, 4);
+  EXPECT_EQ(method.lack, Lack::nothing);
+  EXPECT_THAT(method.status,
+              AllOf(StartsWith("smaller steps are no more accurate"), HasSubstr("another system")));
+}
+
+TEST(WorkCurve, HasNoTimesThatMeanNothing) {
+  const auto [points, method] = curve_on(crowded, 0.2);
+  EXPECT_EQ(points, 0);
+  EXPECT_EQ(method.lack, Lack::backend);
+  EXPECT_EQ(method.status, "not timed: too crowded");
+  const System system = cloth_system(8, 8);
+  const TrustedState trusted = trusted_after_10_ms(system, 1e-3);
+  const StepLimit limit = limit_of("semi-euler");
+  GuidedMethod one{limit.integrator, &crowded, {}};
+  WorkCurve(system, trusted, limit, one, {.threads = 1}, 1e-6).time_step();
+  EXPECT_EQ(one.status, "not timed: too crowded");
+  EXPECT_EQ(one.step_seconds, 0);
+  std::vector<SizeCurve> sizes{
+      {.integrator = limit.integrator, .backend = &crowded, .dt_s = 1e-4, .samples = {}, .status = {}}};
+  measure_sizes(
+      sizes, [](std::uint32_t side) { return FamilyCloth{cloth_system(side, side)}; }, {.threads = 1},
+      [](const std::string&) { return true; });
+  EXPECT_THAT(sizes[0].samples, IsEmpty());
+  EXPECT_EQ(sizes[0].status, "not timed: too crowded");
+}
+
 TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
   const System system = cloth_system(8, 8);
   const TrustedState trusted = trusted_after_10_ms(system);
@@ -117,6 +203,7 @@ TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
     EXPECT_EQ(method.lack, Lack::time);
     ASSERT_TRUE(method.next);
     EXPECT_DOUBLE_EQ(method.next->dt_s, trusted.horizon_s / steps);
+    EXPECT_EQ(method.next->later, 10 - points);  // of 11
     EXPECT_GT(method.next->seconds, 0);
     statuses.push_back(method.status);
   }
@@ -418,18 +505,21 @@ TEST(StableStep, EndsInAHurryWithABracket) {
   EXPECT_GE(found.unstable_s, limit);
 }
 
-/// A cloth without pins that hangs a row above the floor, or high above it.
-StepLimit limit_of_backward_euler(double ceiling_m) {
-  const System system = cloth_system(10, 10, ceiling_m, {});
+StepLimit found_limit(std::string_view integrator, const System& system, const BackendInfo& backend) {
   const Spectrum spectrum = spectrum_at(system, system.start);
   const LimitRequest request{.system = &system,
-                             .backends = {find_backend("serial")},
+                             .backends = {&backend},
                              .execution = {},
                              .at_start = spectrum,
                              .on_the_way = spectrum,
                              .seconds = 1000,
                              .stop = [] { return false; }};
-  return find_step_limit(*find_integrator("newton-euler"), request);
+  return find_step_limit(*find_integrator(integrator), request);
+}
+
+/// A cloth without pins that hangs a row above the floor, or high above it.
+StepLimit limit_of_backward_euler(double ceiling_m) {
+  return found_limit("newton-euler", cloth_system(10, 10, ceiling_m, {}), *find_backend("serial"));
 }
 
 TEST(StepLimit, OfBackwardEulerIsTheFloors) {
@@ -441,6 +531,17 @@ TEST(StepLimit, OfBackwardEulerIsTheFloors) {
   EXPECT_EQ(high.measured.unstable_s, 0);
   EXPECT_FALSE(high.floor_is_why);
   EXPECT_EQ(high.why, "");
+}
+
+TEST(StepLimit, IsNoneOnABackendThatIsNeverStable) {
+  const StepLimit failed = found_limit("semi-euler", cloth_system(4, 4), astray);
+  EXPECT_EQ(failed.lack(), Lack::backend);
+  EXPECT_THAT(failed.status, StartsWith("failed: its energy grows or is not finite even with a step of "));
+  // Here the integrator is never stable.
+  const StepLimit unstable =
+      found_limit("explicit-euler", undamped(cloth_system(4, 4)), *find_backend("serial"));
+  EXPECT_EQ(unstable.lack(), Lack::stable_step);
+  EXPECT_EQ(unstable.status, "");
 }
 
 TEST(StepTheory, SaysWhyAMeasuredStepIsAnotherOne) {

@@ -90,7 +90,7 @@ void add_cloths(Document& page, const SceneGuide& guide) {
   add_table(
       page, "Largest cloths of the family",
       "Numbers of nodes of square cloths with the springs, masses and spacing of this scene, by frames per "
-      "second. The step is the longest one above that keeps the error or, if none does, that of the "
+      "second. The step is interpolated at the requested error or, if no point keeps it, is that of the "
       "cheapest stable point. Times between two measured sizes are interpolated on logarithmic axes.",
       cloths_at_rates(guide));
   Table crossovers = crossovers_table(guide);
@@ -372,7 +372,7 @@ std::vector<std::string> about_trusted_state(const TrustedState& trusted) {
   else
     reference += "; there was no time to confirm it with another solver";
   sentences.push_back(reference + ".");
-  sentences.push_back("Points whose error is below " + two_digits(trusted_margin * trusted.error()) + " (" +
+  sentences.push_back("Points whose error is below " + two_digits(trusted.least_error()) + " (" +
                       two_digits(trusted_margin) +
                       " times that of the reference) are marked and not compared.");
   return sentences;
