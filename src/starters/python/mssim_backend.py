@@ -34,6 +34,7 @@ __all__ = ["Method", "System", "Unavailable", "Unsupported", "say", "serve"]
 
 PROTOCOL = "1"
 _longest_text = 4000  # bytes; a line of the protocol has at most 4,096
+_no_reason = "no reason given"
 
 
 class Unsupported(Exception):
