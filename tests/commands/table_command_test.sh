@@ -147,7 +147,7 @@ warns 'lazy/rsvg-convert has ended without an error, but has written no PDF of c
 [ "$(wc -l <"$work/err")" -eq 1 ] || fail "more than one sentence: $(cat "$work/err")"
 
 # What a page measured: how to measure it again, and no check that the page does not make.
-ends 0 table "$results/web/zen4-swiftshader-busy" --format latex --out "$work/web"
+ends 0 table "$results/web/zen4-swiftshader" --format latex --out "$work/web"
 grep -qF 'scripts/mssim web -{}-{}out web.html' "$work/web/artifact.tex" || fail "how to make the page: $(cat "$work/web/artifact.tex")"
 ! grep -q 'end of one round' "$work/web/methods.tex" || fail "the page does not compare the ends of samples"
 grep -q 'end of one round' "$work/table1/methods.tex" || fail "the check of samples is missing"

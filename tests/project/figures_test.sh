@@ -158,8 +158,8 @@ sizes = [int(row["nodes"]) for row in rows(f"{chart}/timings.csv")]
 readme.append(f"The chart is Table {os.path.dirname(chart)[-1]} of Hong et al.")
 readme.append(f"on cloths of {min(sizes):,} to {max(sizes):,} nodes: published")
 readme.append(f"It was measured on {cpus(chart)} logical CPUs of an AMD EPYC (Zen 4), {when(chart)}")
-readme.append(f"The rows are from {cpus('results/web/zen4-swiftshader-busy')} logical CPUs of an AMD EPYC (Zen 4), "
-              f"{when('results/web/zen4-swiftshader-busy')}")
+readme.append(f"The rows are from {cpus('results/web/zen4-swiftshader')} logical CPUs of an AMD EPYC (Zen 4), "
+              f"{when('results/web/zen4-swiftshader')}")
 for scene, words in {"cloth40k": "a cloth of {:,} nodes", "bodies20587": "bodies of {:,} nodes", "jeans4k": "jeans of {:,} nodes, draped"}.items():
     folder = "garment" if scene.startswith("jeans") else "table1" if scene.startswith("cloth") else "table3"
     nodes = {int(row["nodes"]) for row in rows(f"results/{folder}/zen4/timings.csv") if row["scene"] == scene}
