@@ -155,7 +155,7 @@ pages = {"README.md": [], "docs/papers.md": []}
 readme, papers = pages["README.md"], pages["docs/papers.md"]
 chart = "results/table1/zen4"
 sizes = [int(row["nodes"]) for row in rows(f"{chart}/timings.csv")]
-readme.append(f"The chart is Table {os.path.dirname(chart)[-1]} of Hong et al.")
+readme.append(f"The chart is the part of Table {os.path.dirname(chart)[-1]} of Hong et al.")
 readme.append(f"on cloths of {min(sizes):,} to {max(sizes):,} nodes: published")
 readme.append(f"It was measured on {cpus(chart)} logical CPUs of an AMD EPYC (Zen 4), {when(chart)}")
 readme.append(f"The rows are from {cpus('results/web/zen4-swiftshader')} logical CPUs of an AMD EPYC (Zen 4), "
