@@ -312,16 +312,16 @@ std::string failed_end(const ChildResult& result, const std::string& doing) {
 ChildResult run(const ChildProcess& child) { return run_together({&child, 1}).front(); }
 
 std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
-  InterruptionGuard interruption;
+  const InterruptionGuard interruption;
   std::deque<Running> all;
   {
     const OnAllProcessCpus inherited;  // set before the fork, restored only in this process
     for (const ChildProcess& child : children)
       all.emplace_back(child, all.empty() ? 0 : all.front().process());
   }
-  if (!all.empty()) interruption.watch(all.front().process());
+  if (!all.empty()) InterruptionGuard::watch(all.front().process());
   for (Running& one : all) one.end();
-  interruption.throw_if_interrupted();
+  InterruptionGuard::throw_if_interrupted();
   std::vector<ChildResult> results;
   for (const Running& one : all) results.push_back(one.result());
   return results;

@@ -81,6 +81,13 @@ std::string last_line(std::string_view output) {
   return "";
 }
 
+/// This error as the program's failure, with its exit code.
+BackendFailure failure_of(const Error& error) {
+  BackendFailure failure(error.what(), "");
+  failure.exit_code = error.exit_code;
+  return failure;
+}
+
 /// Calls `work`. A failure with files, sockets or processes concerns only this program: throws BackendFailure
 /// for it, with the exit code of the failure if that has one.
 template <class Work>
@@ -94,9 +101,7 @@ std::invoke_result_t<Work> failing_alone(const Work& work) {
   } catch (const BackendFailure&) {
     throw;
   } catch (const Error& error) {
-    BackendFailure failure(error.what(), "");
-    failure.exit_code = error.exit_code;
-    throw failure;
+    throw failure_of(error);
   } catch (const std::runtime_error& error) {
     throw BackendFailure(error.what(), "");
   }
