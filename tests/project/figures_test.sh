@@ -11,6 +11,13 @@ suites=(table1 table3 garment)
 for suite in "${suites[@]}"; do "$1" bench --suite "$suite" --dry-run >"$work/$suite" 2>"$work/err"; done
 trap - ERR
 
+# Whoever reads a figure can look at the program that made it: the history has every commit that results/ names. A copy without it has none.
+mapfile -t commits < <(git grep -hoE '"commit": "[0-9a-f]+' -- results 2>/dev/null | grep -oE '[0-9a-f]+$' | sort -u)
+unknown=()
+for commit in "${commits[@]}"; do git merge-base --is-ancestor "$commit" HEAD 2>/dev/null || unknown+=("$commit"); done
+((${#unknown[@]} == ${#commits[@]} || !${#unknown[@]})) ||
+  { echo "results/ names commits that the history does not have: ${unknown[*]}; measure their folders again" && exit 1; }
+
 /usr/bin/python3 - "$work" "${suites[@]}" <<'PYTHON'
 import csv, glob, json, math, os, re, sys
 
