@@ -12,6 +12,7 @@
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/list_backends.h"
 #include "garment/stepping/published_dressing.h"
+#include "platform/machine.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -47,19 +48,19 @@ constexpr MemoryUse doubled(MemoryUse single) {
 
 constexpr auto table = std::to_array<BackendInfo>({
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
-     false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, BackendRole::baseline,
+     false, false, make_serial, spring_list_memory, spring_list_memory, 1, BackendRole::baseline,
      make_serial_dressing, make_serial_implicit, serial_implicit_memory, false, make_serial_in_double, true},
     {"threads-mutex", "multi-thread-cpu",
-     "as published: spring groups per thread, a lock around the accumulation", false, ThreadStack::usual,
+     "as published: spring groups per thread, a lock around the accumulation", false, true,
      make_threads_mutex, spring_list_memory, spring_list_memory, 1.2},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     ThreadStack::openmp, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, make_openmp_dressing,
+     true, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, make_openmp_dressing,
      make_openmp_implicit, openmp_implicit_memory, true, make_openmp_in_double, true},
-    {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
+    {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, false, make_opencl, planes,
      device_slices, 0.12, BackendRole::contender, dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
-     "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true,
-     ThreadStack::openmp, make_hybrid, packed, packed, 0.35},
+     "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true, true, make_hybrid,
+     packed, packed, 0.35},
 });
 
 constexpr const BackendInfo& only_row(BackendRole role) {
@@ -75,8 +76,7 @@ void require_threads(const BackendInfo& backend, const ExecutionOptions& options
     if (const auto excess = thread_excess(backend.threads))
       throw Unavailable(fmt::format("{} are {}", pluralize(backend.threads, "thread"), *excess));
   if (!backend.makes_threads) return;
-  if (const auto shortage = thread_shortage(options.threads, *backend.makes_threads))
-    throw Unavailable(*shortage);
+  if (const auto shortage = thread_shortage(options.threads)) throw Unavailable(*shortage);
 }
 
 }  // namespace
@@ -103,17 +103,16 @@ std::span<const BackendInfo> garment_backends() {
     constexpr MemoryUse loops{.node = 72, .spring = 28};
     std::vector<BackendInfo> of_garments;
     for (const PublishedDressing& dressing : published_dressings)
-      of_garments.push_back(
-          {.name = dressing.name,
-           .paper_configuration = "",
-           .description = dressing.description,
-           .uses_device = false,
-           .makes_threads = dressing.parallel ? std::optional(ThreadStack::openmp) : std::nullopt,
-           .make = nullptr,
-           .grid_memory = loops,
-           .mesh_memory = loops,
-           .make_dressing = maker_of(dressing),
-           .make_dressing_reference = make_published_reference});
+      of_garments.push_back({.name = dressing.name,
+                             .paper_configuration = "",
+                             .description = dressing.description,
+                             .uses_device = false,
+                             .makes_threads = dressing.parallel,
+                             .make = nullptr,
+                             .grid_memory = loops,
+                             .mesh_memory = loops,
+                             .make_dressing = maker_of(dressing),
+                             .make_dressing_reference = make_published_reference});
     return of_garments;
   }();
   return rows;
@@ -130,7 +129,7 @@ BackendInfo own_backend(const BackendProgram& program) {
           .paper_configuration = "",
           .description = program.description,
           .uses_device = false,
-          .makes_threads = std::nullopt,
+          .makes_threads = false,
           .make = nullptr,
           .grid_memory = own_program,
           .mesh_memory = own_program,
@@ -167,17 +166,8 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   if (backend.each_body) {
     BackendInfo of_one = backend;
     of_one.each_body = false;
-    int bodies = 0;
-    auto each = make_for_each_body(system, [&](const System& body) {
-      ++bodies;
-      return make_backend(of_one, body, integrator, dt_s, asked);
-    });
-    // OpenMP has one team for all bodies; other teams live side by side.
-    if (backend.makes_threads == ThreadStack::usual)
-      if (const auto shortage =
-              thread_shortage(1 + bodies * (execution_of(backend, asked).threads - 1), ThreadStack::usual))
-        throw Unavailable(*shortage);
-    return each;
+    return make_for_each_body(
+        system, [&](const System& body) { return make_backend(of_one, body, integrator, dt_s, asked); });
   }
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);

@@ -13,19 +13,13 @@ expect_shortage() {
   row "$1" "$1" | grep -Eq '^"?unavailable: 4 threads .* allows [1-3] .*--threads' || fail "$1 says: $(row "$1" "$1")"
 }
 
-# No thread can have such a stack: of OpenMP's, and of all others.
+# No thread can have such a stack.
 # Two integrators: their references would take two threads.
 bench=(bench --scene cloth2500 --integrator "semi-euler,rk4" --rounds 1)
 status=0
 OMP_STACKSIZE=200000G timeout 120 "$mssim" "${bench[@]}" --threads 4 --backend serial,openmp --out openmp >out 2>err || status=$?
 expect_shortage openmp
 grep -q 'OMP_STACKSIZE.*200000G' err || fail "the stack's size is not named: $(cat err)"
-(
-  # shellcheck disable=SC3045
-  ulimit -s $((1 << 38)) 2>/dev/null && "$mssim" --version >/dev/null 2>&1 || exit 77  # the thread sanitizer does not start
-  timeout 120 "$mssim" "${bench[@]}" --threads 4 --backend serial,threads-mutex --out threads-mutex >out 2>err
-) && status=0 || status=$?
-[ "$status" -eq 77 ] || expect_shortage threads-mutex
 
 # Scenes are built and pictures are drawn all the same, by fewer threads.
 OMP_STACKSIZE=200000G ends 0 render --scene cloth2500 --backend serial --duration 0.001 --out picture.png
@@ -40,11 +34,6 @@ if [ "$(id -u)" -eq 0 ] && chmod 777 . && setpriv --reuid=54321 --regid=54321 --
     [ "$status" -eq 3 ] || fail "$backend under a limit of processes exits with $status: $(cat err)"
     [ "$(row "limited-$backend" serial)" = ok ] || fail "serial has not gone on under a limit of processes: $(cat err)"
   done
-  # Room for the threads of one body, and not for those of three bodies, which live at once.
-  env -u TMPDIR HOME="$work" setpriv --reuid=54321 --regid=54321 --clear-groups bash -c \
-    'ulimit -u 9; exec timeout 120 "$@"' bash "$mssim" bench --scene bodies3858 --integrator semi-euler --rounds 1 --threads 4 \
-    --backend serial,threads-mutex:each --out limited-each >out 2>err || true
-  row limited-each threads-mutex:each | grep -Eq '^"?unavailable: 10 threads ' || fail "the threads of three bodies: $(cat err)"
 fi
 
 # More than eight threads for each processor.
