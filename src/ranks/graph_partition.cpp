@@ -60,7 +60,7 @@ std::vector<std::uint32_t> graph_partition(std::size_t nodes, std::span<const Sp
     fail(nodes, parts, "it has too many springs");
   const Adjacency graph(nodes, springs);
   std::vector<idx_t> first(graph.first.begin(), graph.first.end());
-  std::vector<idx_t> neighbours(graph.neighbours.begin(), graph.neighbours.end());
+  std::vector<idx_t> neighbours(graph.items.begin(), graph.items.end());
   std::vector<idx_t> cost;
   for (std::uint32_t node = 0; node < nodes; ++node)
     cost.push_back(static_cast<idx_t>(own_cost + graph.degree(node)));

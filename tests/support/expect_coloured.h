@@ -13,9 +13,9 @@ inline void expect_coloured(const SpringColouring& colouring, const std::vector<
   };
   std::multiset<Key> expected, found;
   for (const Spring& spring : list) expected.insert(key(spring));
-  for (std::size_t colour = 0; colour < colouring.colours(); ++colour) {
+  for (std::size_t colour = 0; colour < colouring.groups(); ++colour) {
     std::set<std::uint32_t> taken;
-    for (const Spring& spring : colouring.of_colour(colour)) {
+    for (const Spring& spring : colouring.of(colour)) {
       EXPECT_TRUE(taken.insert(spring.first).second) << "node " << spring.first << ", colour " << colour;
       EXPECT_TRUE(taken.insert(spring.second).second) << "node " << spring.second << ", colour " << colour;
       found.insert(key(spring));

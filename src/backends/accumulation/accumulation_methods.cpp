@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
-#include <numeric>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -109,9 +108,9 @@ class Colouring : public AddingAccumulation {
       : AddingAccumulation(list, threads), colouring_(colour_springs(list.springs(), list.nodes())) {}
 
   void add(const Team& team, Pair gather) {
-    for (std::size_t colour = 0; colour < colouring_.colours(); ++colour) {
+    for (std::size_t colour = 0; colour < colouring_.groups(); ++colour) {
       if (colour > 0) team.meet();
-      for (const Spring& spring : team.slice_of(colouring_.of_colour(colour)))
+      for (const Spring& spring : team.slice_of(colouring_.of(colour)))
         list_.add_force(spring, list_.force_of(spring, gather));
     }
   }
@@ -123,32 +122,24 @@ class Colouring : public AddingAccumulation {
 class Gather : public Accumulation {
  public:
   Gather(SpringList<float>& list, std::size_t threads)
-      : Accumulation(list, threads), begin_(list.nodes() + 1, 0), springs_(2 * list.springs().size()) {
-    for (const Spring& spring : list.springs()) {
-      ++begin_[spring.first + 1];
-      ++begin_[spring.second + 1];
-    }
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    std::vector<std::size_t> next(begin_);
-    for (Spring spring : list.springs()) {
-      springs_[next[spring.first]++] = spring;
-      std::swap(spring.first, spring.second);
-      springs_[next[spring.first]++] = spring;
-    }
-  }
+      : Accumulation(list, threads), springs_(list.nodes(), [&](const auto& visit) {
+          for (Spring spring : list.springs()) {
+            visit(spring.first, spring);
+            std::swap(spring.first, spring.second);
+            visit(spring.first, spring);
+          }
+        }) {}
 
   void add(const Team& team, Pair gather) {
     for (std::size_t node = team.begin(list_.nodes()); node < team.end(list_.nodes()); ++node) {
       Vec3<float> sum;
-      for (std::size_t spring = begin_[node]; spring < begin_[node + 1]; ++spring)
-        sum += list_.force_of(springs_[spring], gather);
+      for (const Spring& spring : springs_.of(node)) sum += list_.force_of(spring, gather);
       list_.force(node) = sum;
     }
   }
 
  private:
-  std::vector<std::size_t> begin_;  // [nodes + 1] begin of a node's springs
-  std::vector<Spring> springs_;     // node by node, each spring twice, with the node as first end
+  Grouped<Spring, std::size_t> springs_;  // by node, each spring twice, with the node as first end
 };
 
 constexpr MemoryUse with_private_arrays{.node = 17, .pair_node = 24, .thread_node = 12};

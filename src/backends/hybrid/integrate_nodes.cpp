@@ -115,8 +115,8 @@ HWY_NOINLINE void integrate_slices(const AlikeNodes& nodes, const MappedNodes& m
       Lanes3 sum = zero3();
       for (std::size_t s = springs.first_end[slice]; s < springs.first_end[slice + 1]; ++s)
         sum = sum + load3(forces + s * force_floats, slice_nodes);
-      for (std::size_t i = springs.first_subtracted[slice]; i < springs.first_subtracted[slice + 1]; ++i)
-        sum = sum - load3(forces + std::size_t{springs.subtracted[i]} * force_floats, slice_nodes);
+      for (const std::uint32_t s : springs.subtracted.of(slice))
+        sum = sum - load3(forces + std::size_t{s} * force_floats, slice_nodes);
       const auto at = [&](auto slot) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t number = index(decltype(slot)::value);
         return pairs[number / 2] + (2 * slice + number % 2) * force_floats + lane;

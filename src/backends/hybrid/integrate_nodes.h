@@ -56,7 +56,7 @@ struct AlikeNodes : ExplicitSteps<float> {
   std::size_t slices() const { return springs.slices.count; }
   void write(const State& state, float* pair) const { springs.slices.write(state, pair); }
   State read(const float* pair) const { return springs.slices.read(pair); }
-  std::uint64_t stored_springs() const { return springs.subtracted.size(); }
+  std::uint64_t stored_springs() const { return springs.subtracted.items.size(); }
   /// The device's work; refers to this object.
   SpringKernel spring_kernel(int lanes) const;
   /// Frees the data of which the device has a copy.

@@ -140,7 +140,6 @@ AlikeSprings::AlikeSprings(const std::vector<AlikeBodies>& bodies) : slices(bodi
   if (count > largest)
     throw Unsupported("the scene has {} springs for each lane; hybrid supports at most {}", count, largest);
   springs.reserve(count);
-  std::vector<std::uint32_t> ends(slices.count, 0);
   for (const AlikeSlices::Group& group : slices.groups) {
     const AlikeBodies& of = bodies[group.shape];
     const auto slice = static_cast<std::uint32_t>(group.first_slice);
@@ -151,17 +150,14 @@ AlikeSprings::AlikeSprings(const std::vector<AlikeBodies>& bodies) : slices(bodi
         const AlikeBodies::SpringAhead& spring = of.springs[s];
         springs.push_back({slice + node, slice + spring.other, spring.stiffness_rest,
                            static_cast<std::uint32_t>(group.shape)});
-        ++ends[slice + spring.other];
       }
     }
   }
   first_end.push_back(static_cast<std::uint32_t>(springs.size()));
 
-  first_subtracted.assign(slices.count + 1, 0);
-  std::partial_sum(ends.begin(), ends.end(), first_subtracted.begin() + 1);
-  std::vector<std::uint32_t> next(first_subtracted.begin(), first_subtracted.end() - 1);
-  subtracted.resize(springs.size());
-  for (std::uint32_t s = 0; s < springs.size(); ++s) subtracted[next[springs[s].second]++] = s;
+  subtracted = Grouped<std::uint32_t>(slices.count, [&](const auto& visit) {
+    for (std::uint32_t s = 0; s < springs.size(); ++s) visit(springs[s].second, s);
+  });
 }
 
 }  // namespace mssim

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backends/layouts/alike_bodies.h"
+#include "backends/layouts/grouped.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -90,9 +91,7 @@ struct AlikeSprings {
   std::vector<std::uint8_t> pinned;            ///< [slices] 1 if pinned, else 0
   std::vector<SpringOfSlices> springs;         ///< sorted by first, then by second slice
   std::vector<std::uint32_t> first_end;        ///< [slices + 1] begin of a slice's springs in `springs`
-  /// [slices + 1] begin of a slice's list in `subtracted`: the springs that end there.
-  std::vector<std::uint32_t> first_subtracted;
-  std::vector<std::uint32_t> subtracted;  ///< [springs] ascending within a slice
+  Grouped<std::uint32_t> subtracted;           ///< by slice: the springs that end there, ascending
 
   /// Throws Unsupported if there are too many springs per lane for 32-bit indices.
   explicit AlikeSprings(const std::vector<AlikeBodies>& bodies);

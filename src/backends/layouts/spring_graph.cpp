@@ -1,6 +1,7 @@
 #include "backends/layouts/spring_graph.h"
 
 #include <bit>
+#include <numeric>
 
 namespace mssim {
 namespace {
@@ -92,12 +93,9 @@ std::vector<std::size_t> component_ends(std::span<const Spring> springs,
 
 SpringsByFirstEnd::SpringsByFirstEnd(std::span<const Spring> springs, std::span<const std::uint32_t> slot,
                                      std::span<const std::uint32_t> rank)
-    : slot_(slot), rank_(rank), begin_(slot.size() + 1, 0), order_(springs.size()) {
-  for (const Spring& spring : springs) ++begin_[first_slot(spring) + 1];
-  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::uint32_t s = 0; s < springs.size(); ++s) order_[next[first_slot(springs[s])]++] = s;
-}
+    : slot_(slot), rank_(rank), by_slot_(slot.size(), [&](const auto& visit) {
+        for (std::uint32_t s = 0; s < springs.size(); ++s) visit(first_slot(springs[s]), s);
+      }) {}
 
 SpringColouring colour_springs(std::span<const Spring> list, std::size_t nodes) {
   constexpr std::size_t word_bits = 64;
@@ -107,8 +105,7 @@ SpringColouring colour_springs(std::span<const Spring> list, std::size_t nodes) 
   std::vector<std::uint64_t> taken(nodes * words, 0);  // [nodes][words] one bit for each colour at a node
   std::vector<std::uint32_t> colour_of;
   colour_of.reserve(list.size());
-  SpringColouring colouring;
-  colouring.first.push_back(0);
+  std::size_t colours = 0;
   for (const Spring& spring : list) {
     std::uint64_t* const first = &taken[spring.first * words];
     std::uint64_t* const second = &taken[spring.second * words];
@@ -119,15 +116,11 @@ SpringColouring colour_springs(std::span<const Spring> list, std::size_t nodes) 
     second[word] |= std::uint64_t{1} << bit;
     const std::size_t colour = word * word_bits + bit;
     colour_of.push_back(static_cast<std::uint32_t>(colour));
-    if (colour + 1 >= colouring.first.size()) colouring.first.resize(colour + 2, 0);
-    ++colouring.first[colour + 1];
+    colours = std::max(colours, colour + 1);
   }
-  for (std::size_t colour = 0; colour < colouring.colours(); ++colour)
-    colouring.first[colour + 1] += colouring.first[colour];
-  std::vector<std::size_t> next(colouring.first);
-  colouring.springs.resize(list.size());
-  for (std::size_t s = 0; s < list.size(); ++s) colouring.springs[next[colour_of[s]]++] = list[s];
-  return colouring;
+  return {colours, [&](const auto& visit) {
+            for (std::size_t s = 0; s < list.size(); ++s) visit(colour_of[s], list[s]);
+          }};
 }
 
 }  // namespace mssim

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "backends/layouts/grouped.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -14,30 +14,21 @@ namespace mssim {
 /// [nodes] number of springs at each node.
 std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs);
 
-/// The neighbours of every node, ascending: node i's are neighbours[first[i]] to neighbours[first[i + 1] -
-/// 1].
-struct Adjacency {
-  std::vector<std::uint32_t> first;       ///< [nodes + 1]
-  std::vector<std::uint32_t> neighbours;  ///< [2 springs]
-
+/// The neighbours of every node, ascending.
+struct Adjacency : Grouped<std::uint32_t> {
   /// `links`: springs, or others with a `first` and a `second` node.
   template <class Links>
-  Adjacency(std::size_t nodes, const Links& links) : first(nodes + 1, 0), neighbours(2 * links.size()) {
-    for (const auto& link : links) ++first[link.first + 1], ++first[link.second + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (const auto& link : links) {
-      neighbours[next[link.first]++] = link.second;
-      neighbours[next[link.second]++] = link.first;
-    }
+  Adjacency(std::size_t nodes, const Links& links)
+      : Grouped(nodes, [&](const auto& visit) {
+          for (const auto& link : links) {
+            visit(link.first, link.second);
+            visit(link.second, link.first);
+          }
+        }) {
     for (std::size_t node = 0; node < nodes; ++node)
-      std::sort(neighbours.begin() + first[node], neighbours.begin() + first[node + 1]);
+      std::sort(items.begin() + first[node], items.begin() + first[node + 1]);
   }
-  std::size_t nodes() const { return first.size() - 1; }
   std::uint32_t degree(std::uint32_t node) const { return first[node + 1] - first[node]; }
-  std::span<const std::uint32_t> of(std::uint32_t node) const {
-    return std::span(neighbours).subspan(first[node], degree(node));
-  }
 };
 
 /// An order of the nodes in which neighbours are near each other, so that a node gathers from few cache
@@ -64,8 +55,8 @@ class SpringsByFirstEnd {
 
   /// Indices of the springs that begin at a slot, ascending; empty for a slot without a node.
   std::span<const std::uint32_t> at(std::size_t slot) const {
-    if (slot + 1 >= begin_.size()) return {};
-    return std::span(order_).subspan(begin_[slot], begin_[slot + 1] - begin_[slot]);
+    if (slot >= by_slot_.groups()) return {};
+    return by_slot_.of(slot);
   }
   /// The slot of a spring's second end.
   std::uint32_t second_slot(const Spring& spring) const {
@@ -79,20 +70,11 @@ class SpringsByFirstEnd {
   }
 
   std::span<const std::uint32_t> slot_, rank_;
-  std::vector<std::uint32_t> begin_;  // [nodes + 1]
-  std::vector<std::uint32_t> order_;  // [springs]
+  Grouped<std::uint32_t> by_slot_;
 };
 
-/// A list of springs sorted into colours: no two springs of a colour share a node.
-struct SpringColouring {
-  std::vector<Spring> springs;     ///< [springs] colour by colour, in the order of the list within each
-  std::vector<std::size_t> first;  ///< [colours + 1] begin of each colour
-
-  std::size_t colours() const { return first.size() - 1; }
-  std::span<const Spring> of_colour(std::size_t colour) const {
-    return std::span(springs).subspan(first[colour], first[colour + 1] - first[colour]);
-  }
-};
+/// A list of springs by colour: no two springs of a colour share a node.
+using SpringColouring = Grouped<Spring, std::size_t>;
 
 /// Gives each spring in turn the first colour that neither of its ends has: at most twice the largest degree
 /// of a node, minus one, colours. `nodes`: greater than all node numbers of the springs.

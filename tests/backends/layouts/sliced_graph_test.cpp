@@ -171,10 +171,10 @@ void expect_greedy_colours(const std::vector<Spring>& list, std::size_t nodes) {
     ++degree[spring.second];
   }
   const std::size_t largest = *std::ranges::max_element(degree);
-  EXPECT_GE(colouring.colours(), largest);
-  EXPECT_LE(colouring.colours(), 2 * largest - 1);
-  for (std::size_t colour = 0; colour < colouring.colours(); ++colour)
-    EXPECT_FALSE(colouring.of_colour(colour).empty()) << "colour " << colour;
+  EXPECT_GE(colouring.groups(), largest);
+  EXPECT_LE(colouring.groups(), 2 * largest - 1);
+  for (std::size_t colour = 0; colour < colouring.groups(); ++colour)
+    EXPECT_FALSE(colouring.of(colour).empty()) << "colour " << colour;
 }
 
 TEST(SpringColouring, LetsNoTwoSpringsOfAColourShareANode) {
@@ -186,10 +186,10 @@ TEST(SpringColouring, HasColoursEnoughForANodeOfManySprings) {
   std::vector<Spring> star;  // needs a colour for each spring, more than a machine word has bits
   for (std::uint32_t node = 1; node <= 200; ++node) star.push_back({0, node, 1, 0});
   expect_greedy_colours(star, 201);
-  EXPECT_EQ(colour_springs(star, 201).colours(), 200U);
+  EXPECT_EQ(colour_springs(star, 201).groups(), 200U);
 }
 
-TEST(SpringColouring, OfNoSpringsHasNoColours) { EXPECT_EQ(colour_springs({}, 5).colours(), 0U); }
+TEST(SpringColouring, OfNoSpringsHasNoColours) { EXPECT_EQ(colour_springs({}, 5).groups(), 0U); }
 
 }  // namespace
 }  // namespace mssim

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <map>
 #include <set>
@@ -40,7 +39,7 @@ class SerialConstraints final : public Backend {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       mobility_.push_back(nodes_.pinned[i] ? Real{} : static_cast<Real>(1 / system.node_mass[i]));
     springs_.reserve(system.springs.size());
-    for (const Spring& spring : spring_order(system).springs)
+    for (const Spring& spring : spring_order(system).items)
       springs_.push_back(
           {spring.first, spring.second,
            compliant_spring<Real>(system.materials[spring.kind], spring.rest_length, steps_.small_s,
@@ -177,15 +176,9 @@ void distribute(SpringBatches& bodies, std::vector<PartCost> costs, std::size_t 
 SpringColouring spring_order(const System& system) {
   const auto* grid = std::get_if<GridPatch>(&system.topology);
   if (grid == nullptr) return colour_springs(system.springs, system.nodes());
-  std::array<std::size_t, cloth_colours> next{};  // index of each colour's next spring
-  for (const Spring& spring : system.springs) ++next[colour_of(*grid, spring)];
-  SpringColouring order{std::vector<Spring>(system.springs.size()), {0}};
-  for (std::size_t& place : next) {
-    order.first.push_back(order.first.back() + place);
-    place = order.first[order.first.size() - 2];
-  }
-  for (const Spring& spring : system.springs) order.springs[next[colour_of(*grid, spring)]++] = spring;
-  return order;
+  return {cloth_colours, [&](const auto& visit) {
+            for (const Spring& spring : system.springs) visit(colour_of(*grid, spring), spring);
+          }};
 }
 
 QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
@@ -285,8 +278,8 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
   const SpringColouring order = spring_order(system);
   using Constants = std::tuple<std::uint32_t, double, double>;
   std::vector<std::map<std::size_t, std::map<Constants, std::vector<Spring>>>> sorted(parts.size());
-  for (std::size_t colour = 0; colour < order.colours(); ++colour)
-    for (const Spring& spring : order.of_colour(colour))
+  for (std::size_t colour = 0; colour < order.groups(); ++colour)
+    for (const Spring& spring : order.of(colour))
       sorted[part_of[spring.first]][colour][{spring.kind, mobility[spring.first], mobility[spring.second]}]
           .push_back(spring);
   std::size_t vectors = 0;

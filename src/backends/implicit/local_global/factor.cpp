@@ -255,7 +255,11 @@ Dissection::Dissection(const StepMatrix& matrix, std::span<const Vec3d> places, 
   Dissector(matrix, places, std::max<std::size_t>(smallest, 1)).dissect_all(*this);
 }
 
-Fronts::Fronts(const StepMatrix& matrix, Dissection dissection) : Dissection(std::move(dissection)) {
+Fronts::Fronts(const StepMatrix& matrix, Dissection dissection)
+    : Dissection(std::move(dissection)), children(parts.size(), [&](const auto& visit) {
+        for (std::uint32_t part = 0; part < parts.size(); ++part)
+          if (parts[part].parent != Dissection::no_part) visit(parts[part].parent, part);
+      }) {
   const auto [place, part_of] = placement_of(*this);
   std::vector<std::vector<std::uint32_t>> later(parts.size());
   for (const auto& coupling : matrix.couplings) {
@@ -278,19 +282,12 @@ Fronts::Fronts(const StepMatrix& matrix, Dissection dissection) : Dissection(std
   }
 
   at_parent.resize(border.size());
-  first_child.resize(parts.size() + 1);
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const std::uint32_t parent = parts[part].parent;
     if (parent == Dissection::no_part) continue;
-    ++first_child[parent + 1];
     for (std::size_t i = first_border[part]; i < first_border[part + 1]; ++i)
       at_parent[i] = static_cast<std::uint32_t>(at(parent, border[i]));
   }
-  for (std::size_t part = 0; part < parts.size(); ++part) first_child[part + 1] += first_child[part];
-  children.resize(first_child.back());
-  std::vector<std::uint32_t> next = first_child;
-  for (std::uint32_t part = 0; part < parts.size(); ++part)
-    if (parts[part].parent != Dissection::no_part) children[next[parts[part].parent]++] = part;
 }
 
 std::size_t Fronts::at(std::size_t part, std::uint32_t place) const {
@@ -341,7 +338,7 @@ void BlockFactor::eliminate_all(const StepMatrix& matrix) {
       add(border + i, border + i, matrix.diagonal[fronts.order[begin + i]]);
     for (const auto& coupling : couplings[part])
       add(border + coupling.first - begin, fronts.at(part, coupling.second), -coupling.weight);
-    for (const std::uint32_t child : fronts.children_of(part)) {
+    for (const std::uint32_t child : fronts.children.of(part)) {
       const std::size_t size = fronts.border_size(child);
       const std::uint32_t* const at = fronts.at_parent.data() + fronts.first_border[child];
       for (std::size_t j = 0; j < size; ++j)

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "backends/layouts/grouped.h"
 #include "backends/layouts/node_arrays.h"
 #include "model/system.h"
 
@@ -73,11 +74,10 @@ struct Dissection {
 /// part is a list of places: first its border, ascending, which are later places coupled with its rows or
 /// those of earlier parts, then the part's own places.
 struct Fronts : Dissection {
-  std::vector<std::size_t> first_border;   ///< [parts + 1] begin of a part's border
-  std::vector<std::uint32_t> border;       ///< places
-  std::vector<std::uint32_t> at_parent;    ///< [border] index of that place in the parent's front
-  std::vector<std::uint32_t> first_child;  ///< [parts + 1] begin of a part's children
-  std::vector<std::uint32_t> children;     ///< parts, ascending
+  std::vector<std::size_t> first_border;  ///< [parts + 1] begin of a part's border
+  std::vector<std::uint32_t> border;      ///< places
+  std::vector<std::uint32_t> at_parent;   ///< [border] index of that place in the parent's front
+  Grouped<std::uint32_t> children;        ///< by part: parts, ascending
 
   Fronts(const StepMatrix& matrix, Dissection dissection);
 
@@ -86,9 +86,6 @@ struct Fronts : Dissection {
   std::size_t rows(std::size_t part) const { return border_size(part) + pivots(part); }
   /// Index of a place in the front of a part that has it.
   std::size_t at(std::size_t part, std::uint32_t place) const;
-  std::span<const std::uint32_t> children_of(std::size_t part) const {
-    return std::span(children).subspan(first_child[part], first_child[part + 1] - first_child[part]);
-  }
 };
 
 /// The inverse of a StepMatrix as dense blocks: its parts are eliminated one after the other (multifrontal

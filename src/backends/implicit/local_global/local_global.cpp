@@ -113,7 +113,7 @@ FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
   std::vector<std::size_t> cost(count), first(count);
   std::size_t all = 0;
   for (std::size_t part = 0; part < count; ++part) {
-    const auto children = factor.fronts.children_of(part);
+    const auto children = factor.fronts.children.of(part);
     cost[part] += factor.cost(part);
     first[part] = children.empty() ? part : first[children.front()];
     all += factor.cost(part);
@@ -130,7 +130,7 @@ FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
       if (is_top) items[0].push_back({first[part], part + 1});
       continue;
     }
-    for (const std::uint32_t child : factor.fronts.children_of(part))
+    for (const std::uint32_t child : factor.fronts.children.of(part))
       phase[part] = std::max(phase[part], phase[child]);
     ++phase[part];
     if (phase[part] == items.size()) items.emplace_back();

@@ -89,7 +89,7 @@ HWY_NOINLINE void pass_upwards(LocalGlobalNodes<Nodes>& system, std::size_t part
     for (std::size_t c = 0; c < 3; ++c)
       front[c * rows + border + i] = place.mass * system.e.data()[place.offset + c * step];
   }
-  for (const std::uint32_t child : fronts.children_of(part)) {
+  for (const std::uint32_t child : fronts.children.of(part)) {
     const std::uint32_t* const at = fronts.at_parent.data() + fronts.first_border[child];
     const std::size_t size = fronts.border_size(child), child_rows = system.factor.blocks[child].rows;
     const float* const left = system.fronts.data() + system.factor.blocks[child].front;

@@ -22,7 +22,7 @@ TEST(SpringOrder, HasTwelveColoursOfAClothInWhichNoTwoSpringsShareANode) {
            {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}}) {
     const System system = cloth_system(rows, columns);
     const SpringColouring order = spring_order(system);
-    EXPECT_EQ(order.colours(), 12U) << rows << " x " << columns;
+    EXPECT_EQ(order.groups(), 12U) << rows << " x " << columns;
     expect_coloured(order, system.springs);
   }
 }
@@ -32,7 +32,7 @@ TEST(SpringOrder, GivesEachSpringTheColourOfItsPlace) {
   const auto ends = [](const System& system, ClothColour colour) {
     const SpringColouring order = spring_order(system);
     Ends found;
-    for (const Spring& spring : order.of_colour(colour))
+    for (const Spring& spring : order.of(colour))
       found.emplace_back(std::minmax(spring.first, spring.second));
     std::ranges::sort(found);
     return found;
@@ -59,7 +59,7 @@ TEST(SpringOrder, OfBodiesIsThatOfTheGreedyColouring) {
   for (const System& system : {solid_block(5, 6, 7), two_solid_blocks()}) {
     const SpringColouring order = spring_order(system);
     expect_coloured(order, system.springs);
-    EXPECT_EQ(order.colours(), colour_springs(system.springs, system.nodes()).colours());
+    EXPECT_EQ(order.groups(), colour_springs(system.springs, system.nodes()).groups());
   }
 }
 
