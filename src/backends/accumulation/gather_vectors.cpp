@@ -1,5 +1,7 @@
 #include "backends/accumulation/gather_vectors.h"
 
+#include "backends/vectors/step_kernels.h"
+
 namespace mssim {
 
 PaddedRows::PaddedRows(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
@@ -30,20 +32,14 @@ State PaddedRows::state() const {
 }
 
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
-                                             const ExecutionOptions& options,
-                                             const StepKernel<PaddedRows>& kernel) {
+                                             const ExecutionOptions& options) {
+  const StepKernel<PaddedRows> kernel =
+      best_kernel(step_kernels<PaddedRows>(integrator), options.roots, options.instruction_set);
   const auto* grid = std::get_if<GridPatch>(&system.topology);
   if (grid == nullptr)
     throw Unsupported("gather-vectors steps cloths; on bodies openmp gathers with vectors");
   return std::make_unique<VectorBackend<PaddedRows>>(kernel, system, *grid, integrator, dt_s, kernel.lanes,
                                                      static_cast<std::size_t>(options.threads));
-}
-
-std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
-                                             const ExecutionOptions& options) {
-  return make_gather_vectors(
-      system, integrator, dt_s, options,
-      best_kernel(step_kernels<PaddedRows>(integrator), options.roots, options.instruction_set));
 }
 
 }  // namespace mssim

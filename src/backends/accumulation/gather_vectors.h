@@ -1,19 +1,18 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
-#include "backends/vectors/step_kernels.h"
 #include "model/system.h"
 
 namespace mssim {
 
 /// Every node of a cloth sums the forces of its own springs like `gather`, a vector of nodes at a time. The
 /// comparison with `openmp`, which also has vectors, shows the gain from computing each spring once. Uses the
-/// best instruction set with options.roots. Throws Unsupported except for a cloth.
+/// best instruction set with options.roots, or options.instruction_set. Throws Unsupported except for a
+/// cloth.
 BackendMaker make_gather_vectors;
 
 /// A cloth with the components x y z u v w (u v w: velocity).
@@ -33,10 +32,5 @@ struct PaddedRows : SeparateSteps<float> {
   void set_state(const State& state);
   State state() const;
 };
-
-/// Uses the vector code for the given instruction set instead of the best.
-std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
-                                             const ExecutionOptions& options,
-                                             const StepKernel<PaddedRows>& kernel);
 
 }  // namespace mssim

@@ -7,6 +7,7 @@
 #include "backends/accumulation/gather_vectors.h"
 #include "backends/backends.h"
 #include "backends/spring_list/list_backends.h"
+#include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
@@ -121,7 +122,8 @@ class EachRowKernelAndIntegrator : public testing::TestWithParam<std::tuple<std:
   }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
-    return make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {threads, ""}, kernel());
+    return make_gather_vectors(system, integrator(), backend_dt_of(integrator()),
+                               {.threads = threads, .instruction_set = kernel().instruction_set});
   }
 };
 INSTANTIATE_TEST_SUITE_P(
@@ -151,8 +153,10 @@ TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsThe
   constexpr int steps = 101;  // an odd number leaves the state where `next` was
   for (const auto& [rows, columns] : sizes) {
     const System system = bouncing_cloth(rows, columns);
-    const State expected = state_after(
-        *make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {1, ""}, best), steps);
+    const State expected =
+        state_after(*make_gather_vectors(system, integrator(), backend_dt_of(integrator()),
+                                         {.threads = 1, .instruction_set = best.instruction_set}),
+                    steps);
     EXPECT_TRUE(rows < 9 || columns < 9 || has_met_floor(system, expected)) << rows << " x " << columns;
     for (const int threads : {1, 2, 3, 7}) {
       const State state = state_after(*make(system, threads), steps);
