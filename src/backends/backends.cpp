@@ -104,11 +104,8 @@ std::span<const BackendInfo> garment_backends() {
     std::vector<BackendInfo> of_garments;
     for (const PublishedDressing& dressing : published_dressings)
       of_garments.push_back({.name = dressing.name,
-                             .paper_configuration = "",
                              .description = dressing.description,
-                             .uses_device = false,
                              .makes_threads = dressing.parallel,
-                             .make = nullptr,
                              .grid_memory = loops,
                              .mesh_memory = loops,
                              .make_dressing = maker_of(dressing),
@@ -126,11 +123,7 @@ const BackendInfo* find_backend(std::string_view name) {
 
 BackendInfo own_backend(const BackendProgram& program) {
   return {.name = program.name,
-          .paper_configuration = "",
           .description = program.description,
-          .uses_device = false,
-          .makes_threads = false,
-          .make = nullptr,
           .grid_memory = own_program,
           .mesh_memory = own_program,
           .program = &program};

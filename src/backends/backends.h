@@ -25,15 +25,15 @@ enum class BackendRole : std::uint8_t {
 /// A row of the TABLE of backends, or of users' backends (own_backend).
 struct BackendInfo {
   std::string_view name;
-  std::string_view
-      paper_configuration;       ///< column of Hong et al.'s tables (`configuration` in the published CSV)
-  std::string_view description;  ///< one line for `mssim list backends`
-  bool uses_device;              ///< needs an OpenCL device
-  bool makes_threads;            ///< creates as many threads as requested
+  /// Column of Hong et al.'s tables (`configuration` in the published CSV); or empty.
+  std::string_view paper_configuration = {};
+  std::string_view description = {};  ///< one line for `mssim list backends`
+  bool uses_device = false;           ///< needs an OpenCL device
+  bool makes_threads = false;         ///< creates as many threads as requested
   /// For an explicit integrator. Null if a program takes its steps, or if it steps garments only.
-  BackendMaker* make;
-  MemoryUse grid_memory;  ///< for a cloth
-  MemoryUse mesh_memory;  ///< for bodies
+  BackendMaker* make = nullptr;
+  MemoryUse grid_memory = {};  ///< for a cloth
+  MemoryUse mesh_memory = {};  ///< for bodies
   /// Approximate time of a step of a cloth or of bodies with an explicit integrator on two cores, relative to
   /// `serial`: for plans (results/table1, results/table3).
   double step_share = 1;

@@ -62,8 +62,8 @@ class FailsAt final : public OtherSerial {
     if (++calls == fails_at) throw BackendFailure("it stumbled", "oh dear");
   }
 };
-constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, {}, make_other<FailsAt>,
-                                {},          {}};
+constexpr BackendInfo stumbling{
+    .name = "stumbling", .description = "fails when it is told to", .make = make_other<FailsAt>};
 
 /// Takes its steps when it is asked for the state.
 class Postponing final : public OtherSerial {
@@ -89,7 +89,8 @@ class Postponing final : public OtherSerial {
  private:
   mutable int owed_ = 0;
 };
-constexpr BackendInfo postponing{"postponing", "", "is late", false, {}, make_other<Postponing>, {}, {}};
+constexpr BackendInfo postponing{
+    .name = "postponing", .description = "is late", .make = make_other<Postponing>};
 
 /// A small cloth, which is measured in short samples.
 class BenchScene : public testing::Test {

@@ -29,7 +29,8 @@ class RightForAWhile final : public OtherSerial {
  private:
   int sets_ = 0;
 };
-constexpr BackendInfo flaky{"flaky", "", "fails in the end", false, {}, make_other<RightForAWhile>, {}, {}};
+constexpr BackendInfo flaky{
+    .name = "flaky", .description = "fails in the end", .make = make_other<RightForAWhile>};
 
 /// What a row looks like that a verification has found wrong.
 void fail_row(ResultRow& row, const std::string& status) {
@@ -46,7 +47,7 @@ class OnTwoProcessors final : public OtherSerial {
   inline static int processors = 2;
 };
 constexpr BackendInfo undividable{
-    "undividable", "", "takes two", false, {}, make_other<OnTwoProcessors>, {}, {}};
+    .name = "undividable", .description = "takes two", .make = make_other<OnTwoProcessors>};
 
 /// A right one of several processes: it tells how many steps it has taken since it was asked last.
 class CountsSteps final : public OtherSerial {
@@ -65,7 +66,7 @@ class CountsSteps final : public OtherSerial {
  private:
   int steps_ = 0;
 };
-constexpr BackendInfo counting{"counting", "", "counts", false, {}, make_other<CountsSteps>, {}, {}};
+constexpr BackendInfo counting{.name = "counting", .description = "counts", .make = make_other<CountsSteps>};
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -82,7 +83,7 @@ class WatchedSerial final : public OtherSerial {
   inline static std::function<void()> on_first_step;
 };
 constexpr BackendInfo watched{
-    "serial", "", "", false, {}, make_other<WatchedSerial>, {}, {}, 1, BackendRole::baseline};
+    .name = "serial", .make = make_other<WatchedSerial>, .role = BackendRole::baseline};
 
 TEST_F(BenchScene, GivesARowForEveryCombinationAndKeepsEveryRound) {
   const std::vector<ResultRow> rows = run();

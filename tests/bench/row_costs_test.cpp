@@ -27,7 +27,7 @@ class SlowToBegin final : public OtherSerial {
   bool has_stepped_ = false;
 };
 constexpr BackendInfo slow_to_begin{
-    "slow-to-begin", "", "slow only at first", false, {}, make_other<SlowToBegin>, {}, {}};
+    .name = "slow-to-begin", .description = "slow only at first", .make = make_other<SlowToBegin>};
 
 /// Takes 20 ms for every tenth request of four steps, and little for the others.
 class Stuttering final : public OtherSerial {
@@ -40,8 +40,8 @@ class Stuttering final : public OtherSerial {
 
   inline static int frames = 0;
 };
-constexpr BackendInfo stuttering{"stuttering", "", "slow now and then", false, {}, make_other<Stuttering>,
-                                 {},           {}};
+constexpr BackendInfo stuttering{
+    .name = "stuttering", .description = "slow now and then", .make = make_other<Stuttering>};
 
 /// A right one for each of whose requests the processors use 3 J.
 class Hungry final : public OtherSerial {
@@ -55,7 +55,7 @@ class Hungry final : public OtherSerial {
   inline static std::filesystem::path counter;
   inline static std::int64_t used_uj = 0;
 };
-constexpr BackendInfo hungry{"hungry", "", "uses energy", false, {}, make_other<Hungry>, {}, {}};
+constexpr BackendInfo hungry{.name = "hungry", .description = "uses energy", .make = make_other<Hungry>};
 
 TEST_F(BenchScene, TellsWhatARowTookBeforeItsSamples) {
   job_.backends = {find_backend("serial"), &slow_to_begin};
@@ -139,7 +139,8 @@ class Spreading final : public OtherSerial {
     std::thread(touch_new_pages).join();
   }
 };
-constexpr BackendInfo spreading{"spreading", "", "uses memory", false, {}, make_other<Spreading>, {}, {}};
+constexpr BackendInfo spreading{
+    .name = "spreading", .description = "uses memory", .make = make_other<Spreading>};
 
 TEST_F(BenchScene, TellsWhatTheSystemCountedInAStep) {
   // What Linux counts itself, because this processor may have no counters; and what never happens.
@@ -169,8 +170,8 @@ class NotInSingle final : public OtherSerial {
   using OtherSerial::OtherSerial;
   bool is_in_single() const override { return false; }
 };
-constexpr BackendInfo not_in_single{"double", "", "larger numbers", false, {}, make_other<NotInSingle>,
-                                    {},       {}};
+constexpr BackendInfo not_in_single{
+    .name = "double", .description = "larger numbers", .make = make_other<NotInSingle>};
 
 TEST_F(BenchScene, TellsNoBytesOfNumbersThatAreNotInSingle) {
   job_.backends = {&not_in_single};

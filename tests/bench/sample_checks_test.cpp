@@ -69,7 +69,7 @@ std::unique_ptr<Backend> cheating(const System& system, const Integrator& integr
                                   const ExecutionOptions& options) {
   return std::make_unique<Cheating>(system, integrator, dt_s, options);
 }
-constexpr BackendInfo cheat{"cheat", "", "looks fast", false, {}, cheating, {}, {}};
+constexpr BackendInfo cheat{.name = "cheat", .description = "looks fast", .make = cheating};
 
 TEST_F(BenchScene, FindsAProgramThatIsRightOnlyWhereItIsVerified) {
   system_ = solid_block(5, 4, 3);  // in 2,000 steps a cloth folds, and roundings grow

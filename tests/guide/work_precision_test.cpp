@@ -111,7 +111,8 @@ class Frozen : public OtherSerial {
     }
   }
 };
-constexpr BackendInfo frozen{"frozen", "", "stays at its start", false, {}, make_other<Frozen>, {}, {}};
+constexpr BackendInfo frozen{
+    .name = "frozen", .description = "stays at its start", .make = make_other<Frozen>};
 
 class Astray final : public Frozen {
  public:
@@ -122,15 +123,15 @@ class Astray final : public Frozen {
     return state;
   }
 };
-constexpr BackendInfo astray{"astray", "", "is not finite", false, {}, make_other<Astray>, {}, {}};
+constexpr BackendInfo astray{.name = "astray", .description = "is not finite", .make = make_other<Astray>};
 
 class Crowded final : public OtherSerial {
  public:
   using OtherSerial::OtherSerial;
   std::string reason_not_to_time() const override { return "too crowded"; }
 };
-constexpr BackendInfo crowded{"crowded", "", "has too few processors", false, {}, make_other<Crowded>,
-                              {},        {}};
+constexpr BackendInfo crowded{
+    .name = "crowded", .description = "has too few processors", .make = make_other<Crowded>};
 
 /// The number of points of semi-euler on the backend over 10 ms, and why there are no more.
 std::pair<int, GuidedMethod> curve_on(const BackendInfo& backend, double stable_span_s) {

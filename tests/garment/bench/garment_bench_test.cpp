@@ -55,8 +55,10 @@ std::unique_ptr<DressingBackend> make_teller(const System& system, const Integra
                                              const ExecutionOptions& /*options*/) {
   return std::make_unique<TellsWhereItBegins>(make_serial_dressing(system, integrator, dt_s));
 }
-constexpr BackendInfo teller{"serial", "", "tells where it begins", false,      {}, nullptr, {},
-                             {},       1,  BackendRole::baseline,   make_teller};
+constexpr BackendInfo teller{.name = "serial",
+                             .description = "tells where it begins",
+                             .role = BackendRole::baseline,
+                             .make_dressing = make_teller};
 
 class BenchGarment : public testing::Test {
  protected:
