@@ -26,9 +26,7 @@ HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s
       constants(packed.slots() * 2),
       materials(materials_of<float>(system)) {
   constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
-  const auto of_slot = [&](std::size_t slot) {
-    return constants.data() + slot / slice_nodes * 2 * slice_nodes + slot % slice_nodes;
-  };
+  const auto of_slot = [&](std::size_t slot) { return constants.data() + slot_offset(slot, 2, slice_nodes); };
   for (std::size_t slot = 0; slot < packed.slots(); ++slot) of_slot(slot)[slice_nodes] = 1;
   for (std::size_t node = 0; node < system.nodes(); ++node) {
     of_slot(packed.slot[node])[0] = static_cast<float>(1 / system.node_mass[node]);

@@ -92,23 +92,21 @@ AlikeSlices::AlikeSlices(const std::vector<AlikeBodiesOf<Real>>& bodies, std::si
 
 template <class Real>
 void AlikeSlices::write(const State& state, Real* pair) const {
-  for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::uint32_t node = scene_node[slice * lanes + lane];
-      write_vector(pair + lane, lanes, state.position[node]);
-      write_vector(pair + 3 * lanes + lane, lanes, state.velocity[node]);
-    }
+  for (std::size_t slot = 0; slot < scene_node.size(); ++slot) {
+    Real* const x = pair + slot_offset(slot, components, lanes);
+    write_vector(x, lanes, state.position[scene_node[slot]]);
+    write_vector(x + 3 * lanes, lanes, state.velocity[scene_node[slot]]);
+  }
 }
 
 template <class Real>
 State AlikeSlices::read(const Real* pair) const {
   State state{std::vector<Vec3d>(nodes), std::vector<Vec3d>(nodes)};
-  for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::uint32_t node = scene_node[slice * lanes + lane];
-      state.position[node] = read_vector(pair + lane, lanes);
-      state.velocity[node] = read_vector(pair + 3 * lanes + lane, lanes);
-    }
+  for (std::size_t slot = 0; slot < scene_node.size(); ++slot) {
+    const Real* const x = pair + slot_offset(slot, components, lanes);
+    state.position[scene_node[slot]] = read_vector(x, lanes);
+    state.velocity[scene_node[slot]] = read_vector(x + 3 * lanes, lanes);
+  }
   return state;
 }
 

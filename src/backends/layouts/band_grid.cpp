@@ -90,8 +90,7 @@ BandRowsOf<Real>::BandRowsOf(const BandLayout& layout, const std::vector<SpringP
 
 std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integrator& integrator,
                            std::size_t steps_per_pass) {
-  const std::size_t most = columns / narrowest_partition(integrator, steps_per_pass);
-  return std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, most));
+  return threads_for(columns / narrowest_partition(integrator, steps_per_pass), threads);
 }
 
 /// The model: with T steps per pass, a step takes c + m / T per node, where c is the time of arithmetic and

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,11 +25,37 @@ struct IndexRange {
   std::size_t begin, end;
 };
 
+/// Divides items into `count` ranges of about equal cost, of which some may be empty. cost_before(i): total
+/// cost of the items before the i-th.
+template <class CostBefore>
+std::vector<IndexRange> balanced_ranges(IndexRange items, std::size_t count, const CostBefore& cost_before) {
+  const std::size_t before = cost_before(items.begin), cost = cost_before(items.end) - before;
+  std::vector<IndexRange> ranges;
+  std::size_t end = items.begin;
+  for (std::size_t range = 0; range < count; ++range) {
+    const std::size_t begin = end, target = before + cost * (range + 1) / count;
+    while (end < items.end && cost_before(end + 1) <= target) ++end;
+    ranges.push_back({begin, end});
+  }
+  return ranges;
+}
+
+/// Threads for so many units of work, of which each thread takes at least one: at most `most`.
+constexpr std::size_t threads_for(std::size_t units, std::size_t most) {
+  return std::clamp<std::size_t>(most, 1, std::max<std::size_t>(1, units));
+}
+
 /// `floats` in whole vectors, an odd number of them: rows and components at a distance of a power of two
 /// share a few sets of the first-level cache.
 constexpr std::size_t odd_pitch(std::size_t floats, std::size_t lanes) {
   const std::size_t whole = round_up(floats, lanes);
   return whole / lanes % 2 == 0 ? whole + lanes : whole;
+}
+
+/// Offset of the first number of a slot in an array [slices][numbers][lanes]; the others follow at a distance
+/// of `lanes`.
+constexpr std::size_t slot_offset(std::size_t slot, std::size_t numbers, std::size_t lanes) {
+  return slot / lanes * numbers * lanes + slot % lanes;
 }
 
 /// Reads a vector in space whose components are `step` numbers apart.

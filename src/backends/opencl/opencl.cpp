@@ -28,9 +28,8 @@ PairLayout record_layout(const SlicedGraph& graph) {
 std::vector<float> slice_constants(const SlicedGraph& graph) {
   std::vector<float> constants(graph.slots() * spring_constant_count);
   for (std::size_t slot = 0; slot < graph.slots(); ++slot)
-    write_constants(
-        constants.data() + slot / graph.lanes * spring_constant_count * graph.lanes + slot % graph.lanes,
-        graph.lanes, graph.constants[slot]);
+    write_constants(constants.data() + slot_offset(slot, spring_constant_count, graph.lanes), graph.lanes,
+                    graph.constants[slot]);
   return constants;
 }
 
@@ -110,7 +109,7 @@ PairLayout slice_layout(const AlikeSlices& slices) {
   pair.node.resize(slices.nodes, pair.floats);
   for (std::size_t slot = 0; slot < slices.scene_node.size(); ++slot) {
     const std::uint32_t node = slices.scene_node[slot];
-    const std::size_t at = slot / slices.lanes * AlikeSlices::components * slices.lanes + slot % slices.lanes;
+    const std::size_t at = slot_offset(slot, AlikeSlices::components, slices.lanes);
     if (pair.node[node] == pair.floats)
       pair.node[node] = at;
     else

@@ -21,21 +21,6 @@ constexpr std::size_t least_chunks = 4;
 /// BodySteps::spins for slices: some microseconds.
 constexpr int slice_spins = 300;
 
-/// Divides these slices into `count` ranges of about equal numbers of entries.
-std::vector<IndexRange> balanced_chunks(const std::vector<std::uint32_t>& first_entry, IndexRange slices,
-                                        std::size_t count) {
-  const std::size_t before = cost_of_slices_before(first_entry, slices.begin);
-  const std::size_t cost = cost_of_slices_before(first_entry, slices.end) - before;
-  std::vector<IndexRange> chunks;
-  std::size_t slice = slices.begin;
-  for (std::size_t p = 0; p < count; ++p) {
-    const std::size_t begin = slice, target = before + cost * (p + 1) / count;
-    while (slice < slices.end && cost_of_slices_before(first_entry, slice + 1) <= target) ++slice;
-    chunks.push_back({begin, slice});
-  }
-  return chunks;
-}
-
 /// Cost of a node besides its springs, in springs.
 constexpr std::size_t node_cost = 2;
 
@@ -173,18 +158,19 @@ SlicedBodiesOf<Real>::SlicedBodiesOf(const System& system, SlicedGraphOf<Real> g
   entries = slice_entries(graph, record_floats, [](std::uint32_t node_slot) { return node_slot; });
   constants = AlignedArrayOf<Real>(graph.slots() * slice_constants);
   for (std::size_t i = 0; i < graph.slots(); ++i) {
-    Real* of_slot = constants.data() + i / lanes * slice_constants * lanes + i % lanes;
+    Real* of_slot = constants.data() + slot_offset(i, slice_constants, lanes);
     *write_constants(of_slot, lanes, graph.constants[i]) = static_cast<Real>(graph.held[i]);
   }
   slot.assign(graph.slot.begin(), graph.slot.end() - static_cast<std::ptrdiff_t>(graph.ghosts));
   first_entry = std::move(graph.first_entry);
-  this->threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slices()));
+  this->threads = threads_for(slices(), thread_count);
   this->spins = slice_spins;
-  const std::size_t by_cost = cost_of_slices_before(first_entry, slices()) / chunk_cost;
+  const auto cost_before = [&](std::size_t slice) { return cost_of_slices_before(first_entry, slice); };
+  const std::size_t by_cost = cost_before(slices()) / chunk_cost;
   const std::size_t count = std::min(
       {std::max(least_chunks * this->threads, by_cost), slices(), std::size_t{ChunkTickets::most_chunks}});
-  this->chunks = balanced_chunks(first_entry, {0, graph.first_edge_slice}, count);
-  if (graph.ghosts > 0) edge_chunks = balanced_chunks(first_entry, {graph.first_edge_slice, slices()}, count);
+  this->chunks = balanced_ranges({0, graph.first_edge_slice}, count, cost_before);
+  if (graph.ghosts > 0) edge_chunks = balanced_ranges({graph.first_edge_slice, slices()}, count, cost_before);
   this->make_pairs_where_stepped((graph.slots() + graph.ghosts) * record_floats, [&](std::size_t chunk) {
     return (chunk < this->chunks.size() ? this->chunks[chunk].begin : graph.first_edge_slice) * lanes *
            record_floats;
@@ -227,7 +213,7 @@ BodyLanesOf<Real>::BodyLanesOf(const System& system, const std::vector<AlikeBodi
     ++this->chunks.back().end;
   }
   this->spins = static_cast<int>(std::min<std::size_t>(most_spins, largest / springs_a_spin));
-  this->threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, this->chunks.size()));
+  this->threads = threads_for(this->chunks.size(), thread_count);
   for (std::size_t thread = 0; thread < this->threads; ++thread)
     forces.emplace_back(most_nodes * node_floats);
   this->make_pairs_where_stepped(slices.floats(), [&](std::size_t chunk) {

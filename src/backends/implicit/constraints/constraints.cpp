@@ -215,7 +215,7 @@ QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lane
     flag(1 + static_cast<std::size_t>(row), node % layout.columns) = 0;
   }
 
-  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, blocks() / least_blocks(1)));
+  threads = threads_for(blocks() / least_blocks(1), thread_count);
   if (nodes.bytes() > cached_bytes) depth = most_depth;
   while (threads > 1 && depth > 1 && blocks() / threads < least_blocks(depth)) --depth;
 }
@@ -265,7 +265,7 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
     slots = round_up(slots, lanes);
     parts.push_back({first / lanes, slots / lanes, 0, 0});
   }
-  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slots / lanes));
+  threads = threads_for(slots / lanes, thread_count);
   nodes = AlignedArray(slots * record_floats);
   rest = AlignedArray(slots * rest_components);
   free = AlignedArray(slots);
@@ -329,7 +329,7 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
 void SpringBatches::set_state(const State& state) {
   write_records(state, slot, nodes.data());
   for (std::size_t node = 0; node < slot.size(); ++node) {
-    float* const of_x = rest.data() + rest_offset(slot[node]);
+    float* const of_x = rest.data() + slot_offset(slot[node], rest_components, lanes);
     write_vector(of_x, lanes, rest_of(state.position[node]));
     write_vector(of_x + 3 * lanes, lanes, rest_of(state.velocity[node]));
   }
@@ -338,7 +338,7 @@ void SpringBatches::set_state(const State& state) {
 State SpringBatches::state() const {
   State state = read_records(nodes.data(), slot);
   for (std::size_t node = 0; node < slot.size(); ++node) {
-    const float* const of_x = rest.data() + rest_offset(slot[node]);
+    const float* const of_x = rest.data() + slot_offset(slot[node], rest_components, lanes);
     state.position[node] += read_vector(of_x, lanes);
     state.velocity[node] += read_vector(of_x + 3 * lanes, lanes);
   }

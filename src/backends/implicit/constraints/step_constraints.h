@@ -181,8 +181,6 @@ struct SpringBatches : SmallSteps<float> {
   void set_state(const State& state);
   State state() const;
 
-  /// Floats from the start of `rest` to the x of a slot.
-  std::size_t rest_offset(std::size_t at) const { return at / lanes * rest_components * lanes + at % lanes; }
   std::size_t vectors(const IndexRange& colour) const {
     return batches[colour.end - 1].end - batches[colour.begin].begin;
   }

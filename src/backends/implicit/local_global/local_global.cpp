@@ -159,7 +159,7 @@ LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix
                                           std::size_t lanes, std::size_t thread_count)
     : nodes(system, lanes),
       factor(matrix, places_of(system, matrix), lanes),
-      threads(std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, nodes.chunks.size()))),
+      threads(threads_for(nodes.chunks.size(), thread_count)),
       schedule(factor, threads),
       dt(static_cast<float>(dt_s)),
       iterations(system.solver.iterations),

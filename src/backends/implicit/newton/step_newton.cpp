@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 #include "backends/implicit/newton/step_newton.h"
 #include "backends/implicit/nodes/node_vectors-inl.h"
 #include "backends/threads/spin_barrier.h"

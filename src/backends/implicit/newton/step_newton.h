@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -46,7 +45,7 @@ struct VectorEquation {
         dt(static_cast<float>(dt_s)),
         integrator(&method),
         goal(solver_goal<float>(system, dt_s, system.solver.tolerance)),
-        threads(std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, nodes.chunks.size()))),
+        threads(threads_for(nodes.chunks.size(), thread_count)),
         inverse(nodes.vectors() * 6 * lanes) {
     for (AlignedArray* field : {&x, &v, &w, &s, &z, &p, &q, &e}) *field = AlignedArray(nodes.field_floats());
     if (nodes.slope_floats() * sizeof(float) <= most_kept)

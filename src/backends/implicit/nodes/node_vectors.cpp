@@ -43,7 +43,7 @@ NodeSlices::NodeSlices(const System& system, std::size_t slice_lanes)
   constants = AlignedArray(graph.slots() * constant_count);
   for (std::size_t slot = 0; slot < graph.slots(); ++slot) {
     if (graph.scene_node[slot] == SlicedGraph::no_node) continue;
-    float* first = constants.data() + slot / lanes * constant_count * lanes + slot % lanes;
+    float* first = constants.data() + slot_offset(slot, constant_count, lanes);
     write_constants(first, lanes, graph.constants[slot]);
     first[free * lanes] = graph.held[slot] == 0 ? 1.0F : 0.0F;
     first[mass * lanes] = static_cast<float>(system.node_mass[graph.scene_node[slot]]);

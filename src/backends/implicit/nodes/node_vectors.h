@@ -25,14 +25,8 @@ inline constexpr std::size_t most_node_chunks = 256;
 /// of the items before the i-th.
 template <class CostBefore>
 std::vector<IndexRange> balanced_node_chunks(std::size_t count, CostBefore cost_before) {
-  const std::size_t parts = std::min(count, most_node_chunks);
-  std::vector<IndexRange> chunks;
-  std::size_t end = 0;
-  for (std::size_t part = 1; part <= parts; ++part) {
-    const std::size_t begin = end;
-    while (end < count && cost_before(end + 1) * parts <= cost_before(count) * part) ++end;
-    if (end > begin) chunks.push_back({begin, end});
-  }
+  auto chunks = balanced_ranges({0, count}, std::min(count, most_node_chunks), cost_before);
+  std::erase_if(chunks, [](const IndexRange& chunk) { return chunk.begin == chunk.end; });
   return chunks;
 }
 
