@@ -151,8 +151,15 @@ constexpr MemoryUse in_padded_rows{.pair_node = 24, .storage = Storage::separate
 constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, BackendMaker* make,
                                      const MemoryUse& memory, std::string_view extra_memory,
                                      std::string_view springs_computed, Repeatable repeatable) {
-  return {
-      {name, "", description, false, true, make, memory, memory}, extra_memory, springs_computed, repeatable};
+  return {{.name = name,
+           .description = description,
+           .makes_threads = true,
+           .make = make,
+           .grid_memory = memory,
+           .mesh_memory = memory},
+          extra_memory,
+          springs_computed,
+          repeatable};
 }
 
 }  // namespace
