@@ -202,15 +202,14 @@ void BandGridOf<Real>::cut(std::size_t most_threads) {
 template <class Real>
 void BandGridOf<Real>::add_partition(ColumnRange its) {
   Partition& partition = partitions.emplace_back();
-  partition.first = its.first;
-  partition.count = its.count;
+  static_cast<ColumnRange&>(partition) = its;
   partition.ghosts = ghost_columns(*this->integrator, steps_per_pass);
   partition.first_of_cloth = layout.halves == 1 ? its.first : layout.halves * (its.first - own.first);
 }
 
 template <class Real>
 ColumnRange BandGridOf<Real>::filled_columns(const Partition& partition) const {
-  return with_ghosts({partition.first, partition.count}, partition.ghosts, columns);
+  return with_ghosts(partition, partition.ghosts, columns);
 }
 
 template <class Real>
@@ -300,8 +299,7 @@ void BandGridOf<Real>::fill_edges(std::size_t p) {
     edge.pass.reach(passes);
   };
   if (p > 0) fill(partition.left, partition.first, 0);
-  if (p + 1 < partitions.size())
-    fill(partition.right, partition.first + partition.count - partition.ghosts, layout.halves - 1);
+  if (p + 1 < partitions.size()) fill(partition.right, partition.end() - partition.ghosts, layout.halves - 1);
 }
 
 template <class Real>

@@ -215,9 +215,7 @@ struct EdgeColumns {
 /// neighbours': two for each active stage. The thread recomputes there all stages except the last, so it
 /// needs no other thread until the last is done.
 template <class Real>
-struct BandPartitionOf {
-  std::size_t first = 0;
-  std::size_t count = 0;           ///< own columns of the thread
+struct BandPartitionOf : ColumnRange {
   std::size_t first_of_cloth = 0;  ///< column of the cloth that `first` is in the first half
   std::size_t ghosts = 0;          ///< on each side
   /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty if

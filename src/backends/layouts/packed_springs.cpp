@@ -67,13 +67,13 @@ void find_units(const System& system, const SpringsByFirstEnd& springs, std::siz
 
 }  // namespace
 
-PackedSprings::PackedSprings(const System& system) : slot(system.nodes()) {
+PackedSprings::PackedSprings(const System& system) {
   constexpr std::size_t largest = std::numeric_limits<std::uint32_t>::max() / slice_nodes;
   if (system.springs.size() > largest)
     throw Unsupported("the scene has {} springs; hybrid supports at most {}", system.springs.size(), largest);
   NodeOrder order = node_order(system);
   scene_node = std::move(order.scene_node);
-  for (std::uint32_t i = 0; i < scene_node.size(); ++i) slot[scene_node[i]] = i;
+  slot = places_in(scene_node);
   scene_node.resize(round_up(scene_node.size(), slice_nodes), no_node);
 
   pack_units(system, order.rank);

@@ -53,7 +53,7 @@ HWY_NOINLINE inline void take_ghosts_of_halves(const BandLayout& layout, BandPar
     copy_half(lanes_of(to, to_half), layout.lanes, lanes_of(from, 1 - to_half), layout.lanes,
               layout.height * BandLayout::components);
   };
-  const std::size_t end = partition.first + partition.count;
+  const std::size_t end = partition.end();
   for (std::size_t i = 0; i < partition.ghosts; ++i) {
     copy(partition.first - partition.ghosts + i, 1, end - partition.ghosts + i);
     copy(end + i, 0, partition.first + i);
@@ -116,7 +116,7 @@ HWY_INLINE void leave_column(const BandLayout& layout, BandPartitionOf<Real>& pa
                 layout.height * BandLayout::components);
     if (number + 1 == partition.ghosts) edge.pass.reach(pass + 1);
   };
-  const std::size_t number = column - partition.first, behind = partition.first + partition.count - column;
+  const std::size_t number = column - partition.first, behind = partition.end() - column;
   if (number < partition.ghosts && partition.left.exists()) leave(partition.left, number, 0);
   if (behind <= partition.ghosts && partition.right.exists())
     leave(partition.right, partition.ghosts - behind, layout.halves - 1);
@@ -200,7 +200,7 @@ inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGrid
     // Includes the neighbours' columns that later stages need.
     const std::size_t reach = BandLayout::halo * (count - 1 - i);
     stages[i].begin = partition.first - std::min(partition.first, reach);
-    stages[i].end = std::min(partition.first + partition.count + reach, bands.columns);
+    stages[i].end = std::min(partition.end() + reach, bands.columns);
     for (std::size_t f = 0; f < 2; ++f)
       stages[i].forces[f] = partition.forces.data() + (2 * i + f) * bands.layout.force_floats();
     std::memset(stages[i].forces[0], 0, 2 * bands.layout.force_floats() * sizeof(Real));
@@ -236,7 +236,7 @@ HWY_INLINE void walk_partition(BandGridOf<Real>& bands, std::size_t p, const Ban
   const std::size_t start =
       goes_on ? partition.first : under_way[0].begin - std::min(under_way[0].begin, distance);
   const std::size_t end = under_way[count - 1].end + distance * (count - 1);
-  const std::size_t own_end = partition.first + partition.count;
+  const std::size_t own_end = partition.end();
   constexpr std::size_t columns_an_advance = 8;  // some microseconds
   const bool has_next = p + 1 < bands.partitions.size();
   // Edges of the next pass and of this one; both within two thirds of the columns.

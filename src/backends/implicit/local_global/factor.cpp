@@ -189,8 +189,7 @@ struct Placement {
 };
 Placement placement_of(const Dissection& dissection) {
   const auto& [order, parts] = dissection;
-  Placement all{std::vector<std::uint32_t>(order.size()), std::vector<std::uint32_t>(order.size())};
-  for (std::uint32_t i = 0; i < order.size(); ++i) all.place[order[i]] = i;
+  Placement all{places_in(order), std::vector<std::uint32_t>(order.size())};
   for (std::uint32_t part = 0; part < parts.size(); ++part)
     std::fill(all.part_of.begin() + parts[part].begin, all.part_of.begin() + parts[part].end, part);
   return all;
