@@ -296,37 +296,39 @@ const BackendInfo* BackendChoice::variant(const std::string& name) {
   const auto in_table = std::ranges::find(known_, its_name, &BackendInfo::name);
   const std::string its_last = its_name.substr(its_name.rfind(':') + 1);
   const std::optional<std::string_view> set = instruction_set_named(how);
-  const bool is_of_variant = its_last == each_word ? how != each_word
-                             : its_last == double_word
-                                 ? number_in<int>(how) || set
-                                 : number_in<int>(how) && instruction_set_named(its_last);
-  const BackendInfo* row = in_table != known_.end() ? *in_table : is_of_variant ? variant(its_name) : nullptr;
-  const std::optional<fs::path> file = row ? std::nullopt : description_of(its_name);
-  if (!row && !file) return nullptr;
-  if (how == each_word) {
-    if (file)
-      throw UsageError(
-          "{} asks for a step of each body for itself, which only mssim's own backends take: leave "
-          "\":{}\" out",
-          printable(name), each_word);
-    return &add_variant(*row, how);
-  }
-  if (row && row->make_in_double != nullptr && how == double_word) return &add_variant(*row, how);
-  if (row && row->has_vectors && set) return &add_variant(*row, instruction_set_name(*set));
-  BackendProgram program = file ? described_by(*file) : BackendProgram{};
   const std::optional<int> number = number_in<int>(how);
-  if (row && !number) refuse_suffix(name, how, *row);
-  if (row ? !takes_number(*row) : !program.in_ranks)
-    throw UsageError("{} has a {}, which {} does not take: leave \":{}\" out", printable(name),
-                     number ? "number of ranks or threads" : "suffix", its_name, printable(how));
-  const int most = row ? most_threads : most_ranks;
-  if (!number || *number < 1 || *number > most)
-    throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4{}", printable(name),
-                     row ? "threads" : "ranks", most, its_name,
-                     row && row->has_vectors ? fmt::format(", or an instruction set, as in {}:{}", its_name,
-                                                           instruction_set_name(instruction_sets().front()))
-                                             : "");
-  if (row) return &add_variant(*row, std::to_string(*number));
+  const bool is_of_variant = its_last == each_word     ? how != each_word
+                             : its_last == double_word ? number || set
+                                                       : number && instruction_set_named(its_last);
+  const BackendInfo* row = in_table != known_.end() ? *in_table : is_of_variant ? variant(its_name) : nullptr;
+  const auto require_number = [&](bool takes_one, std::string_view of_what, int most) {
+    if (!takes_one)
+      throw UsageError("{} has a {}, which {} does not take: leave \":{}\" out", printable(name),
+                       number ? "number of ranks or threads" : "suffix", its_name, printable(how));
+    if (!number || *number < 1 || *number > most)
+      throw UsageError("{} has an invalid number of {}: give one from 1 to {}, as in {}:4{}", printable(name),
+                       of_what, most, its_name,
+                       row && row->has_vectors ? fmt::format(", or an instruction set, as in {}:{}", its_name,
+                                                             instruction_set_name(instruction_sets().front()))
+                                               : "");
+  };
+  if (row) {
+    if (how == each_word) return &add_variant(*row, how);
+    if (row->make_in_double != nullptr && how == double_word) return &add_variant(*row, how);
+    if (row->has_vectors && set) return &add_variant(*row, instruction_set_name(*set));
+    if (!number) refuse_suffix(name, how, *row);
+    require_number(takes_number(*row), "threads", most_threads);
+    return &add_variant(*row, std::to_string(*number));
+  }
+  const std::optional<fs::path> file = description_of(its_name);
+  if (!file) return nullptr;
+  if (how == each_word)
+    throw UsageError(
+        "{} asks for a step of each body for itself, which only mssim's own backends take: leave "
+        "\":{}\" out",
+        printable(name), each_word);
+  BackendProgram program = described_by(*file);
+  require_number(program.in_ranks, "ranks", most_ranks);
   program.ranks = *number;
   program.name = fmt::format("{}:{}", its_name, *number);
   return &add(program);
