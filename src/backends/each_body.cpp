@@ -91,21 +91,11 @@ class EachBody final : public Backend {
     return sum;
   }
   bool runs_on_host() const override { return first().runs_on_host(); }
-  bool is_in_single() const override { return first().is_in_single(); }
   std::string note() const override {
     std::string all;
     for (const std::string& note : of_each(&Backend::note))
       if (all.find(note) == std::string::npos) append_sentence(all, note);
     return all;
-  }
-  std::string reason_not_to_time() const override {
-    for (std::string& reason : of_each(&Backend::reason_not_to_time))
-      if (!reason.empty()) return std::move(reason);
-    return {};
-  }
-  std::string reason_for_excess() const override { return first().reason_for_excess(); }
-  void rest() override {
-    for (const OneBody& body : bodies_) body.backend->rest();
   }
 
  private:

@@ -89,10 +89,7 @@ class NotedBackend final : public Backend {
     return number_ == 0 ? std::optional<std::uint64_t>(1) : std::nullopt;
   }
   bool runs_on_host() const override { return false; }
-  bool is_in_single() const override { return false; }
   std::string note() const override { return "slow here"; }
-  std::string reason_not_to_time() const override { return number_ == 1 ? "the second waits" : ""; }
-  void rest() override { steps_.push_back(-1); }
 
  private:
   State state_;
@@ -118,12 +115,7 @@ TEST(EachBody, StepsThemInTurnAndAnswersForAll) {
   EXPECT_EQ(each->stored_springs(), 1 + springs.at(1));
   EXPECT_EQ(each->device(), "a device");
   EXPECT_FALSE(each->runs_on_host());
-  EXPECT_FALSE(each->is_in_single());
   EXPECT_EQ(each->note(), "slow here") << "once";
-  EXPECT_EQ(each->reason_not_to_time(), "the second waits");
-  steps.clear();
-  each->rest();
-  EXPECT_THAT(steps, ElementsAre(-1, -1));
   EXPECT_TRUE(same_state(each->state(), system.start));
 }
 
