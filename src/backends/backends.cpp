@@ -165,8 +165,7 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);
   if (backend.program != nullptr)
-    return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
-                      integrator, dt_s);
+    return make_process_backend(*backend.program, system, integrator, dt_s, options);
   if (const std::string reason = unsupported_reason(backend, integrator); !reason.empty())
     throw Unsupported(reason);
   require_threads(backend, options);

@@ -206,14 +206,17 @@ class WindowBackend : public Backend {
   virtual State window(const GridWindow& window) const = 0;
 };
 
-/// Moves positions back along the velocities, from those that an integrator `seconds` ahead uses to those of
-/// the state. A node that this would move below the floor (its height in m), because it has just touched it,
-/// is put on the floor.
+/// The state with its positions moved along the velocities, to those that an integrator `seconds` ahead uses.
+State moved_ahead(State state, double seconds);
+
+/// Moves positions back along the velocities, from those that such an integrator uses to those of the state.
+/// A node that this would move below the floor (its height in m), because it has just touched it, is put on
+/// the floor.
 void move_back(State& state, double seconds, double floor);
 
 /// Adapts `backend`, whose stages see positions integrator.ahead of a step ahead of the state's: moves states
 /// along their velocities on the way in, and back on the way out. `system` must outlive it. An integrator
-/// that is not ahead leaves the backend unchanged.
+/// that is not ahead leaves the backend unchanged. (A backend that is a user's program does this itself.)
 std::unique_ptr<Backend> step_ahead(std::unique_ptr<Backend> backend, const System& system,
                                     const Integrator& integrator, double dt_s);
 

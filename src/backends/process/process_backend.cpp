@@ -163,7 +163,12 @@ class ProcessBackend final : public WindowBackend {
   }
 
   void set_state(const State& state) override {
-    failing_alone([&] { state_file_.write(state); });
+    failing_alone([&] {
+      if (ahead_s_ == 0)
+        state_file_.write(state);
+      else
+        state_file_.write(moved_ahead(state, ahead_s_));
+    });
     request("set");
   }
 
@@ -174,9 +179,7 @@ class ProcessBackend final : public WindowBackend {
   void restart() override { request(fmt::format("restart {:.17g}", ahead_s_)); }
 
   State window(const GridWindow& window) const override {
-    State state = get(fmt::format("get {} {} {} {}", window.row, window.column, window.rows, window.columns));
-    if (ahead_s_ != 0) move_back(state, ahead_s_, floor_height_);
-    return state;
+    return get(fmt::format("get {} {} {} {}", window.row, window.column, window.rows, window.columns));
   }
 
   std::string device() const override { return introduction_.device; }
@@ -262,7 +265,9 @@ class ProcessBackend final : public WindowBackend {
     failing_alone([&] { state_file_.clear(); });
     request(line);
     try {
-      return state_file_.read();
+      State state = state_file_.read();
+      if (ahead_s_ != 0) move_back(state, ahead_s_, floor_height_);
+      return state;
     } catch (const StateFileFailure& failure) {
       fail(fmt::format("{} when it was asked \"{}\"", failure.what(), line));
     }
@@ -351,8 +356,11 @@ std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& progra
   // Catch these signals even if nothing else does yet: this backend's folders must be removed.
   const EndingSignals during_preparation(note_ending_signal, 0);
   return failing_alone([&] {
-    return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options,
-                                            window_nodes.value_or(system.nodes()));
+    auto backend = std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options,
+                                                    window_nodes.value_or(system.nodes()));
+    // The program has begun at the positions of the state; windows begin with a restart.
+    if (integrator.ahead != 0 && !window_nodes) backend->set_state(system.start);
+    return backend;
   });
 }
 

@@ -57,10 +57,10 @@ int processors_of(const BackendProgram& program, const ExecutionOptions& options
 
 /// Starts the program for a cloth or bodies and waits until it is prepared. `program` and `system` must
 /// outlive the backend. `window_nodes`: nodes of every window that will be requested, if `system` is an
-/// outline of a cloth and the program has windows; the backend moves the states of an integrator that is
-/// ahead. A call takes about 15 us in addition to the program's work (measured with tests/backends/process/
-/// on two cores of an AMD EPYC, Zen 4). Throws Unavailable, Unsupported and, like each call of the backend,
-/// BackendFailure if the program violates docs/protocol.md.
+/// outline of a cloth and the program has windows. The backend moves the states of an integrator that is
+/// ahead (step_ahead). A call takes about 15 us in addition to the program's work (measured with
+/// tests/backends/process/ on two cores of an AMD EPYC, Zen 4). Throws Unavailable, Unsupported and, like
+/// each call of the backend, BackendFailure if the program violates docs/protocol.md.
 std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& program, const System& system,
                                                     const Integrator& integrator, double dt_s,
                                                     const ExecutionOptions& options,
