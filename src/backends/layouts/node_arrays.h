@@ -40,7 +40,7 @@ std::vector<IndexRange> balanced_ranges(IndexRange items, std::size_t count, con
   return ranges;
 }
 
-/// Threads for so many units of work, of which each thread takes at least one: at most `most`.
+/// The largest number of threads, up to `most`, for which each has one of these units of work; at least one.
 constexpr std::size_t threads_for(std::size_t units, std::size_t most) {
   return std::clamp<std::size_t>(most, 1, std::max<std::size_t>(1, units));
 }

@@ -216,10 +216,10 @@ class ProcessBackend final : public WindowBackend {
  private:
   /// Calls `converse` and turns the program's failures into BackendFailure.
   template <class Converse>
-  std::invoke_result_t<Converse> conversing(const Converse& converse) const {
+  void conversing(const Converse& converse) const {
     using Cause = ConversationFailure::Cause;
     try {
-      return converse();
+      converse();
     } catch (const ConversationFailure& failure) {
       if (failure.cause != Cause::closed)
         fail(failure.what(), failure.cause == Cause::silence, failure.cause == Cause::silence);
