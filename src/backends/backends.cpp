@@ -117,7 +117,7 @@ std::span<const BackendInfo> garment_backends() {
 
 const BackendInfo* find_backend(std::string_view name) {
   for (const std::span<const BackendInfo> rows : {backends(), garment_backends()})
-    if (const auto row = std::ranges::find(rows, name, &BackendInfo::name); row != rows.end()) return &*row;
+    if (const BackendInfo* row = found_in(rows, name, &BackendInfo::name)) return row;
   return nullptr;
 }
 

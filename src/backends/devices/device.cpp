@@ -18,11 +18,10 @@ namespace mssim {
 namespace {
 
 std::string listing(std::span<const OpenclDevice> devices) {
-  std::string text;
-  for (const OpenclDevice& device : devices)
-    text +=
-        fmt::format("{}{} ({}, {})", text.empty() ? "" : ", ", device.number, device.name, device.platform);
-  return text;
+  const auto shown = [](const OpenclDevice& device) {
+    return fmt::format("{} ({}, {})", device.number, device.name, device.platform);
+  };
+  return join(mapped<std::string>(devices, shown), ", ");
 }
 
 struct ErrorName {
@@ -195,10 +194,9 @@ void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> b
 }
 
 std::string opencl_failure(std::string_view call, int error) {
-  const auto known = std::find_if(error_names.begin(), error_names.end(),
-                                  [&](const ErrorName& entry) { return entry.code == error; });
+  const ErrorName* known = found_in(error_names, error, &ErrorName::code);
   return fmt::format("the OpenCL call {} failed with {} ({})", call,
-                     known == error_names.end() ? "an unknown error" : std::string(known->name), error);
+                     known ? known->name : std::string_view("an unknown error"), error);
 }
 
 }  // namespace mssim

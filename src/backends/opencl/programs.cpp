@@ -9,6 +9,7 @@
 
 #include "backends/devices/device_queue.h"
 #include "model/system.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -276,15 +277,12 @@ std::string stage_kernel_name(std::size_t stage) { return fmt::format("stage_{}"
 
 std::vector<Pair> stage_arguments(const StoredStage& stage) {
   std::vector<Pair> pairs;
-  const auto add = [&](Pair arrays) {
-    if (std::find(pairs.begin(), pairs.end(), arrays) == pairs.end()) pairs.push_back(arrays);
-  };
   const Stage& its = stage.stage();
   for (std::size_t i = 0; i < pair_kinds; ++i) {
     const Pair pair = static_cast<Pair>(i);
     if (its.gather == pair || reads(its, position_slot(pair)) || reads(its, velocity_slot(pair)))
-      add(stage.stored(pair));
-    if (writes(its, pair)) add(stage.written(pair));
+      add_once(pairs, stage.stored(pair));
+    if (writes(its, pair)) add_once(pairs, stage.written(pair));
   }
   return pairs;
 }
