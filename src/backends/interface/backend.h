@@ -135,11 +135,15 @@ class Backend {
   virtual std::optional<std::uint64_t> stored_springs() const { return std::nullopt; }
   /// Do the steps run on this machine's CPU and memory, with whose peaks the roofline compares?
   virtual bool runs_on_host() const { return true; }
+  /// Caveats for readers of its times, for example iteration limits that its steps have reached; or empty.
+  virtual std::string note() const { return {}; }
+
+  // Only users' programs answer these otherwise: a backend that steps with another of mssim's own need not
+  // pass them on.
+
   /// Does it compute in single precision? The roofline counts numbers of four bytes. False only of a program
   /// that says so: the row of mssim's own backends knows (BackendInfo::in_double).
   virtual bool is_in_single() const { return true; }
-  /// Caveats for readers of its times, for example iteration limits that its steps have reached; or empty.
-  virtual std::string note() const { return {}; }
   /// Why its times are meaningless on this machine although its steps are right; or empty.
   virtual std::string reason_not_to_time() const { return {}; }
   /// Why it uses more CPUs than requested, if it does.
