@@ -19,7 +19,7 @@ namespace {
 
 PairLayout record_layout(const SlicedGraph& graph) {
   PairLayout pair(record_floats * graph.slots(), 1);
-  pair.component = {0, 1, 2, 4, 5, 6};
+  pair.to_velocity = record_floats / 2;
   for (const std::uint32_t slot : graph.slot) pair.node.push_back(record_floats * slot);
   return pair;
 }

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "backends/layouts/node_arrays.h"
 #include "backends/opencl/programs.h"
 #include "integrators/coefficients.h"
 #include "kernels/parameters.h"
@@ -45,10 +46,9 @@ void OpenclBackend::write_state(const OpenclBuffer<float>& buffer, const PairLay
   opencl_call<std::runtime_error>([&] {
     buffer.write([&](std::span<float> memory) {
       const auto put = [&](std::size_t offset, std::size_t node) {
-        const Vec3d &x = state.position[node], &v = state.velocity[node];
-        const std::array values{x.x, x.y, x.z, v.x, v.y, v.z};
-        for (std::size_t i = 0; i < values.size(); ++i)
-          memory[first + offset + layout.component[i]] = static_cast<float>(values[i]);
+        float* const x = memory.data() + first + offset;
+        write_vector(x, layout.step, state.position[node]);
+        write_vector(x + layout.to_velocity, layout.step, state.velocity[node]);
       };
       for (std::size_t node = 0; node < layout.node.size(); ++node) put(layout.node[node], node);
       for (const auto& [offset, node] : layout.copies) put(offset, node);
@@ -60,9 +60,9 @@ State OpenclBackend::read_state(const OpenclBuffer<float>& buffer) const {
   return opencl_call<std::runtime_error>([&] {
     return buffer.read([&](std::span<const float> memory) {
       State state;
-      for (const std::size_t node : layout_.node) {
-        const auto number = [&](std::size_t i) { return double{memory[node + layout_.component[i]]}; };
-        state.add({number(0), number(1), number(2)}, {number(3), number(4), number(5)});
+      for (const std::size_t offset : layout_.node) {
+        const float* const x = memory.data() + offset;
+        state.add(read_vector(x, layout_.step), read_vector(x + layout_.to_velocity, layout_.step));
       }
       return state;
     });

@@ -21,14 +21,15 @@ namespace mssim {
 /// Layout of a topology's nodes in the buffer of a pair.
 struct PairLayout {
   std::size_t floats;             ///< in the buffer
-  std::vector<std::size_t> node;  ///< [nodes] offset of the node's numbers
+  std::vector<std::size_t> node;  ///< [nodes] offset of the node's x
   /// Copies of nodes: offset and node. Kernels keep them up to date.
   std::vector<std::pair<std::size_t, std::size_t>> copies;
-  std::array<std::size_t, 6> component;  ///< offsets from there of x, y, z, u, v, w
+  std::size_t step;         ///< floats from one component of a vector to the next
+  std::size_t to_velocity;  ///< floats from a node's x to its velocity
 
-  /// Components `step` floats apart, and no nodes yet.
-  PairLayout(std::size_t of_buffer, std::size_t step)
-      : floats(of_buffer), component{0, step, 2 * step, 3 * step, 4 * step, 5 * step} {}
+  /// Six components at equal distances, and no nodes yet.
+  PairLayout(std::size_t of_buffer, std::size_t component_step)
+      : floats(of_buffer), step(component_step), to_velocity(3 * component_step) {}
 };
 
 /// Common part of all OpenCL backends: a device, the kernels' arguments, and two sets of launches. Buffers
