@@ -214,12 +214,12 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   return step_ahead(make(system, integrator, dt_s, options), system, integrator, dt_s);
 }
 
-std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, const System& outline,
-                                                   const Integrator& integrator, double dt_s,
-                                                   const ExecutionOptions& options,
-                                                   std::size_t window_nodes) {
+std::unique_ptr<Backend> make_window_backend(const BackendInfo& backend, const System& outline,
+                                             const Integrator& integrator, double dt_s,
+                                             const ExecutionOptions& options,
+                                             const std::vector<GridWindow>& windows) {
   if (!has_windows(backend)) throw Unsupported("it needs the whole cloth");
-  return make_process_backend(*backend.program, outline, integrator, dt_s, options, window_nodes);
+  return make_process_backend(*backend.program, outline, integrator, dt_s, options, windows);
 }
 
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,

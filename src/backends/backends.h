@@ -117,11 +117,12 @@ using MakeBackend = std::function<std::unique_ptr<Backend>(const System& system)
 /// et al. step objects. Throws Unsupported for a cloth or a garment, and what `make` throws.
 std::unique_ptr<Backend> make_for_each_body(const System& system, const MakeBackend& make);
 
-/// Makes the program of `backend` for a cloth that is only outlined (outline_of_cloth). `window_nodes`: nodes
-/// of every window that will be requested. Throws Unavailable, Unsupported or BackendFailure.
-std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, const System& outline,
-                                                   const Integrator& integrator, double dt_s,
-                                                   const ExecutionOptions& options, std::size_t window_nodes);
+/// Makes the program of `backend` for a cloth that is only outlined (outline_of_cloth). Its states are those
+/// of the nodes of `windows` (make_process_backend). Throws Unavailable, Unsupported or BackendFailure.
+std::unique_ptr<Backend> make_window_backend(const BackendInfo& backend, const System& outline,
+                                             const Integrator& integrator, double dt_s,
+                                             const ExecutionOptions& options,
+                                             const std::vector<GridWindow>& windows);
 
 /// Whether it supports windows of a cloth that no single process has as a whole.
 inline bool has_windows(const BackendInfo& backend) {

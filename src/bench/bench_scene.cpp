@@ -100,17 +100,15 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const 
       return verify_garment(*combination.backend, *job.system, found->second, job.dt_s);
     };
   if (job.windowed)
-    return [&job, &integrator,
-            reference = std::make_shared<const WindowReferences>(run_window_references(
-                *job.windowed, integrator, job.dt_s, static_cast<std::size_t>(job.execution.threads)))](
+    return [&job, reference = std::make_shared<const WindowReferences>(run_window_references(
+                      *job.windowed, integrator, job.dt_s, static_cast<std::size_t>(job.execution.threads)))](
                Combination& combination, const BackendInfo& /*info*/) {
-      Verification found =
-          verify_windows(*combination.windows, *job.windowed, integrator, *reference, job.dt_s);
+      Verification found = verify_windows(*combination.backend, *reference);
       if (found.failure) return found;
       append_sentence(combination.row.note, share_seen(*job.windowed));
       combination.most_steps = reference->steps;
-      combination.compare_windows = [&job, &integrator, reference](WindowBackend& backend, int steps) {
-        return compare_windows(backend, *job.windowed, integrator, *reference, steps, job.dt_s);
+      combination.compare_windows = [reference](Backend& backend, const State& state, int steps) {
+        return compare_windows(backend, state, *reference, steps);
       };
       return found;
     };

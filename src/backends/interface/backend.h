@@ -200,16 +200,6 @@ struct MemoryUse {
 /// Memory use of SpringList<float>.
 inline constexpr MemoryUse spring_list_memory{.node = 17, .pair_node = 24};
 
-/// A backend for a cloth that no single process has as a whole: it builds the scene itself, and returns the
-/// states of some nodes at a time. set_state and state must not be called.
-class WindowBackend : public Backend {
- public:
-  /// Returns to the scene's start state.
-  virtual void restart() = 0;
-  /// The current state of the window's nodes, row by row.
-  virtual State window(const GridWindow& window) const = 0;
-};
-
 /// The state with its positions moved along the velocities, to those that an integrator `seconds` ahead uses.
 State moved_ahead(State state, double seconds);
 

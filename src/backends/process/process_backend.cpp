@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -116,16 +117,16 @@ void require_support(const BackendProgram& program, const System& system, const 
     throw Unsupported(reason);
 }
 
-class ProcessBackend final : public WindowBackend {
+class ProcessBackend final : public Backend {
  public:
-  /// `nodes`: number of nodes in exchanged states.
   ProcessBackend(const BackendProgram& program, const System& system, const Integrator& integrator,
-                 double dt_s, const ExecutionOptions& options, std::size_t nodes)
+                 double dt_s, const ExecutionOptions& options, const std::vector<GridWindow>& windows)
       : program_(program),
         ahead_s_(integrator.ahead * dt_s),
         floor_height_(system.floor.height),
+        windows_(windows),
         conversation_(folder_.path()),
-        state_file_(nodes, folder_.path()) {
+        state_file_(windows.empty() ? system.nodes() : windows.front().nodes(), folder_.path()) {
     if (folder_.path().native().find('\n') != std::string::npos)
       throw std::runtime_error(fmt::format(
           "no line to a program can name {}, which has a line break; set TMPDIR to another folder",
@@ -163,6 +164,7 @@ class ProcessBackend final : public WindowBackend {
   }
 
   void set_state(const State& state) override {
+    if (!windows_.empty()) return request(fmt::format("restart {:.17g}", ahead_s_));
     failing_alone([&] {
       if (ahead_s_ == 0)
         state_file_.write(state);
@@ -174,12 +176,14 @@ class ProcessBackend final : public WindowBackend {
 
   void step(int count) override { request(fmt::format("step {}", count), true); }
 
-  State state() const override { return get("get"); }
-
-  void restart() override { request(fmt::format("restart {:.17g}", ahead_s_)); }
-
-  State window(const GridWindow& window) const override {
-    return get(fmt::format("get {} {} {} {}", window.row, window.column, window.rows, window.columns));
+  State state() const override {
+    if (windows_.empty()) return get("get");
+    State all;
+    for (const auto& [row, column, rows, columns] : windows_) {
+      const State part = get(fmt::format("get {} {} {} {}", row, column, rows, columns));
+      for (std::size_t i = 0; i < part.position.size(); ++i) all.add(part.position[i], part.velocity[i]);
+    }
+    return all;
   }
 
   std::string device() const override { return introduction_.device; }
@@ -296,6 +300,7 @@ class ProcessBackend final : public WindowBackend {
   const BackendProgram& program_;
   const double ahead_s_;  ///< time by which the program's positions are ahead of the state's
   const double floor_height_;
+  const std::vector<GridWindow> windows_;  ///< whose nodes states have; empty: all nodes
   TemporaryFolder folder_;
   // Requests do not change the simulation, so const functions may send them.
   mutable Conversation conversation_;
@@ -347,19 +352,18 @@ int processors_of(const BackendProgram& program, const ExecutionOptions& options
   return count.ranks * count.threads;
 }
 
-std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& program, const System& system,
-                                                    const Integrator& integrator, double dt_s,
-                                                    const ExecutionOptions& options,
-                                                    std::optional<std::size_t> window_nodes) {
+std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
+                                              const Integrator& integrator, double dt_s,
+                                              const ExecutionOptions& options,
+                                              const std::vector<GridWindow>& windows) {
   if (!program.missing.empty()) throw Unavailable(program.missing);
   require_support(program, system, integrator);
   // Catch these signals even if nothing else does yet: this backend's folders must be removed.
   const EndingSignals during_preparation(note_ending_signal, 0);
   return failing_alone([&] {
-    auto backend = std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options,
-                                                    window_nodes.value_or(system.nodes()));
+    auto backend = std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options, windows);
     // The program has begun at the positions of the state; windows begin with a restart.
-    if (integrator.ahead != 0 && !window_nodes) backend->set_state(system.start);
+    if (integrator.ahead != 0 && windows.empty()) backend->set_state(system.start);
     return backend;
   });
 }

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,14 +55,15 @@ RankCount ranks_of(const BackendProgram& program, const ExecutionOptions& option
 int processors_of(const BackendProgram& program, const ExecutionOptions& options);
 
 /// Starts the program for a cloth or bodies and waits until it is prepared. `program` and `system` must
-/// outlive the backend. `window_nodes`: nodes of every window that will be requested, if `system` is an
-/// outline of a cloth and the program has windows. The backend moves the states of an integrator that is
-/// ahead (step_ahead). A call takes about 15 us in addition to the program's work (measured with
+/// outlive the backend. `windows`: of equal size, if `system` is an outline of a cloth and the program has
+/// windows. States are then those of their nodes, window by window and row by row, and set_state returns to
+/// the scene's start, whatever it is given. The backend moves the states of an integrator that is ahead
+/// (step_ahead). A call takes about 15 us in addition to the program's work (measured with
 /// tests/backends/process/ on two cores of an AMD EPYC, Zen 4). Throws Unavailable, Unsupported and, like
 /// each call of the backend, BackendFailure if the program violates docs/protocol.md.
-std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& program, const System& system,
-                                                    const Integrator& integrator, double dt_s,
-                                                    const ExecutionOptions& options,
-                                                    std::optional<std::size_t> window_nodes = {});
+std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
+                                              const Integrator& integrator, double dt_s,
+                                              const ExecutionOptions& options,
+                                              const std::vector<GridWindow>& windows = {});
 
 }  // namespace mssim

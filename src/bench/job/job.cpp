@@ -25,12 +25,7 @@ struct SampleTime {
 };
 
 /// Returns to the state from which samples start.
-void restart(Combination& combination) {
-  if (combination.windows)
-    combination.windows->restart();
-  else
-    combination.backend->set_state(*combination.start);
-}
+void restart(Combination& combination) { combination.backend->set_state(*combination.start); }
 
 /// The same, with threads awake and caches filled.
 void warm_up(Combination& combination) {
@@ -147,7 +142,6 @@ void end(Combination& combination) {
   row.program_output = combination.backend->end();
   combination.backend.reset();
   combination.dressing = nullptr;
-  combination.windows = nullptr;
 }
 
 void fail(Combination& combination, const std::string& status) {
@@ -188,10 +182,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
       combination.dressing = dressing.get();
       combination.backend = std::move(dressing);
     } else if (job.windowed) {
-      auto windows = make_window_backend(info, *job.system, integrator, job.dt_s, job.execution,
-                                         job.windowed->windows.front().nodes());
-      combination.windows = windows.get();
-      combination.backend = std::move(windows);
+      combination.backend =
+          make_window_backend(info, *job.system, integrator, job.dt_s, job.execution, job.windowed->windows);
     } else {
       combination.backend = make_backend(info, *job.system, integrator, job.dt_s, job.execution);
     }
@@ -249,7 +241,7 @@ void calibrate(Combination& combination, const SceneJob& job) {
   attempt(combination, [&] {
     find_sample_steps(combination, job);
     if (!combination.backend) return;
-    if (combination.windows)
+    if (job.windowed)
       combination.steps = *std::prev(std::ranges::upper_bound(window_looks, combination.steps));
     combination.backend->rest();
   });
@@ -261,24 +253,22 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
   attempt(combination, [&] {
     const SampleTime time = time_sample(combination, combination.steps);
     if (const auto costs = combination.backend->communication()) combination.communication.push_back(*costs);
-    std::optional<State> state;
-    if (!combination.windows) {
-      TimedState end = read_state(*combination.backend, *combination.start, time.wall_s);
-      state = std::move(end.state);
-      combination.postponed_seconds.push_back(end.postponed_s);
-    }
+    const TimedState end = job.windowed ? TimedState{combination.backend->state()}
+                                        : read_state(*combination.backend, *combination.start, time.wall_s);
+    combination.postponed_seconds.push_back(end.postponed_s);
     combination.sample_seconds.push_back(time.wall_s);
-    if (combination.windows ? first_bad_node(*combination.windows, *job.windowed) : first_bad_node(*state)) {
+    if (first_bad_node(end.state)) {
       const std::optional<BlowUp> blow_up =
-          combination.windows ? find_blow_up(*combination.windows, *job.windowed, combination.steps)
-                              : find_blow_up(*combination.backend, *combination.start, combination.steps);
+          job.windowed ? find_blow_up(*combination.backend, *job.windowed, combination.steps)
+                       : find_blow_up(*combination.backend, *combination.start, combination.steps);
       fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s) + std::string(unless_alone)
                                               : std::string(finite_in_the_next)));
     } else {
-      if (first && state) combination.checked = sample_end(*job.system, *state, combination.steps, *first);
+      if (first) combination.checked = sample_end(*job.system, end.state, combination.steps, *first);
       combination.backend->rest();
-      if (combination.windows && combination.compare_windows)
-        if (const auto wrong = combination.compare_windows(*combination.windows, combination.steps).failure)
+      if (combination.compare_windows)
+        if (const auto wrong =
+                combination.compare_windows(*combination.backend, end.state, combination.steps).failure)
           fail(combination, "failed: " + *wrong);
     }
     combination.processors.push_back(time.processor_s / time.wall_s);
@@ -306,8 +296,7 @@ void time_frames(Combination& combination, const SceneJob& job, const std::funct
         frames_ms.push_back(1000 * seconds_of([&] { combination.backend->step(steps); }));
       }
     }
-    if (combination.windows ? first_bad_node(*combination.windows, *job.windowed)
-                            : first_bad_node(combination.backend->state()))
+    if (first_bad_node(combination.backend->state()))
       return fail(combination,
                   fmt::format("failed: not finite after frames of {}", pluralize(steps, "step")));
     combination.backend->rest();
@@ -336,7 +325,7 @@ void count_events(Combination& combination, const SceneJob& job) {
 void require_prompt_steps(Combination& combination, const SceneJob& job) {
   // Because a busy machine delays single readings.
   constexpr std::size_t fewest_samples = 3;
-  if (combination.steps == 1 || combination.windows || combination.sample_seconds.empty()) return;
+  if (combination.steps == 1 || combination.sample_seconds.empty()) return;
   for (;;) {
     const double sample = median(combination.sample_seconds);
     const double postponed = median_interval(combination.postponed_seconds).low;

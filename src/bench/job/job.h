@@ -118,7 +118,6 @@ struct Combination {
   const State* start = nullptr;         ///< start state of every sample of a round
   std::unique_ptr<Backend> backend;     ///< null if the row has no times
   DressingBackend* dressing = nullptr;  ///< the same backend, for a garment
-  WindowBackend* windows = nullptr;     ///< the same backend, for a cloth in windows
   int steps_taken = 0;                  ///< since the scene's start, before it is verified
   int steps = 1;                        ///< in a sample
   int most_steps = max_sample_steps;    ///< per sample, so that its end can be compared with the reference
@@ -128,11 +127,11 @@ struct Combination {
   std::vector<Communication> communication;  ///< for each sample of this run, if the backend reports it
   double step_seconds = 0;                   ///< found by calibrate; 0 before
   std::vector<double> sample_seconds;        ///< wall time of each sample of this run
-  std::vector<double> postponed_seconds;     ///< for each sample of this run (TimedState)
+  std::vector<double> postponed_seconds;     ///< for each sample of this run (TimedState); 0 in windows
   std::optional<SampleEnd> checked;          ///< end of the sample that is to be checked
-  /// Compares the windows after this number of steps; empty if the cloth is not in windows or was verified by
-  /// an earlier process.
-  std::function<Verification(WindowBackend& backend, int steps)> compare_windows;
+  /// Compares the backend's state after this number of steps in the windows; empty if the cloth is not in
+  /// windows or was verified by an earlier process.
+  std::function<Verification(Backend& backend, const State& state, int steps)> compare_windows;
 };
 
 /// Makes the backend and takes one step, for PreparationCosts; if that is impossible, the row's status has

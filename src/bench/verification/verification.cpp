@@ -163,17 +163,11 @@ bool is_in_the_air(const State& state, const Floor& floor) {
 }
 
 std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps) {
-  return find_blow_up(
-      [&](int count) {
-        backend.set_state(from);
-        backend.step(count);
-        return first_bad_node(backend.state());
-      },
-      steps);
-}
-
-std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t>(int steps)>& bad_node_after,
-                                   int steps) {
+  const auto bad_node_after = [&](int count) {
+    backend.set_state(from);
+    backend.step(count);
+    return first_bad_node(backend.state());
+  };
   int good = 0, bad = steps;
   std::optional<std::size_t> node = bad_node_after(bad);
   if (!node) return std::nullopt;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -37,10 +36,6 @@ bool is_in_the_air(const State& state, const Floor& floor);
 /// Finds the first bad step of a simulation that was bad `steps` steps after `from`, by bisection: a number
 /// that is not finite stays so. Leaves the backend in any state. Empty if the repeated simulation is good.
 std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps);
-
-/// Finds the first bad step with any function that returns the first bad node after a number of steps.
-std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t>(int steps)>& bad_node_after,
-                                   int steps);
 
 /// Remedy for a simulation that blows up with the scene's time step.
 inline constexpr std::string_view shorter_scene_step = "take a smaller dt_s or \"auto\"";

@@ -37,6 +37,11 @@ constexpr double row_step = 0.7548776662466927, column_step = 0.5698402909980532
 constexpr int leg = 20;  ///< steps after which the domain is cut to the rows that are still right
 static_assert(std::ranges::find(window_looks, leg) != window_looks.end() && verification_steps % leg == 0);
 
+/// Number, in the whole cloth, of a node of a window.
+std::size_t node_of_cloth(const GridWindow& window, std::size_t node, const GridPatch& grid) {
+  return (window.row + node / window.columns) * grid.columns + window.column + node % window.columns;
+}
+
 /// The nodes on which the states of a window after `steps` steps depend.
 GridWindow domain_for(const GridWindow& window, int steps, const Integrator& integrator,
                       const GridPatch& grid) {
@@ -47,18 +52,16 @@ GridWindow domain_for(const GridWindow& window, int steps, const Integrator& int
           static_cast<std::uint32_t>(rows.count), static_cast<std::uint32_t>(columns.count)};
 }
 
+/// Appends `count` nodes of a state, from the `first` on.
+void append(State& some, const State& all, std::size_t first, std::size_t count) {
+  for (std::size_t i = first; i < first + count; ++i) some.add(all.position[i], all.velocity[i]);
+}
+
 /// The part of a state of window `from` that belongs to window `to`.
 State cut(const State& state, const GridWindow& from, const GridWindow& to) {
   State part;
-  for (std::uint32_t row = to.row; row < to.row + to.rows; ++row) {
-    const std::size_t first = std::size_t{row - from.row} * from.columns + (to.column - from.column);
-    const auto copy = [&](const std::vector<Vec3d>& all, std::vector<Vec3d>& some) {
-      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-      some.insert(some.end(), begin, begin + to.columns);
-    };
-    copy(state.position, part.position);
-    copy(state.velocity, part.velocity);
-  }
+  for (std::uint32_t row = to.row; row < to.row + to.rows; ++row)
+    append(part, state, std::size_t{row - from.row} * from.columns + (to.column - from.column), to.columns);
   return part;
 }
 
@@ -147,7 +150,7 @@ double window_reference_bytes(const Integrator& integrator, const GridWindow& wi
 
 WindowReferences run_window_references(const WindowedCloth& cloth, const Integrator& integrator, double dt_s,
                                        std::size_t at_once) {
-  WindowReferences all;
+  WindowReferences all{cloth, integrator, dt_s};
   all.windows.resize(cloth.windows.size());
   for_each_at_once(all.windows.size(), at_once, [&](std::size_t i) {
     all.windows[i] = run_window_reference(cloth, cloth.windows[i], integrator, dt_s);
@@ -162,49 +165,44 @@ WindowReferences run_window_references(const WindowedCloth& cloth, const Integra
   return all;
 }
 
-std::optional<std::size_t> first_bad_node(const WindowBackend& backend, const WindowedCloth& cloth) {
-  for (const GridWindow& window : cloth.windows)
-    if (const auto node = first_bad_node(backend.window(window)))
-      return node_of_cloth(window, *node, cloth.grid);
-  return std::nullopt;
+std::optional<BlowUp> find_blow_up(Backend& backend, const WindowedCloth& cloth, int steps) {
+  std::optional<BlowUp> blow_up = find_blow_up(backend, State{}, steps);
+  if (blow_up) {
+    const std::size_t of_window = cloth.windows.front().nodes();
+    blow_up->node =
+        node_of_cloth(cloth.windows[blow_up->node / of_window], blow_up->node % of_window, cloth.grid);
+  }
+  return blow_up;
 }
 
-std::optional<BlowUp> find_blow_up(WindowBackend& backend, const WindowedCloth& cloth, int steps) {
-  return find_blow_up(
-      [&](int count) {
-        backend.restart();
-        backend.step(count);
-        return first_bad_node(backend, cloth);
-      },
-      steps);
-}
-
-Verification verify_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
-                            const WindowReferences& reference, double dt_s) {
+Verification verify_windows(Backend& backend, const WindowReferences& reference) {
   if (reference.failure) return {.failure = reference.failure};
-  backend.restart();
+  backend.set_state(State{});
   backend.step(reference.steps);
-  return compare_windows(backend, cloth, integrator, reference, reference.steps, dt_s);
+  return compare_windows(backend, backend.state(), reference, reference.steps);
 }
 
-Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
-                             const WindowReferences& reference, int steps, double dt_s) {
+Verification compare_windows(Backend& backend, const State& state, const WindowReferences& reference,
+                             int steps) {
   Verification result;
   const std::string after = " after " + pluralize(steps, "step");
   double energy_off = 0, in_motion = 0, worst = 0;  // worst: in tolerances
+  std::size_t first = 0;                            // of the window's nodes
   for (const WindowReference& one : reference.windows) {
-    const State state = backend.window(one.window);
-    if (first_bad_node(state)) {
-      const auto blow_up = find_blow_up(backend, cloth, steps);
-      result.failure = blow_up ? describe(*blow_up, dt_s) : std::string(finite_in_the_next);
+    State part;
+    append(part, state, first, one.window.nodes());
+    first += one.window.nodes();
+    if (first_bad_node(part)) {
+      const auto blow_up = find_blow_up(backend, reference.cloth, steps);
+      result.failure = blow_up ? describe(*blow_up, reference.dt_s) : std::string(finite_in_the_next);
       return result;
     }
     const State& right = one.after(steps);
     const Energy expected = energy_of(one.system, right);
-    energy_off += energy_of(one.system, state).total() - expected.total();
+    energy_off += energy_of(one.system, part).total() - expected.total();
     in_motion += energy_in_motion(one.system, right, expected);
-    const double error = position_deviation(one.system, right, state);
-    const double tolerance = position_tolerance(one.system, integrator, steps);
+    const double error = position_deviation(one.system, right, part);
+    const double tolerance = position_tolerance(one.system, reference.integrator, steps);
     result.position_error = std::max(result.position_error.value_or(0), error);
     if (error <= tolerance || error / tolerance <= worst) continue;
     worst = error / tolerance;

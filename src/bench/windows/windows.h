@@ -27,11 +27,6 @@ struct WindowedCloth {
   std::uint64_t nodes() const { return std::uint64_t{grid.rows} * grid.columns; }
 };
 
-/// Number, in the whole cloth, of a node of a window.
-inline std::size_t node_of_cloth(const GridWindow& window, std::size_t node, const GridPatch& grid) {
-  return (window.row + node / window.columns) * grid.columns + window.column + node % window.columns;
-}
-
 /// Default number of windows for a cloth in `parts` parts.
 inline std::size_t usual_windows(std::size_t parts) { return parts + 8; }
 
@@ -66,11 +61,14 @@ struct WindowReference {
 /// Upper bound of the bytes of the reference of such a window.
 double window_reference_bytes(const Integrator& integrator, const GridWindow& window, const GridPatch& grid);
 
-/// The references of all windows of a cloth.
+/// The references of all windows of a cloth. Cloth and integrator must outlive them.
 struct WindowReferences {
-  std::vector<WindowReference> windows;
+  const WindowedCloth& cloth;
+  const Integrator& integrator;
+  double dt_s = 0;
+  std::vector<WindowReference> windows = {};
   int steps = 0;  ///< after which all windows have a state
-  std::optional<std::string> failure;
+  std::optional<std::string> failure = {};
 };
 
 /// Runs the references of all windows for verification_steps, `at_once` at the same time, each on the
@@ -86,22 +84,19 @@ struct WindowReferences {
 WindowReferences run_window_references(const WindowedCloth& cloth, const Integrator& integrator, double dt_s,
                                        std::size_t at_once);
 
-/// The first node in the windows that is not finite, by its number in the whole cloth.
-std::optional<std::size_t> first_bad_node(const WindowBackend& backend, const WindowedCloth& cloth);
+/// find_blow_up from the scene's start for a backend whose states are those of the windows
+/// (make_window_backend). The node has its number in the whole cloth.
+std::optional<BlowUp> find_blow_up(Backend& backend, const WindowedCloth& cloth, int steps);
 
-/// The first of `steps` steps from the scene's start after which a window is not finite.
-std::optional<BlowUp> find_blow_up(WindowBackend& backend, const WindowedCloth& cloth, int steps);
-
-/// Compares every window of the backend, which is `steps` steps after the scene's start. `steps` is one of
-/// window_looks, at most reference.steps. The position error is the largest of all nodes, each window has its
-/// own tolerance, and the energy is that of all windows together. There is no hash of the state. Leaves the
-/// backend in any state.
-Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
-                             const WindowReferences& reference, int steps, double dt_s);
+/// Compares every window of `state`, which the backend has `steps` steps after the scene's start. `steps` is
+/// one of window_looks, at most reference.steps. The position error is the largest of all nodes, each window
+/// has its own tolerance, and the energy is that of all windows together. There is no hash of the state. Only
+/// steps the backend if the state is not finite.
+Verification compare_windows(Backend& backend, const State& state, const WindowReferences& reference,
+                             int steps);
 
 /// Steps the backend from the scene's start for reference.steps steps and compares it.
-Verification verify_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
-                            const WindowReferences& reference, double dt_s);
+Verification verify_windows(Backend& backend, const WindowReferences& reference);
 
 /// "verified in 9 windows, 0.4 % of the nodes".
 std::string share_seen(const WindowedCloth& cloth);
