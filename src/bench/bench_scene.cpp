@@ -24,50 +24,39 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Peaks of this machine, by number of threads and bytes of the working set.
-using Peaks = std::map<std::pair<int, std::size_t>, MachinePeak>;
-
-/// Size of a step of the combination, on a scene of this size.
-StepSize size_for(const Combination& combination, const StepSize& scene) {
-  return combination.stored_springs ? with_stored_springs(scene, *combination.stored_springs) : scene;
-}
-
-/// Key of the peaks that the combination is compared with.
-std::pair<int, std::size_t> peak_key(const Combination& combination, const StepSize& scene) {
-  return {combination.row.threads,
-          static_cast<std::size_t>(working_set_bytes(*combination.integrator, size_for(combination, scene)))};
-}
-
-/// Measures the peaks that the combinations are compared with. There are none for a garment, whose work per
-/// step depends on what touches and what is sewn; for a cloth in windows; for implicit integrators, whose
-/// solvers iterate until they converge; for a program that reports more threads than make sense; and for a
-/// job that only takes samples.
-Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
-                    const BenchWatch& watch) {
-  Peaks peaks;
-  if (job.garment || job.verified || job.windowed) return peaks;
-  for (const Combination& combination : combinations) {
-    if (is_implicit(*combination.integrator) || !combination.in_single || !combination.backend ||
-        !combination.on_host || thread_excess(combination.row.threads))
+/// Sets the least costs of the combinations' steps, and measures the peaks that they are compared with.
+/// Implicit integrators, whose solvers iterate until they converge, have neither. There are no peaks for a
+/// garment, whose work per step depends on what touches and what is sewn; for a cloth in windows; for a
+/// program that reports more threads than make sense; and for a job that only takes samples.
+void measure_peaks(const SceneJob& job, std::vector<Combination>& combinations, const BenchWatch& watch) {
+  const StepSize scene =
+      job.windowed ? StepSize{job.windowed->nodes(), job.windowed->springs, 0} : step_size(*job.system);
+  std::map<std::pair<int, std::size_t>, MachinePeak> peaks;  // by threads and bytes of the working set
+  for (Combination& combination : combinations) {
+    if (is_implicit(*combination.integrator) || !combination.in_single || !combination.backend) continue;
+    const Backend& backend = *combination.backend;
+    const std::optional<std::uint64_t> stored = backend.stored_springs();
+    const StepSize size = stored ? with_stored_springs(scene, *stored) : scene;
+    combination.cost = step_cost(*combination.integrator, size, backend.steps_per_pass());
+    const int threads = combination.row.threads;
+    if (job.garment || job.verified || job.windowed || !backend.runs_on_host() || thread_excess(threads))
       continue;
-    const auto [threads, bytes] = peak_key(combination, size);
-    if (peaks.contains({threads, bytes})) continue;
-    watch.progress("machine peak with " + pluralize(threads, "thread"), job.preparation);
-    peaks[{threads, bytes}] = measure_peak(threads, bytes);
+    const auto bytes = static_cast<std::size_t>(working_set_bytes(*combination.integrator, size));
+    const auto [peak, is_new] = peaks.try_emplace({threads, bytes});
+    if (is_new) {
+      watch.progress("machine peak with " + pluralize(threads, "thread"), job.preparation);
+      peak->second = measure_peak(threads, bytes);
+    }
+    combination.peak = peak->second;
   }
-  return peaks;
 }
 
-void compare_with_peaks(const Combination& combination, const StepSize& size, const Peaks& peaks,
-                        ResultRow& row) {
-  if (!row.ms_per_step || row.dressing || !combination.in_single || is_implicit(*combination.integrator))
-    return;
-  const StepCost cost =
-      step_cost(*combination.integrator, size_for(combination, size), combination.steps_per_pass);
+void compare_with_peak(const Combination& combination, ResultRow& row) {
+  if (!row.ms_per_step || row.dressing || !combination.cost) return;
   const double seconds = *row.ms_per_step / 1000;
-  row.gigabytes_per_second = cost.bytes / seconds / 1e9;
-  if (const auto peak = peaks.find(peak_key(combination, size)); combination.on_host && peak != peaks.end())
-    row.roofline_fraction = roofline_fraction(cost, seconds, peak->second);
+  row.gigabytes_per_second = combination.cost->bytes / seconds / 1e9;
+  if (combination.peak)
+    row.roofline_fraction = roofline_fraction(*combination.cost, seconds, *combination.peak);
   if (row.roofline_fraction && *row.roofline_fraction > 1)
     append_sentence(
         row.note,
@@ -267,8 +256,7 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
 }
 
 /// Rows of the samples so far. `are_checked`: the checks after the last round are done.
-std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, const StepSize& size,
-                               const Peaks& peaks, bool are_checked) {
+std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, bool are_checked) {
   std::vector<ResultRow> rows;
   for (const Combination& combination : combinations) {
     const auto serial = std::ranges::find_if(combinations, [&](const Combination& other) {
@@ -278,7 +266,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
     ResultRow& row = rows.emplace_back(combination.row);
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);
     summarise_costs(combination, row);
-    compare_with_peaks(combination, size, peaks, row);
+    compare_with_peak(combination, row);
     if (row.status == "ok" && !are_checked) append_sentence(row.note, unchecked_samples);
     require_finite(row);
   }
@@ -499,9 +487,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       if (combination.backend) calibrate(combination, job);
     }
   }
-  const StepSize size =
-      job.windowed ? StepSize{job.windowed->nodes(), job.windowed->springs, 0} : step_size(*job.system);
-  const Peaks peaks = measure_peaks(job, all, size, watch);
+  measure_peaks(job, all, watch);
 
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -527,7 +513,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       stopped = true;
       break;
     }
-    watch.after_round(rows_of(all, size, peaks, false));
+    watch.after_round(rows_of(all, false));
     measured_any = true;
   }
   // The deadline allowed fewer rounds than expected, or an earlier run took all of them: take one more, whose
@@ -544,7 +530,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   }
   watch.progress("check of the samples", 1);
   secrets.compare(all);
-  return rows_of(all, size, peaks, !stopped);
+  return rows_of(all, !stopped);
 }
 
 }  // namespace mssim

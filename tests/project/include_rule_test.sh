@@ -61,7 +61,7 @@ bench/results         text statistics integrators bench/machine
 bench/roofline        platform integrators model
 bench/verification    text statistics platform laws integrators model backends/interface backends
 bench/windows         text platform integrators model backends/interface backends/layouts backends bench/verification
-bench/job             text statistics platform integrators backends/interface backends/devices backends garment/fitting bench/results bench/verification bench/windows
+bench/job             text statistics platform integrators backends/interface backends/devices backends garment/fitting bench/results bench/roofline bench/verification bench/windows
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
 bench                 text platform statistics backends garment/stepping bench/roofline bench/verification bench/windows bench/job garment/bench
 guide                 text statistics platform laws integrators model backends/interface bench/verification backends

@@ -193,10 +193,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     row.threads = combination.backend->threads();
     append_sentence(row.note, combination.backend->note());
     append_sentence(row.note, excess_of(info, *combination.backend, job.execution));
-    combination.on_host = combination.backend->runs_on_host();
     combination.in_single = !info.in_double && combination.backend->is_in_single();
-    combination.steps_per_pass = combination.backend->steps_per_pass();
-    combination.stored_springs = combination.backend->stored_springs();
     restart(combination);
     row.first_step_ms = 1000 * seconds_of([&] { combination.backend->step(1); });
     row.peak_memory_bytes = info.program ? combination.backend->program_peak_bytes() : peak.rise();

@@ -14,6 +14,7 @@
 
 #include "backends/backends.h"
 #include "bench/results/result.h"
+#include "bench/roofline/roofline.h"
 #include "bench/verification/reference_cache.h"
 #include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
@@ -111,10 +112,9 @@ struct SceneJob : BenchSettings {
 struct Combination {
   ResultRow row;
   const Integrator* integrator = nullptr;
-  bool on_host = true;
   bool in_single = true;  ///< if not, its steps move other bytes than the roofline counts, so it gets none
-  int steps_per_pass = 0;
-  std::optional<std::uint64_t> stored_springs;
+  std::optional<StepCost> cost;         ///< of a step, if that can be counted
+  std::optional<MachinePeak> peak;      ///< with which the cost is compared, if it is
   const State* start = nullptr;         ///< start state of every sample of a round
   std::unique_ptr<Backend> backend;     ///< null if the row has no times
   DressingBackend* dressing = nullptr;  ///< the same backend, for a garment
