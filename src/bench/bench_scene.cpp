@@ -65,80 +65,6 @@ void compare_with_peak(const Combination& combination, ResultRow& row) {
             "take all steps, or was the machine busy when its peak was measured?");
 }
 
-/// Compares a backend with the reference.
-using Verifier = std::function<Verification(Combination& combination, const BackendInfo& info)>;
-
-/// Runs the reference; for a garment, when a backend is first compared with it. `draped`: the settled
-/// garment, which must outlive the verifier; none if the scene is not a garment or cannot be dressed. Sets
-/// `step_seconds` to the reference's time per step if the ends of samples are compared with it too. The
-/// verifier is empty if no backend supports the scene with this integrator.
-Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const std::optional<State>& draped,
-                       double& step_seconds) {
-  if (job.garment && !dresses(integrator)) return {};
-  if (job.garment)
-    return [&job, &integrator, &draped,
-            references = std::map<decltype(BackendInfo::make_dressing_reference), GarmentReference>()](
-               Combination& combination, const BackendInfo& info) mutable {
-      const auto make = info.make_dressing_reference;
-      auto found = references.find(make);
-      if (found == references.end())
-        found = references
-                    .emplace(make, run_garment_reference(*make(*job.system, integrator, job.dt_s),
-                                                         *job.system, integrator, job.dt_s, *draped))
-                    .first;
-      return verify_garment(*combination.backend, *job.system, found->second, job.dt_s);
-    };
-  if (job.windowed)
-    return [&job, reference = std::make_shared<const WindowReferences>(run_window_references(
-                      *job.windowed, integrator, job.dt_s, static_cast<std::size_t>(job.execution.threads)))](
-               Combination& combination, const BackendInfo& /*info*/) {
-      Verification found = verify_windows(*combination.backend, *reference);
-      if (found.failure) return found;
-      append_sentence(combination.row.note, share_seen(*job.windowed));
-      combination.most_steps = reference->steps;
-      combination.compare_windows = [reference](Backend& backend, const State& state, int steps) {
-        return compare_windows(backend, state, *reference, steps);
-      };
-      return found;
-    };
-  const auto refer = [&job, &integrator](bool anew) {
-    return job.references ? recall_reference(*job.references, *job.system, integrator, job.dt_s, anew)
-                          : run_reference(*job.system, integrator, job.dt_s);
-  };
-  Reference reference = refer(false);
-  step_seconds = reference.step_seconds;
-  return [&job, refer, reference = std::move(reference)](Combination& combination,
-                                                         const BackendInfo& /*info*/) mutable {
-    Verification found =
-        verify(*combination.backend, *job.system, reference, job.dt_s, combination.steps_taken);
-    if (found.failure && reference.recalled) {  // a cached file must not make a row fail
-      reference = refer(true);
-      found = verify(*combination.backend, *job.system, reference, job.dt_s);
-    }
-    if (reference.recalled)
-      append_sentence(combination.row.note, "compared with a reference of an earlier run");
-    return found;
-  };
-}
-
-/// Largest number of steps of a sample whose end can be compared with the reference.
-int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
-  if (job.garment) return max_sample_steps;  // its ends are not compared
-  if (job.windowed) return verification_steps;
-  const int checkable =
-      checkable_steps(integrator, {job.system->nodes(), job.system->springs.size(), false, false});
-  return comparable_steps(*job.system, integrator, job.dt_s, checkable);
-}
-
-/// Results of an integrator's reference.
-struct AfterReference {
-  int most_steps = max_sample_steps;  ///< of a sample
-  double step_seconds = 0;            ///< time per step of the reference
-  Verifier verifier = {};
-  std::optional<SecondStretch> second = {};  ///< if it is part of the verification
-  std::optional<Combination> serial = {};    ///< verified in the end, if it is among the job's backends
-};
-
 /// Programs that run in ranks read the scene file, whatever System they are made for.
 bool builds_scenes_itself(const BackendInfo& info) {
   return info.program != nullptr && info.program->in_ranks;
@@ -172,6 +98,82 @@ void verify_second(Combination& combination, const SceneJob& job, const BackendI
   }
 }
 
+/// Compares the combination's backend with the reference, and takes the verdict.
+using Verifier = std::function<void(Combination& combination, const BackendInfo& info)>;
+
+/// Runs the reference; for a garment, when a backend is first compared with it. `start`: of all samples; must
+/// outlive the verifier. Sets `step_seconds` to the reference's time per step if the ends of samples are
+/// compared with it too. The verifier is empty if no backend supports the scene with this integrator.
+Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const State& start,
+                       double& step_seconds) {
+  if (job.garment && !dresses(integrator)) return {};
+  if (job.garment)
+    return [&job, &integrator, &start,
+            references = std::map<decltype(BackendInfo::make_dressing_reference), GarmentReference>()](
+               Combination& combination, const BackendInfo& info) mutable {
+      const auto make = info.make_dressing_reference;
+      auto found = references.find(make);
+      if (found == references.end())
+        found = references
+                    .emplace(make, run_garment_reference(*make(*job.system, integrator, job.dt_s),
+                                                         *job.system, integrator, job.dt_s, start))
+                    .first;
+      take_verification(combination,
+                        verify_garment(*combination.backend, *job.system, found->second, job.dt_s));
+    };
+  if (job.windowed)
+    return [&job, reference = std::make_shared<const WindowReferences>(run_window_references(
+                      *job.windowed, integrator, job.dt_s, static_cast<std::size_t>(job.execution.threads)))](
+               Combination& combination, const BackendInfo& /*info*/) {
+      take_verification(combination, verify_windows(*combination.backend, *reference));
+      if (!combination.backend) return;
+      append_sentence(combination.row.note, share_seen(*job.windowed));
+      combination.most_steps = reference->steps;
+      combination.compare_windows = [reference](Backend& backend, const State& state, int steps) {
+        return compare_windows(backend, state, *reference, steps);
+      };
+    };
+  const auto refer = [&job, &integrator](bool anew) {
+    return job.references ? recall_reference(*job.references, *job.system, integrator, job.dt_s, anew)
+                          : run_reference(*job.system, integrator, job.dt_s);
+  };
+  Reference reference = refer(false);
+  step_seconds = reference.step_seconds;
+  std::optional<SecondStretch> second;
+  if (!is_implicit(integrator)) second = run_second_stretch(*job.system, integrator, job.dt_s);
+  return [&job, refer, reference = std::move(reference), second = std::move(second)](
+             Combination& combination, const BackendInfo& info) mutable {
+    Verification found =
+        verify(*combination.backend, *job.system, reference, job.dt_s, combination.steps_taken);
+    if (found.failure && reference.recalled) {  // a cached file must not make a row fail
+      reference = refer(true);
+      found = verify(*combination.backend, *job.system, reference, job.dt_s);
+    }
+    if (reference.recalled)
+      append_sentence(combination.row.note, "compared with a reference of an earlier run");
+    take_verification(combination, found);
+    if (combination.backend && second && !builds_scenes_itself(info))
+      verify_second(combination, job, info, *second);
+  };
+}
+
+/// Largest number of steps of a sample whose end can be compared with the reference.
+int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
+  if (job.garment) return max_sample_steps;  // its ends are not compared
+  if (job.windowed) return verification_steps;
+  const int checkable =
+      checkable_steps(integrator, {job.system->nodes(), job.system->springs.size(), false, false});
+  return comparable_steps(*job.system, integrator, job.dt_s, checkable);
+}
+
+/// Results of an integrator's reference.
+struct AfterReference {
+  int most_steps = max_sample_steps;  ///< of a sample
+  double step_seconds = 0;            ///< time per step of the reference
+  Verifier verifier = {};
+  std::optional<Combination> serial = {};  ///< verified in the end, if it is among the job's backends
+};
+
 /// Makes the backend, which is judged after at most `most_steps` steps.
 Combination make_unjudged(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
                           const State& start, int most_steps) {
@@ -191,11 +193,7 @@ void judge(Combination& combination, const SceneJob& job, const BackendInfo& inf
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)
-    attempt(combination, [&] {
-      take_verification(combination, reference.verifier(combination, info));
-      if (combination.backend && reference.second && !builds_scenes_itself(info))
-        verify_second(combination, job, info, *reference.second);
-    });
+    attempt(combination, [&] { reference.verifier(combination, info); });
 }
 
 /// Calls `work`, which takes one thread, for each of the job's integrators, by number, and for each of
@@ -224,8 +222,7 @@ void step_beside_reference(Combination& combination, const SceneJob& job) {
 /// Runs the references of all integrators and, without job.verified, verifies `serial` with each. The results
 /// are in the integrators' order. `serial` steps while the references run; for a garment it steps after them,
 /// because it restarts from states of the reference.
-std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
-                                           const State& start) {
+std::vector<AfterReference> run_references(const SceneJob& job, const State& start) {
   std::vector<AfterReference> results(job.integrators.size());
   for_each_integrator(job, 1, [&](std::size_t i, std::size_t /*part*/) {
     results[i].most_steps = most_sample_steps(job, *job.integrators[i]);
@@ -233,20 +230,15 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   if (job.verified) return results;
   const auto serial = std::ranges::find_if(
       job.backends, [](const BackendInfo* info) { return info->role == BackendRole::baseline; });
-  const bool has_serial = serial != job.backends.end(), whole = !job.garment && !job.windowed;
+  const bool has_serial = serial != job.backends.end();
   // While nothing else runs, because its time and memory are measured.
   for (std::size_t i = 0; has_serial && i < results.size(); ++i)
     results[i].serial = make_unjudged(job, **serial, *job.integrators[i], start, results[i].most_steps);
-  for_each_integrator(job, has_serial && whole ? 2 : 1, [&](std::size_t i, std::size_t part) {
-    const Integrator& integrator = *job.integrators[i];
-    if (part == 1) {
-      if (Combination& made = *results[i].serial; made.backend)
-        attempt(made, [&] { step_beside_reference(made, job); });
-      return;
-    }
-    results[i].verifier = make_verifier(job, integrator, draped, results[i].step_seconds);
-    if (whole && !is_implicit(integrator))
-      results[i].second = run_second_stretch(*job.system, integrator, job.dt_s);
+  for_each_integrator(job, has_serial && !job.garment ? 2 : 1, [&](std::size_t i, std::size_t part) {
+    if (part == 0)
+      results[i].verifier = make_verifier(job, *job.integrators[i], start, results[i].step_seconds);
+    else if (Combination& made = *results[i].serial; made.backend)
+      attempt(made, [&] { step_beside_reference(made, job); });
   });
   if (has_serial)
     for_each_integrator(job, 1, [&](std::size_t i, std::size_t /*part*/) {
@@ -397,10 +389,9 @@ class SampleSecrets {
 };
 
 /// Longest time that SampleSecrets::compare probably takes after samples as long as the combinations' are
-/// now.
+/// now: none if references have no time per step.
 Clock::duration expected_check(const SceneJob& job, const std::vector<Combination>& combinations,
                                const std::vector<AfterReference>& references) {
-  if (job.garment || job.windowed || job.verified) return {};
   constexpr double both_references = 2.5;  // with rounding the state of one, in steps of the first reference
   double all = 0, longest = 0;
   for (std::size_t i = 0; i < job.integrators.size(); ++i) {
@@ -466,7 +457,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   const State& start = draped ? *draped : job.system->start;
   if (!job.verified) watch.progress("references", 0);
   if (watch.stop()) return {};
-  std::vector<AfterReference> references = run_references(job, draped, start);
+  std::vector<AfterReference> references = run_references(job, start);
   for (std::size_t i = 0; i < job.integrators.size(); ++i) {
     const Integrator* integrator = job.integrators[i];
     for (const BackendInfo* info : job.backends) {
