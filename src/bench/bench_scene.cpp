@@ -314,17 +314,21 @@ void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, c
                  job.preparation + (1 - job.preparation) * done);
 }
 
+/// Where the samples of a round start.
+struct RoundStart {
+  const State& state;
+  std::optional<std::size_t> first_node =
+      {};  ///< the first to examine, if the ends of the samples are checked
+};
+
 /// Chooses where samples start and which are checked. Programs cannot predict this: every sample makes the
 /// same requests, and the check comes after the last sample.
 class SampleSecrets {
  public:
-  /// `start`: of all samples, if their ends are not checked. Must outlive this.
-  SampleSecrets(const SceneJob& job, const State& start)
-      : job_(job), start_(start), checks_(!job.garment && !job.windowed && !job.verified) {}
-
-  /// Chooses the round to check among the possible ones. `end`: with a deadline, the latest end of the last
-  /// round.
-  void choose(const FirstRound& first, Clock::time_point end) {
+  /// Chooses the round to check among the possible ones. `start`: of all samples, if their ends are not
+  /// checked; must outlive this. `end`: with a deadline, the latest end of the last round.
+  SampleSecrets(const SceneJob& job, const State& start, const FirstRound& first, Clock::time_point end)
+      : job_(job), start_(start), checks_(!job.garment && !job.windowed && !job.verified) {
     if (job_.deadline)
       checked_from_ =
           first.start + std::chrono::duration_cast<Clock::duration>(between_0_and_1() * (end - first.start));
@@ -332,31 +336,25 @@ class SampleSecrets {
       checked_round_ = first.number + static_cast<int>(between_0_and_1() * (job_.rounds - first.number));
   }
 
-  /// Returns the start state of a round's samples.
-  const State& begin_round(int round) {
-    if (!checks_) return start_;
-    present_ = static_cast<std::uint32_t>(random_());
-    of_round_ = sample_start(*job_.system, present_);
-    checks_this_ = !has_checked_ && (job_.deadline ? Clock::now() >= checked_from_ : round == checked_round_);
-    if (checks_this_) check();
-    return of_round_;
-  }
-  /// Checks the current round, whatever was chosen.
-  void check() {
-    checks_this_ = has_checked_ = checks_;
-    checked_ = present_;
+  /// Begins a round. It is checked if it has been chosen, or if it `must` be.
+  RoundStart begin_round(int round, bool must) {
+    if (!checks_) return {start_};
+    const auto wave = static_cast<std::uint32_t>(random_());
+    of_round_ = sample_start(*job_.system, wave);
+    const bool is_chosen =
+        !checked_ && (job_.deadline ? Clock::now() >= checked_from_ : round == checked_round_);
+    if (!is_chosen && !must) return {of_round_};
+    checked_ = wave;
+    return {of_round_, first_};
   }
 
-  bool is_due() const { return checks_ && !has_checked_; }
-  /// The first node to examine, if the round is checked.
-  std::optional<std::size_t> first_node() const {
-    return checks_this_ ? std::optional<std::size_t>(first_) : std::nullopt;
-  }
+  /// Whether a round is still to be checked.
+  bool is_due() const { return checks_ && !checked_; }
 
   /// Compares the ends of the checked samples. The backends have been ended before.
   void compare(std::vector<Combination>& combinations) const {
-    if (!has_checked_) return;
-    const State start = sample_start(*job_.system, checked_);
+    if (!checked_) return;
+    const State start = sample_start(*job_.system, *checked_);
     for_each_integrator(job_, 1, [&](std::size_t i, std::size_t /*part*/) {
       std::vector<Combination*> checked;
       std::vector<SampleEnd> ends;
@@ -384,8 +382,7 @@ class SampleSecrets {
   State of_round_;
   int checked_round_ = 0;
   Clock::time_point checked_from_;
-  bool checks_this_ = false, has_checked_ = false;
-  std::uint32_t present_ = 0, checked_ = 0;  ///< wave numbers of these rounds
+  std::optional<std::uint32_t> checked_;  ///< wave number of the checked round
 };
 
 /// Longest time that SampleSecrets::compare probably takes after samples as long as the combinations' are
@@ -422,9 +419,9 @@ Clock::duration expected_frames(const SceneJob& job, const std::vector<Combinati
 /// Takes one sample of every combination, in this order, from `start`. Returns false and discards the round
 /// if stopped.
 bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
-                const FirstRound& first, const SceneJob& job, const State& start,
-                std::optional<std::size_t> first_node, bool kept, const BenchWatch& watch) {
-  for (Combination& combination : combinations) combination.start = &start;
+                const FirstRound& first, const SceneJob& job, const RoundStart& start, bool kept,
+                const BenchWatch& watch) {
+  for (Combination& combination : combinations) combination.start = &start.state;
   std::vector<std::pair<Combination*, std::optional<double>>> samples;
   for (std::size_t place = 0; place < order.size(); ++place) {
     const std::size_t i = order[place];
@@ -432,7 +429,7 @@ bool take_round(std::vector<Combination>& combinations, const std::vector<std::s
     if (watch.stop()) return false;
     tell_sample(combinations[i].row, round + static_cast<double>(place) / static_cast<double>(order.size()),
                 first, job, watch);
-    samples.emplace_back(&combinations[i], sample_ms(combinations[i], job, first_node));
+    samples.emplace_back(&combinations[i], sample_ms(combinations[i], job, start.first_node));
   }
   for (const auto& [combination, ms] : samples) {
     if (!ms || !kept) continue;
@@ -486,12 +483,9 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   const Clock::duration after_rounds = expected_check(job, all, references) + expected_frames(job, all);
   const auto rounds_end = [&] { return job.deadline.value_or(Clock::time_point::max()) - after_rounds; };
   const FirstRound first{restore(all, job.earlier)};
-  SampleSecrets secrets(job, start);
-  secrets.choose(first, rounds_end());
+  SampleSecrets secrets(job, start, first, rounds_end());
   const auto take = [&](int round, bool kept) {
-    const State& from = secrets.begin_round(round);
-    if (!kept) secrets.check();
-    return take_round(all, order, round, first, job, from, secrets.first_node(), kept, watch);
+    return take_round(all, order, round, first, job, secrets.begin_round(round, !kept), kept, watch);
   };
   bool stopped = false, measured_any = false;
   for (int round = 0; round < job.rounds; ++round) {
