@@ -52,10 +52,11 @@ double dt_of(const SceneSpec& spec, const SceneParts& parts) {
       spec, {.rows = std::min(cloth->rows, all_kinds), .columns = std::min(cloth->columns, all_kinds)})));
 }
 
-/// A cloth whose backends all have windows gets some if they are requested, or if the whole does not fit.
-/// Throws UsageError if they are requested and cannot be had. Throws SceneError if the scene needs more
-/// memory than there is: nobody should wait for a scene only to see the program killed.
-PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
+/// A cloth whose backends all have windows gets some if `asked_windows`, their number, is there, or if the
+/// whole does not fit. Throws UsageError if they are requested and cannot be had. Throws SceneError if the
+/// scene needs more memory than there is: nobody should wait for a scene only to see the program killed.
+PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings,
+                           std::optional<int> asked_windows) {
   const SceneCounts counts = scene.parts.counts;
   SceneSize size = size_of(scene.spec, counts);
   if (settings.fps) {
@@ -70,16 +71,15 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
   const bool can = size.grid && std::ranges::all_of(settings.backends, [](const BackendInfo* backend) {
                      return has_windows(*backend);
                    });
-  if (settings.windows && !can)
+  if (asked_windows && !can)
     throw UsageError("--windows goes with cloths and backends that have windows, as --backend mpi: " +
                      scene.spec.name + " and the chosen backends are others; leave it out");
   std::vector<GridWindow> windows;
-  if (can && (settings.windows || memory_shortage(memory_bytes))) {
+  if (can && (asked_windows || memory_shortage(memory_bytes))) {
     const auto& cloth = std::get<ClothSpec>(scene.spec.content);
     const GridPatch grid{cloth.rows, cloth.columns, cloth.spacing_m};
     const auto ranks = static_cast<std::size_t>(most_ranks_of(settings.backends, settings.execution));
-    const std::size_t count =
-        settings.windows ? static_cast<std::size_t>(*settings.windows) : usual_windows(ranks);
+    const std::size_t count = asked_windows ? static_cast<std::size_t>(*asked_windows) : usual_windows(ranks);
     if (count < fewest_windows(ranks))
       throw UsageError("--windows {} leaves some of {} ranks without one: give at least {}", count, ranks,
                        fewest_windows(ranks));
@@ -137,7 +137,6 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   settings.backends = choice.with_fewer_threads(settings.backends, options.threads, settings.execution);
   require_use_of_options(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
-  settings.windows = options.windows;
   settings.fps = options.fps;
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
   return settings;
@@ -253,7 +252,7 @@ BenchPlan plan_of(const BenchOptions& options) {
     const BenchSettings settings =
         settings_of_scene(plan.settings, comparison, options, spec.name, plan.backends);
     if (settings.verified) require_rows(*settings.verified, spec.name, settings, options.verified);
-    plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
+    plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings, options.windows));
     if (options.output.trace && !plan.timed.back().windows.empty())
       throw UsageError("--trace needs the whole of {}, which is verified in windows: leave it out",
                        plan.timed.back().spec.name);

@@ -59,9 +59,8 @@ struct BenchSettings {
   std::vector<const BackendInfo*> backends;
   std::vector<const Integrator*> integrators;
   ExecutionOptions execution;
-  int rounds = 0;                   ///< an upper limit if there is a deadline
-  std::optional<int> windows = {};  ///< number of windows in which a cloth is verified instead of as a whole
-  double sample_seconds = 0.1;      ///< target length of a sample
+  int rounds = 0;               ///< an upper limit if there is a deadline
+  double sample_seconds = 0.1;  ///< target length of a sample
   /// Frames per second of simulated time, of which timed_frames are also timed for each row; none: no frames.
   std::optional<double> fps = {};
   std::optional<ReferenceCache> references = {};  ///< none: references are not kept for later runs
