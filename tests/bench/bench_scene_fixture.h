@@ -96,7 +96,7 @@ constexpr BackendInfo postponing{
 class BenchScene : public testing::Test {
  protected:
   BenchScene() {
-    job_.name = "test";
+    job_.execution.scene = "test";
     job_.system = &system_;
     job_.dt_s = 1e-4;
     job_.backends = {find_backend("serial"), find_backend("openmp")};

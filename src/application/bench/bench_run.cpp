@@ -60,13 +60,22 @@ TimeBudget::Clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<TimeBudget::Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Adds the scene's content to a job. `scene` must outlive it.
-void add_scene(SceneJob& job, const PreparedScene& scene) {
+/// The job of a scene without earlier rows and a deadline. `scene` must outlive it.
+SceneJob job_of(const BenchSettings& settings, const PlannedScene& planned, const PreparedScene& scene) {
+  SceneJob job{settings};
+  job.backends = planned.backends;
+  job.execution.scene = planned.spec.name;
+  job.execution.scene_file = planned.spec.file;
   job.system = &scene.system;
   job.springs_published = scene.counts.springs_published;
   job.note = scene.note;
   job.dt_s = scene.dt_s;
   if (scene.body) job.garment.emplace(GarmentJob{.body = fit_body(scene.body)});
+  if (!planned.windows.empty())
+    job.windowed = WindowedCloth{
+        std::get<GridPatch>(scene.system.topology), scene.counts.springs_unique, planned.windows,
+        [&scene](const GridWindow& window) { return build_window(scene.spec, window); }};
+  return job;
 }
 
 }  // namespace
@@ -170,15 +179,10 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   }
   ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
   for (PlannedScene& planned : plan.timed) {
-    SceneJob job{plan.settings};
-    job.backends = planned.backends;
-    job.name = planned.spec.name;
-    job.execution.scene = job.name;
-    job.execution.scene_file = planned.spec.file;
-    job.deadline = budget.begin_scene();
-    job.earlier = results.of_scene(job.name);
-    progress.begin_scene(job.name);
-    const bool finished = finished_ones.contains(job.name);
+    const std::string& name = planned.spec.name;
+    const std::optional<TimeBudget::Clock::time_point> deadline = budget.begin_scene();
+    progress.begin_scene(name);
+    const bool finished = finished_ones.contains(name);
     if (finished && !plan.output.trace) {
       progress.skip_scene();
       planned.parts = {};
@@ -186,11 +190,9 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
     }
     const PreparedScene scene = planned.windows.empty() ? planned.prepare() : outline_of(planned);
     warn_of_note(scene);
-    add_scene(job, scene);
-    if (!planned.windows.empty())
-      job.windowed = WindowedCloth{
-          std::get<GridPatch>(scene.system.topology), scene.counts.springs_unique, planned.windows,
-          [&](const GridWindow& window) { return build_window(scene.spec, window); }};
+    SceneJob job = job_of(plan.settings, planned, scene);
+    job.deadline = deadline;
+    job.earlier = results.of_scene(name);
     job.preparation = planned.time.preparation / planned.time.with(rounds);
     bool first_round = true;
     const BenchWatch watch{
@@ -198,18 +200,18 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
         .after_round =
             [&](const std::vector<ResultRow>& measured) {
               if (std::exchange(first_round, false)) job.deadline = budget.first_round_done();
-              results.keep(job.name, measured);
+              results.keep(name, measured);
             },
         .stop = [&] { return stop.requested(); }};
     try {
       std::vector<ResultRow> measured = finished ? std::vector<ResultRow>() : bench_scene(job, watch);
-      if (!measured.empty()) results.keep(job.name, std::move(measured));
-      std::vector<ResultRow> rows = results.of_scene(job.name);
+      if (!measured.empty()) results.keep(name, std::move(measured));
+      std::vector<ResultRow> rows = results.of_scene(name);
       if (plan.output.trace && !stop.requested() &&
-          write_bench_traces(job, scene, rows, results.stems_of_scene(job.name), plan.provenance,
+          write_bench_traces(job, scene, rows, results.stems_of_scene(name), plan.provenance,
                              std::filesystem::path(plan.output.folder) / traces_name, plan.output.resume,
                              watch))
-        results.keep(job.name, std::move(rows));
+        results.keep(name, std::move(rows));
     } catch (const Interrupted& interrupted) {
       // An interrupted wait for a program; the completed rounds are kept.
       note_ending_signal(interrupted.signal);

@@ -165,7 +165,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   combination.start = &start;
   combination.energy = PackageEnergy(job.root);
   ResultRow& row = combination.row;
-  row.scene = job.name;
+  row.scene = job.execution.scene;
   row.nodes = job.windowed ? job.windowed->nodes() : job.system->nodes();
   row.springs_unique = job.windowed ? job.windowed->springs : job.system->springs.size();
   row.springs_published = job.springs_published;

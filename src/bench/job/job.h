@@ -88,7 +88,6 @@ inline std::string untimed_frames(int steps) {
 
 /// What to measure on one scene.
 struct SceneJob : BenchSettings {
-  std::string name = {};
   const System* system = nullptr;
   std::optional<std::uint64_t> springs_published = {};
   std::string note = {};  ///< for every row

@@ -63,7 +63,7 @@ constexpr BackendInfo teller{.name = "serial",
 class BenchGarment : public testing::Test {
  protected:
   BenchGarment() {
-    job_.name = "squares";
+    job_.execution.scene = "squares";
     job_.system = &system_;
     job_.dt_s = 1.5e-4;
     job_.backends = {&teller, find_backend("openmp"), find_backend("hybrid")};
