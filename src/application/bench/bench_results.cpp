@@ -130,15 +130,10 @@ std::string thread_variables(const Provenance& provenance) {
 /// What differs of that on which times and results depend.
 std::vector<std::string> changed_conditions(const Provenance& then, const Provenance& now) {
   std::vector<std::string> all = differences(then, now);
-  const auto add_setting = [&](const char* option, const std::string& was, const std::string& is) {
-    const auto shown = [](const std::string& value) {
-      return value.empty() ? "not given" : printable(value);
-    };
-    if (was != is) all.push_back(fmt::format("{} was {} and is {}", option, shown(was), shown(is)));
-  };
-  add_setting("--memory", then.device_memory, now.device_memory);
-  add_setting("--roots", then.roots, now.roots);
-  add_setting("--instruction-set", then.instruction_set, now.instruction_set);
+  const auto shown = [](const std::string& value) { return value.empty() ? "not given" : printable(value); };
+  for (const RecordedSetting& setting : recorded_settings)
+    if (const std::string& was = then.*setting.value, &is = now.*setting.value; was != is)
+      all.push_back(fmt::format("{} was {} and is {}", setting.option, shown(was), shown(is)));
   // A bench whose backends need no OpenCL device records none.
   if (!then.opencl_devices.empty() && !now.opencl_devices.empty() &&
       then.opencl_devices != now.opencl_devices)

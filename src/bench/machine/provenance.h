@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -129,6 +130,17 @@ struct Provenance {
   std::vector<std::string> earlier_starts_utc;  ///< of the runs that this one continues
   std::string started_utc;                      ///< ISO 8601, for example "2026-01-31T12:00:00Z"
 };
+
+/// A setting of backends in a provenance.
+struct RecordedSetting {
+  const char* option;  ///< by which a user gives it
+  const char* member;  ///< of provenance.json
+  std::string Provenance::*value;
+};
+inline constexpr std::array<RecordedSetting, 3> recorded_settings{
+    {{"--memory", "device_memory", &Provenance::device_memory},
+     {"--roots", "roots", &Provenance::roots},
+     {"--instruction-set", "instruction_set", &Provenance::instruction_set}}};
 
 /// Gathers everything that is known at the start. The caller adds scenes, OpenCL devices and TetGen.
 /// `arguments` are main's.

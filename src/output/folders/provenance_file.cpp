@@ -1,10 +1,10 @@
 #include "output/folders/provenance_file.h"
 
-#include <array>
 #include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "platform/files.h"
@@ -22,284 +22,257 @@ constexpr int deepest_level = 32;
   throw ProvenanceError("{}: {}", file.string(), problem);
 }
 
-json caches_json(const std::vector<Cache>& caches) {
-  json list = json::array();
-  for (const Cache& cache : caches)
-    list.push_back({{"level", cache.level},
-                    {"type", cache.type},
-                    {"bytes", cache.bytes},
-                    {"count", cache.count},
-                    {"logical_cpus_sharing", cache.sharing}});
-  return list;
-}
-
-/// Members that are a text, or null if it is empty; older versions do not have all.
-struct SettingMember {
-  const char* name;
-  std::string Provenance::*value;
+/// A text that the file has as null where it is empty: unknown, or not given.
+struct OrNull {
+  std::string& text;
 };
-constexpr std::array<SettingMember, 3> setting_members{{{"device_memory", &Provenance::device_memory},
-                                                        {"instruction_set", &Provenance::instruction_set},
-                                                        {"roots", &Provenance::roots}}};
 
-/// A value of the document and its place: the root is the file, a member is reached by its key.
+/// A hash, which the file has as a text, and one that may be unknown: null.
+struct Hash {
+  std::uint64_t& number;
+};
+struct HashOrNull {
+  std::optional<std::uint64_t>& number;
+};
+
+using Variable = std::pair<std::string, std::string>;
+
+/// Elements of lists that the file has as objects: the keys and values there.
+std::string& key_of(Variable& variable) { return variable.first; }
+std::string& value_of(Variable& variable) { return variable.second; }
+std::string& key_of(FileHash& file) { return file.name; }
+Hash value_of(FileHash& file) { return {file.fnv1a_64}; }
+std::string& key_of(BackendProgramRecord& program) { return program.name; }
+BackendProgramRecord& value_of(BackendProgramRecord& program) { return program; }
+
+template <class Element>
+concept Keyed = requires(Element& element) {
+  key_of(element);
+};
+
+/// A value of the document and its place: the root is the file, a member is reached by its key. The document
+/// is either written, and its values are null until then, or it is read, into values that are empty.
 class Place {
  public:
-  Place(const std::filesystem::path& file, const json& root) : file_(file), value_(root) {}
+  /// `file`: the one that is read; null if the document is written.
+  Place(json& value, const std::filesystem::path* file, std::string pointer = {})
+      : value_(value), file_(file), pointer_(std::move(pointer)) {}
 
-  Place operator[](const std::string& key) const {
-    const std::optional<Place> member = find(key);
-    if (!member) fail(file_, pointer_ + '/' + key + " is missing: give a provenance.json that mssim wrote");
-    return *member;
+  Place operator[](const char* key) const {
+    if (!has(key))
+      fail(*file_, fmt::format("{}/{} is missing: give a provenance.json that mssim wrote", pointer_, key));
+    return {value_[key], file_, fmt::format("{}/{}", pointer_, key)};
   }
-  /// None if there is no such member, as in files of older versions.
-  std::optional<Place> find(const std::string& key) const {
+  /// Whether the document has this member, or is to have it: not all do.
+  bool has(const char* key, bool to_write = true) const {
+    if (writes()) return to_write;
     require(value_.is_object(), "an object");
-    const auto member = value_.find(key);
-    if (member == value_.end()) return std::nullopt;
-    return Place(file_, *member, pointer_ + '/' + key);
+    return value_.contains(key);
   }
 
-  /// None if there is no such member, or it is null: unknown.
-  std::optional<Place> known(const std::string& key) const {
-    const auto member = find(key);
-    return member && !member->value_.is_null() ? member : std::nullopt;
+  /// Writes or reads a member.
+  template <class Value>
+  void member(const char* key, Value&& value) const {
+    (*this)[key].exchange(value);
+  }
+  /// The same for a member that files of older versions do not have.
+  template <class Value>
+  void later_member(const char* key, Value&& value) const {
+    if (has(key)) member(key, value);
   }
 
-  std::string text() const {
-    require(value_.is_string(), "a text");
-    return value_.get<std::string>();
-  }
-  bool is_null() const { return value_.is_null(); }
-  bool truth() const {
-    require(value_.is_boolean(), "true or false");
-    return value_.get<bool>();
-  }
-  double number() const {
-    require(value_.is_number(), "a number");
-    return value_.get<double>();
-  }
-  template <std::integral Number>
-  Number count() const {
-    // The library takes a whole number without a sign as unsigned.
-    require(value_.is_number_unsigned() && std::in_range<Number>(value_.get<std::uint64_t>()),
-            fmt::format("a whole number from 0 to {}", std::numeric_limits<Number>::max()));
-    return value_.get<Number>();
-  }
-  /// Throws LaterFormatError if the document states a later format than `newest`.
-  void require_format(int newest) const {
-    const auto version = find("format_version");
-    if (version && version->count<int>() > newest)
+  /// Writes the version of the format. Throws LaterFormatError if the document has a later one.
+  void format_version() const {
+    int version = folder_format_version;
+    later_member("format_version", version);
+    if (version > folder_format_version)
       throw LaterFormatError(
           "{}: /format_version is {}, and this mssim reads versions up to {}: use a newer mssim",
-          file_.string(), version->count<int>(), newest);
-  }
-  /// 16 hexadecimal digits, as to_hex() writes them.
-  std::uint64_t hash() const {
-    const auto number = from_hex(value_.is_string() ? value_.get<std::string>() : std::string());
-    require(number.has_value(), "16 hexadecimal digits");
-    return *number;
-  }
-  /// The results of `read` for each element of a list.
-  template <class Read>
-  auto list(Read read) const {
-    require(value_.is_array(), "a list");
-    std::vector<decltype(read(*this))> elements;
-    for (std::size_t i = 0; i < value_.size(); ++i)
-      elements.push_back(read(Place(file_, value_[i], fmt::format("{}/{}", pointer_, i))));
-    return elements;
-  }
-  /// The results of `read` for each name and value of an object.
-  template <class Read>
-  auto members(Read read) const {
-    require(value_.is_object(), "an object");
-    std::vector<decltype(read(std::string(), *this))> elements;
-    for (const auto& [name, value] : value_.items())
-      elements.push_back(read(name, Place(file_, value, pointer_ + '/' + printable(name))));
-    return elements;
+          file_->string(), version, folder_format_version);
   }
 
  private:
-  Place(const std::filesystem::path& file, const json& value, std::string pointer)
-      : file_(file), value_(value), pointer_(std::move(pointer)) {}
+  bool writes() const { return file_ == nullptr; }
 
   void require(bool good, const std::string& wanted) const {
     if (!good)
-      fail(file_, fmt::format("{} is {} instead of {}: give a provenance.json that mssim wrote",
-                              pointer_.empty() ? "the document" : pointer_,
-                              printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)), wanted));
+      fail(*file_,
+           fmt::format("{} is {} instead of {}: give a provenance.json that mssim wrote",
+                       pointer_.empty() ? "the document" : pointer_,
+                       printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)), wanted));
   }
 
-  const std::filesystem::path& file_;
-  const json& value_;
+  /// `good`: whether the document's value is `wanted`.
+  template <class Value>
+  void exchange(Value& value, bool good, const std::string& wanted) const {
+    if (writes()) {
+      value_ = value;
+    } else {
+      require(good, wanted);
+      value = value_.get<Value>();
+    }
+  }
+  void exchange(std::string& text) const { exchange(text, value_.is_string(), "a text"); }
+  void exchange(bool& truth) const { exchange(truth, value_.is_boolean(), "true or false"); }
+  void exchange(double& number) const { exchange(number, value_.is_number(), "a number"); }
+  template <std::integral Number>
+  void exchange(Number& count) const {
+    // The library takes a whole number without a sign as unsigned.
+    exchange(count, value_.is_number_unsigned() && std::in_range<Number>(value_.get<std::uint64_t>()),
+             fmt::format("a whole number from 0 to {}", std::numeric_limits<Number>::max()));
+  }
+  void exchange(Hash hash) const {
+    if (writes()) {
+      value_ = to_hex(hash.number);
+      return;
+    }
+    const auto number = from_hex(value_.is_string() ? value_.get<std::string>() : std::string());
+    require(number.has_value(), "16 hexadecimal digits");
+    hash.number = *number;
+  }
+  /// Whether there is a value, to write if `to_write`, or to read; else it is null.
+  bool has_value(bool to_write) const { return writes() ? to_write : !value_.is_null(); }
+  void exchange(OrNull value) const {
+    if (has_value(!value.text.empty())) exchange(value.text);
+  }
+  void exchange(HashOrNull hash) const {
+    if (has_value(hash.number.has_value()))
+      exchange(Hash{hash.number ? *hash.number : hash.number.emplace()});
+  }
+  template <class Value>
+  void exchange(std::optional<Value>& value) const {
+    if (has_value(value.has_value())) exchange(value ? *value : value.emplace());
+  }
+  template <class Element>
+  void exchange(std::vector<Element>& list) const {
+    if (writes()) {
+      value_ = json::array_t(list.size());
+    } else {
+      require(value_.is_array(), "a list");
+      list.resize(value_.size());
+    }
+    for (std::size_t i = 0; i < list.size(); ++i)
+      Place(value_[i], file_, fmt::format("{}/{}", pointer_, i)).exchange(list[i]);
+  }
+  template <Keyed Element>
+  void exchange(std::vector<Element>& members) const {
+    if (writes()) {
+      value_ = json::object();
+      for (Element& member : members) Place(value_[key_of(member)], file_).exchange(value_of(member));
+      return;
+    }
+    require(value_.is_object(), "an object");
+    for (auto& [key, value] : value_.items()) {
+      Element& member = members.emplace_back();
+      key_of(member) = key;
+      Place(value, file_, pointer_ + '/' + printable(key)).exchange(value_of(member));
+    }
+  }
+  template <class Object>
+  void exchange(Object& object) const {
+    describe(*this, object);
+  }
+
+  json& value_;
+  const std::filesystem::path* file_;
   std::string pointer_;
 };
 
-BuildInfo read_build(const Place& build) {
-  return {build["version"].text(),  build["commit"].text(), build["dirty"].truth(),
-          build["compiler"].text(), build["flags"].text(),  build["build_type"].text()};
+/// describe() names the members of an object once, to write and to read them.
+
+void describe(const Place& file, BuildInfo& build) {
+  file.member("version", build.version);
+  file.member("commit", build.commit);
+  file.member("dirty", build.dirty);
+  file.member("compiler", build.compiler);
+  file.member("flags", build.flags);
+  file.member("build_type", build.build_type);
 }
 
-Cache read_cache(const Place& cache) {
-  return {cache["level"].count<int>(), cache["type"].text(), cache["bytes"].count<std::uint64_t>(),
-          cache["count"].count<int>(), cache["logical_cpus_sharing"].count<int>()};
+void describe(const Place& file, Cache& cache) {
+  file.member("level", cache.level);
+  file.member("type", cache.type);
+  file.member("bytes", cache.bytes);
+  file.member("count", cache.count);
+  file.member("logical_cpus_sharing", cache.sharing);
 }
 
-Machine read_machine(const Place& document) {
-  const Place cpu = document["cpu"];
-  Machine machine;
-  machine.cpu_model = cpu["model"].text();
-  if (const auto generation = cpu.known("generation")) machine.cpu_generation = generation->text();
-  machine.logical_cpus = cpu["logical_cpus"].count<int>();
-  machine.cpu_mhz = cpu["mhz"].number();
-  machine.caches = cpu["caches"].list(read_cache);
-  if (const Place governor = cpu["governor"]; !governor.is_null()) machine.governor = governor.text();
-  machine.load_average = document["load_average"].list([](const Place& average) { return average.number(); });
-  machine.memory_bytes = document["memory_bytes"].count<std::uint64_t>();
-  machine.operating_system = document["operating_system"].text();
-  machine.kernel = document["kernel"].text();
-  if (const auto quota = cpu.known("cpu_quota")) machine.cpu_quota = quota->number();
-  if (const auto limit = document.known("memory_limit_bytes"))
-    machine.memory_limit_bytes = limit->count<std::uint64_t>();
-  if (const auto smt = cpu.known("smt")) machine.smt = smt->truth();
-  if (const auto nodes = cpu.find("numa_nodes")) machine.numa_nodes = nodes->count<int>();
-  if (const auto turbo = cpu.known("turbo")) machine.turbo = turbo->truth();
-  return machine;
+void describe(const Place& file, Machine& machine) {
+  const Place cpu = file["cpu"];
+  cpu.member("model", machine.cpu_model);
+  cpu.later_member("generation", OrNull{machine.cpu_generation});
+  cpu.member("logical_cpus", machine.logical_cpus);
+  cpu.member("mhz", machine.cpu_mhz);
+  cpu.member("caches", machine.caches);
+  cpu.member("governor", machine.governor);
+  file.member("load_average", machine.load_average);
+  file.member("memory_bytes", machine.memory_bytes);
+  file.member("operating_system", machine.operating_system);
+  file.member("kernel", machine.kernel);
+  cpu.later_member("cpu_quota", machine.cpu_quota);
+  file.later_member("memory_limit_bytes", machine.memory_limit_bytes);
+  cpu.later_member("smt", machine.smt);
+  cpu.later_member("numa_nodes", machine.numa_nodes);
+  cpu.later_member("turbo", machine.turbo);
 }
 
-std::vector<std::pair<std::string, std::string>> read_variables(const Place& environment) {
-  return environment.members(
-      [](const std::string& name, const Place& value) { return std::pair(name, value.text()); });
-}
-
-json variables_json(const std::vector<std::pair<std::string, std::string>>& variables) {
-  json environment = json::object();
-  for (const auto& [name, value] : variables) environment[name] = value;
-  return environment;
-}
-
-std::vector<FileHash> read_hashes(const Place& hashes) {
-  return hashes.members([](const std::string& name, const Place& value) {
-    return FileHash{name, value.hash()};
-  });
-}
-
-BackendProgramRecord read_program(const std::string& name, const Place& program) {
-  BackendProgramRecord record{name, program["command"].list([](const Place& word) { return word.text(); }),
-                              read_hashes(program["files_fnv1a_64"])};
-  if (const auto environment = program.find("environment")) record.environment = read_variables(*environment);
-  if (const auto processes = program.find("processes")) {
-    record.ranks = (*processes)["ranks"].count<int>();
-    record.rank_threads = (*processes)["threads_a_rank"].count<int>();
-    record.launcher = (*processes)["launcher"].text();
+void describe(const Place& file, BackendProgramRecord& program) {
+  file.member("command", program.command);
+  file.member("files_fnv1a_64", program.files);
+  if (file.has("environment", !program.environment.empty())) file.member("environment", program.environment);
+  if (file.has("processes", program.ranks > 0)) {
+    const Place processes = file["processes"];
+    processes.member("ranks", program.ranks);
+    processes.member("threads_a_rank", program.rank_threads);
+    processes.member("launcher", program.launcher);
   }
-  return record;
 }
 
-json programs_json(const std::vector<BackendProgramRecord>& programs) {
-  json all = json::object();
-  for (const BackendProgramRecord& program : programs) {
-    json files = json::object();
-    for (const FileHash& file : program.files) files[file.name] = to_hex(file.fnv1a_64);
-    json& record = all[program.name] = {{"command", program.command}, {"files_fnv1a_64", files}};
-    if (!program.environment.empty()) record["environment"] = variables_json(program.environment);
-    if (program.ranks > 0)
-      record["processes"] = {
-          {"ranks", program.ranks}, {"threads_a_rank", program.rank_threads}, {"launcher", program.launcher}};
+/// The file has the hashes of the scenes' texts and those of the files that they name apart.
+void describe(const Place& file, std::vector<SceneHash>& scenes) {
+  std::vector<FileHash> texts, files;
+  for (const SceneHash& scene : scenes) {
+    texts.push_back({scene.name, scene.fnv1a_64});
+    if (scene.files_fnv1a_64) files.push_back({scene.name, *scene.files_fnv1a_64});
   }
-  return all;
+  file.member("scenes_fnv1a_64", texts);
+  file.later_member("scene_files_fnv1a_64", files);
+  scenes.clear();
+  for (const FileHash& text : texts) scenes.push_back({text.name, text.fnv1a_64});
+  for (const FileHash& of_scene : files)
+    if (SceneHash* scene = found_in(scenes, of_scene.name, &SceneHash::name))
+      scene->files_fnv1a_64 = of_scene.fnv1a_64;
 }
 
-Provenance read_document(const Place& document) {
-  const auto text_of = [](const Place& place) { return place.text(); };
-  document.require_format(folder_format_version);
-  const Place threads = document["threads"];
-  Provenance provenance;
-  provenance.build = read_build(document["build"]);
-  provenance.machine = read_machine(document);
-  provenance.threads = threads["asked_for"].count<int>();
-  provenance.allowed_cpus = threads["allowed_cpus"].list([](const Place& cpu) { return cpu.count<int>(); });
-  provenance.thread_environment = read_variables(threads["environment"]);
-  provenance.opencl_devices = document["opencl_devices"].list(text_of);
-  if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
-  if (const auto program = document.known("program_fnv1a_64")) provenance.program_fnv1a_64 = program->hash();
-  for (const SettingMember& member : setting_members)
-    if (const auto setting = document.known(member.name)) provenance.*member.value = setting->text();
-  for (const FileHash& scene : read_hashes(document["scenes_fnv1a_64"]))
-    provenance.scenes.push_back({scene.name, scene.fnv1a_64});
-  if (const auto files = document.find("scene_files_fnv1a_64"))
-    for (const FileHash& of_scene : read_hashes(*files))
-      for (SceneHash& scene : provenance.scenes)
-        if (scene.name == of_scene.name) scene.files_fnv1a_64 = of_scene.fnv1a_64;
-  provenance.command_line = document["command_line"].list(text_of);
-  provenance.started_utc = document["started_utc"].text();
-  if (const auto noise = document.find("noise")) provenance.noise = noise->list(text_of);
-  if (const auto programs = document.find("backend_programs"))
-    provenance.backend_programs = programs->members(read_program);
-  if (const auto earlier = document.find("earlier_starts_utc"))
-    provenance.earlier_starts_utc = earlier->list(text_of);
-  return provenance;
-}
-
-json to_json(const Provenance& provenance) {
-  const BuildInfo& build = provenance.build;
-  const Machine& machine = provenance.machine;
-  json scenes = json::object(), scene_files = json::object();
-  for (const SceneHash& scene : provenance.scenes) {
-    scenes[scene.name] = to_hex(scene.fnv1a_64);
-    if (scene.files_fnv1a_64) scene_files[scene.name] = to_hex(*scene.files_fnv1a_64);
-  }
-  json all{
-      {"format_version", folder_format_version},
-      {"started_utc", provenance.started_utc},
-      {"earlier_starts_utc", provenance.earlier_starts_utc},
-      {"command_line", provenance.command_line},
-      {"build",
-       {{"version", build.version},
-        {"commit", build.commit},
-        {"dirty", build.dirty},
-        {"compiler", build.compiler},
-        {"flags", build.flags},
-        {"build_type", build.build_type}}},
-      {"program_fnv1a_64", provenance.program_fnv1a_64 ? json(to_hex(*provenance.program_fnv1a_64)) : json()},
-      {"cpu",
-       {{"model", machine.cpu_model},
-        {"generation", machine.cpu_generation.empty() ? json() : json(machine.cpu_generation)},
-        {"logical_cpus", machine.logical_cpus},
-        {"smt", machine.smt ? json(*machine.smt) : json()},
-        {"numa_nodes", machine.numa_nodes},
-        {"mhz", machine.cpu_mhz},
-        {"governor", machine.governor ? json(*machine.governor) : json()},
-        {"turbo", machine.turbo ? json(*machine.turbo) : json()},
-        {"cpu_quota", machine.cpu_quota ? json(*machine.cpu_quota) : json()},
-        {"caches", caches_json(machine.caches)}}},
-      {"memory_bytes", machine.memory_bytes},
-      {"memory_limit_bytes", machine.memory_limit_bytes ? json(*machine.memory_limit_bytes) : json()},
-      {"load_average", machine.load_average},
-      {"operating_system", machine.operating_system},
-      {"kernel", machine.kernel},
-      {"threads",
-       {{"asked_for", provenance.threads},
-        {"allowed_cpus", provenance.allowed_cpus},
-        {"environment", variables_json(provenance.thread_environment)}}},
-      {"opencl_devices", provenance.opencl_devices},
-      {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
-      {"backend_programs", programs_json(provenance.backend_programs)},
-      {"noise", provenance.noise},
-      {"scenes_fnv1a_64", scenes},
-      {"scene_files_fnv1a_64", scene_files}};
-  for (const SettingMember& member : setting_members) {
-    const std::string& setting = provenance.*member.value;
-    all[member.name] = setting.empty() ? json() : json(setting);
-  }
-  return all;
+void describe(const Place& file, Provenance& provenance) {
+  file.format_version();
+  const Place threads = file["threads"];
+  file.member("build", provenance.build);
+  describe(file, provenance.machine);
+  threads.member("asked_for", provenance.threads);
+  threads.member("allowed_cpus", provenance.allowed_cpus);
+  threads.member("environment", provenance.thread_environment);
+  file.member("opencl_devices", provenance.opencl_devices);
+  file.member("tetgen", OrNull{provenance.tetgen});
+  file.later_member("program_fnv1a_64", HashOrNull{provenance.program_fnv1a_64});
+  for (const RecordedSetting& setting : recorded_settings)
+    file.later_member(setting.member, OrNull{provenance.*setting.value});
+  describe(file, provenance.scenes);
+  file.member("command_line", provenance.command_line);
+  file.member("started_utc", provenance.started_utc);
+  file.later_member("noise", provenance.noise);
+  file.later_member("backend_programs", provenance.backend_programs);
+  file.later_member("earlier_starts_utc", provenance.earlier_starts_utc);
 }
 
 }  // namespace
 
 std::string provenance_text(const Provenance& provenance) {
+  Provenance described = provenance;  // describe() takes no const one: it also reads
+  json document;
+  describe(Place(document, nullptr), described);
   // A folder's name may contain bytes that are not UTF-8; they are replaced.
-  return to_json(provenance).dump(2, ' ', false, json::error_handler_t::replace);
+  return document.dump(2, ' ', false, json::error_handler_t::replace);
 }
 
 Provenance read_provenance(const std::filesystem::path& file) {
@@ -327,7 +300,9 @@ Provenance parse_provenance(const std::filesystem::path& file, std::string_view 
         printable(message.substr(start == std::string_view::npos ? 0 : start + 2), 300);
     fail(file, fmt::format("malformed JSON, {}: give a provenance.json that mssim wrote", problem));
   }
-  return read_document({file, document});
+  Provenance provenance;
+  describe(Place(document, &file), provenance);
+  return provenance;
 }
 
 }  // namespace mssim
