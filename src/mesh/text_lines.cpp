@@ -17,11 +17,7 @@ constexpr std::string_view blanks = " \t\f\v";
 std::string read_text(const std::filesystem::path& file) {
   // The texts of ten million tetrahedra take half of this.
   constexpr std::size_t most_bytes = std::size_t{1} << 30;
-  try {
-    return read_file(file, most_bytes);
-  } catch (const ReadError& error) {
-    throw InputError(error.sentence(file, "give the file of a mesh"));
-  }
+  return read_file_or<InputError>(file, "give the file of a mesh", most_bytes);
 }
 
 TextLines::TextLines(std::string file, std::string_view text, const LineSigns& signs)

@@ -33,6 +33,17 @@ void require_regular_file(const std::filesystem::path& file);
 std::string read_file(const std::filesystem::path& file,
                       std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
+/// The same, but throws a Failure with the ReadError's sentence(), which `remedy` ends.
+template <class Failure>
+std::string read_file_or(const std::filesystem::path& file, std::string_view remedy,
+                         std::size_t most_bytes = std::numeric_limits<std::size_t>::max()) {
+  try {
+    return read_file(file, most_bytes);
+  } catch (const ReadError& error) {
+    throw Failure(error.sentence(file, remedy));
+  }
+}
+
 /// Thrown if something cannot be written; what() is one sentence with the file, the failed action, the
 /// system's reason and a remedy. Commands end with exit code 4.
 struct WriteError : ErrorWith<exit_file_error> {

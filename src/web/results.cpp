@@ -62,11 +62,9 @@ bool is_web_results(const std::filesystem::path& path) {
 }
 
 MeasuredRun read_web_results(const std::filesystem::path& file) {
-  try {
-    return parse_web_results(file, read_file(file, largest_results_bytes));
-  } catch (const ReadError& error) {
-    throw UsageError(error.sentence(file, "give a file that the page of mssim web saved"));
-  }
+  return parse_web_results(
+      file,
+      read_file_or<UsageError>(file, "give a file that the page of mssim web saved", largest_results_bytes));
 }
 
 MeasuredRun parse_web_results(const std::filesystem::path& file, const std::string& text) {

@@ -142,11 +142,7 @@ std::string description_schema() {
 }
 
 BackendProgram read_description(const fs::path& file) {
-  try {
-    return parse_description(file, read_file(file, largest_description_bytes));
-  } catch (const ReadError& error) {
-    throw SceneError(error.sentence(file, remedy));
-  }
+  return parse_description(file, read_file_or<SceneError>(file, remedy, largest_description_bytes));
 }
 
 }  // namespace mssim

@@ -8,14 +8,9 @@ namespace mssim {
 
 std::string program_text(int lanes, std::initializer_list<const char*> files) {
   std::string text = fmt::format("#define MSSIM_LANES {}\n", lanes);
-  for (const char* file : files) {
-    const auto path = data_folder() / "kernels" / file;
-    try {
-      text += read_file(path);
-    } catch (const ReadError& error) {
-      throw std::runtime_error(error.sentence(path, "the OpenCL backends are made from it"));
-    }
-  }
+  for (const char* file : files)
+    text += read_file_or<std::runtime_error>(data_folder() / "kernels" / file,
+                                             "the OpenCL backends are made from it");
   return text;
 }
 

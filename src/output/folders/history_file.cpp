@@ -74,11 +74,8 @@ void require_rows_once(const HistoryEntry& entry, const std::string& where) {
 }
 
 std::vector<HistoryEntry> entries_in(const std::filesystem::path& file) {
-  try {
-    return parse_history(file, read_file(file, largest_history_bytes));
-  } catch (const ReadError& error) {
-    throw UsageError(error.sentence(file, "give a file that mssim history add wrote"));
-  }
+  return parse_history(file, read_file_or<UsageError>(file, "give a file that mssim history add wrote",
+                                                      largest_history_bytes));
 }
 
 }  // namespace

@@ -276,11 +276,8 @@ std::string provenance_text(const Provenance& provenance) {
 }
 
 Provenance read_provenance(const std::filesystem::path& file) {
-  try {
-    return parse_provenance(file, read_file(file, largest_provenance_bytes));
-  } catch (const ReadError& error) {
-    throw ProvenanceError(error.sentence(file, "give a folder that mssim bench wrote"));
-  }
+  return parse_provenance(file, read_file_or<ProvenanceError>(file, "give a folder that mssim bench wrote",
+                                                              largest_provenance_bytes));
 }
 
 Provenance parse_provenance(const std::filesystem::path& file, std::string_view text) {

@@ -6,19 +6,10 @@
 #include "text/text.h"
 
 namespace mssim {
-namespace {
 
-std::string read_text(const std::filesystem::path& file) {
-  try {
-    return read_file(file, largest_csv_bytes);
-  } catch (const ReadError& error) {
-    throw CsvError(error.sentence(file, "give a file that mssim wrote"));
-  }
-}
-
-}  // namespace
-
-CsvTable::CsvTable(const std::filesystem::path& file) : CsvTable(file.string(), read_text(file)) {}
+CsvTable::CsvTable(const std::filesystem::path& file)
+    : CsvTable(file.string(),
+               read_file_or<CsvError>(file, "give a file that mssim wrote", largest_csv_bytes)) {}
 
 CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(name)) {
   text = without_byte_order_mark(text);
