@@ -133,17 +133,6 @@ void drop_impossible_times(const fs::path& path, ReportFolder& folder) {
   }
 }
 
-/// Rows of a run that was ended before the checks after its last round (has_unchecked_samples).
-void tell_of_unchecked_samples(const fs::path& file, ReportFolder& folder) {
-  const auto unchecked = std::ranges::count_if(
-      folder.rows, [](const ResultRow& row) { return counts(row) && has_unchecked_samples(row); });
-  if (unchecked > 0)
-    folder.problems.push_back(
-        fmt::format("{}: the samples of {} are not checked yet, because the run is not finished; finish it "
-                    "with mssim bench --resume",
-                    file.string(), pluralize(unchecked, "row")));
-}
-
 void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
   for (const fs::path& file : entries_of(path)) {
     const bool is_picture = file.extension() == ".png";
@@ -244,7 +233,8 @@ ReportFolder read_report_folder(const fs::path& path) {
       read_beside(path / garment_name, folder, "the draping of garments is not shown", read_dressings);
   }
   drop_impossible_times(path, folder);
-  tell_of_unchecked_samples(path / timings_name, folder);
+  if (const std::string unchecked = about_unchecked_samples(folder.rows); !unchecked.empty())
+    folder.problems.push_back((path / timings_name).string() + ": " + unchecked);
   try {
     folder.provenance = read_provenance(path / "provenance.json");
   } catch (const LaterFormatError&) {

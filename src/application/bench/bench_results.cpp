@@ -243,12 +243,8 @@ std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance
 }
 
 void tell_unchecked_samples(std::span<const ResultRow> rows, const std::string& folder) {
-  const auto unchecked = static_cast<std::size_t>(std::ranges::count_if(rows, has_unchecked_samples));
-  if (unchecked > 0)
-    std::cerr << fmt::format(
-        "mssim: {}the samples of {} are not checked, because the run was ended before that; bench --resume "
-        "checks them\n",
-        folder.empty() ? "" : printable(folder) + ": ", pluralize(unchecked, "row"));
+  if (const std::string sentence = about_unchecked_samples(rows); !sentence.empty())
+    std::cerr << "mssim: " << (folder.empty() ? "" : printable(folder) + ": ") << sentence << '\n';
 }
 
 void require_rows(const std::vector<ResultRow>& verified, const std::string& scene,

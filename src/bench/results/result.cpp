@@ -10,6 +10,15 @@ namespace mssim {
 
 bool has_interval(std::size_t samples) { return rank_coverage(samples, 1) >= interval_confidence; }
 
+std::string about_unchecked_samples(std::span<const ResultRow> rows) {
+  const auto unchecked = std::ranges::count_if(
+      rows, [](const ResultRow& row) { return counts(row) && has_unchecked_samples(row); });
+  if (unchecked == 0) return "";
+  return fmt::format(
+      "the samples of {} are not checked, because the run was ended before that; bench --resume checks them",
+      pluralize(unchecked, "row"));
+}
+
 void summarise(ResultRow& row, const ResultRow* serial) {
   row.rounds = static_cast<int>(row.samples_ms.size());
   if (row.status != "ok" || row.samples_ms.empty()) return;

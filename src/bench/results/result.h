@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -314,6 +315,10 @@ inline constexpr std::string_view verified_before = "verified by an earlier proc
 inline bool has_unchecked_samples(const ResultRow& row) {
   return row.note.find(unchecked_samples) != std::string::npos;
 }
+
+/// "the samples of 2 rows are not checked, because ...", with the remedy; empty if those of all rows that
+/// count are.
+std::string about_unchecked_samples(std::span<const ResultRow> rows);
 
 /// Whether the row failed, or has a time that was not verified.
 inline bool is_wrong(const ResultRow& row) {
