@@ -401,12 +401,9 @@ std::vector<const BackendInfo*> BackendChoice::shipped(std::vector<std::string>*
 std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs::path>& folders,
                                                             std::vector<std::string>* broken) {
   std::vector<fs::path> files;
-  for (const fs::path& folder : folders) {
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == description_extension && is_file_or_link(entry.path()))
-        files.push_back(entry.path());
-  }
+  for (const fs::path& folder : folders)
+    for (const fs::path& file : entries_of(folder))
+      if (file.extension() == description_extension && is_file_or_link(file)) files.push_back(file);
   std::ranges::sort(files, {}, [](const fs::path& file) { return file.stem(); });
   std::vector<const BackendInfo*> infos;
   for (const fs::path& file : files) {

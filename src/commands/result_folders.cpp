@@ -25,9 +25,9 @@ namespace fs = std::filesystem;
 std::string below(const fs::path& folder) {
   std::string text;
   std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (entry->is_directory(error) && !result_folders(entry->path()).empty())
-      text += (text.empty() ? "" : ", ") + printable(entry->path().string());
+  for (const fs::path& entry : entries_of(folder))
+    if (fs::is_directory(entry, error) && !result_folders(entry).empty())
+      text += (text.empty() ? "" : ", ") + printable(entry.string());
   return text.empty() ? "folders that mssim bench --out wrote" : "folders in it that have some: " + text;
 }
 
@@ -61,15 +61,14 @@ ReportFolder page_folder(const fs::path& file) {
 
 std::vector<FoundCurve> reference_curves() {
   std::vector<FoundCurve> curves;
-  std::error_code error;
-  for (fs::directory_iterator entry(data_folder() / "reference", error), end; !error && entry != end;
-       entry.increment(error))
+  for (const fs::path& file : entries_of(data_folder() / "reference")) {
     try {
-      if (auto curve = energy_curve_in(entry->path().stem().string(), read_file(entry->path())))
+      if (auto curve = energy_curve_in(file.stem().string(), read_file(file)))
         curves.push_back(std::move(*curve));
     } catch (const CsvError& problem) {
-      throw CsvError(fmt::format("{}: {}; install mssim again", entry->path().string(), problem.what()));
+      throw CsvError(fmt::format("{}: {}; install mssim again", file.string(), problem.what()));
     }
+  }
   return curves;
 }
 

@@ -135,14 +135,13 @@ class MeshCache {
     if (folder_.empty()) return std::nullopt;
     std::optional<TetMesh> newest;
     fs::file_time_type newest_time = fs::file_time_type::min();
-    std::error_code error;
-    for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
-      const std::string name = entry->path().filename().string();
+    for (const fs::path& file : entries_of(folder_)) {
+      const std::string name = file.filename().string();
       if (!name.starts_with(to_hex(input) + '-') || !name.ends_with(extension)) continue;
       std::error_code no_time;
-      const fs::file_time_type time = entry->last_write_time(no_time);
+      const fs::file_time_type time = fs::last_write_time(file, no_time);
       if (no_time || (newest && time <= newest_time)) continue;
-      if (auto mesh = read_entry(entry->path())) {
+      if (auto mesh = read_entry(file)) {
         newest = std::move(mesh);
         newest_time = time;
       }

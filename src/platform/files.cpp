@@ -14,7 +14,6 @@
 #include <sstream>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "text/text.h"
 
@@ -331,6 +330,15 @@ const fs::path& make_folder(const fs::path& folder) {
   fs::create_directories(folder, error);
   if (error) throw WriteError(write_failure(folder, "creating the folder", error.value()));
   return folder;
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    entries.push_back(entry->path());
+  std::ranges::sort(entries);
+  return entries;
 }
 
 Descriptor lock_folder(const fs::path& folder) {

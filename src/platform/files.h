@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "platform/process.h"
 #include "text/error.h"
@@ -131,6 +132,9 @@ void release_reserved_space(const std::filesystem::path& file);
 
 /// Creates a folder and its parents if missing, and returns its name. Throws WriteError.
 const std::filesystem::path& make_folder(const std::filesystem::path& folder);
+
+/// The entries of a folder, by name; empty if it cannot be listed.
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
 /// Locks a folder for one writer: a second lock on it fails, in any process, while the descriptor is open.
 /// Leaves no file, however the process ends. No effect on a file system without locks. Throws WriteError if

@@ -31,16 +31,6 @@ bool has_results(const fs::path& folder) {
          is_there(folder / structure_name);
 }
 
-/// The entries of a folder, by name; empty if it cannot be listed.
-std::vector<fs::path> entries_of(const fs::path& folder) {
-  std::vector<fs::path> entries;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    entries.push_back(entry->path());
-  std::ranges::sort(entries);
-  return entries;
-}
-
 /// The text of a file; none, and a problem, if it cannot be read.
 std::optional<std::string> text_of(const fs::path& file, std::size_t most_bytes, const std::string& without,
                                    std::vector<std::string>& problems) {

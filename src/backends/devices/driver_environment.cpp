@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -30,10 +29,8 @@ RegisteredDriver registered_by(const fs::path& icd_file) {
 
 std::vector<RegisteredDriver> registered_in(const fs::path& folder) {
   std::vector<RegisteredDriver> drivers;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (entry->path().extension() == ".icd") drivers.push_back(registered_by(entry->path()));
-  std::ranges::sort(drivers, {}, &RegisteredDriver::file);
+  for (const fs::path& file : entries_of(folder))
+    if (file.extension() == ".icd") drivers.push_back(registered_by(file));
   return drivers;
 }
 

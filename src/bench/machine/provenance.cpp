@@ -15,6 +15,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "platform/files.h"
 #include "platform/machine.h"
 #include "platform/process.h"
 #include "text/text.h"
@@ -116,16 +117,13 @@ std::uint64_t bytes_of(const std::string& size) {
 std::vector<Cache> read_caches(const fs::path& cpus) {
   std::map<std::tuple<int, std::string, std::uint64_t, int>, int> counts;  // of level, type, bytes, sharing
   std::set<std::tuple<std::string, std::string, std::string>> seen;  // level, type, the CPUs that share it
-  std::error_code ignored;
-  for (const auto& cpu : fs::directory_iterator(cpus, ignored)) {
-    for (const auto& entry : fs::directory_iterator(cpu.path() / "cache", ignored)) {
-      const std::string level = first_line(entry.path() / "level"), type = first_line(entry.path() / "type");
-      const std::string shared = first_line(entry.path() / "shared_cpu_list");
+  for (const fs::path& cpu : entries_of(cpus))
+    for (const fs::path& cache : entries_of(cpu / "cache")) {
+      const std::string level = first_line(cache / "level"), type = first_line(cache / "type");
+      const std::string shared = first_line(cache / "shared_cpu_list");
       if (level.empty() || !seen.emplace(level, type, shared).second) continue;
-      ++counts[{leading_number<int>(level), type, bytes_of(first_line(entry.path() / "size")),
-                count_cpus(shared)}];
+      ++counts[{leading_number<int>(level), type, bytes_of(first_line(cache / "size")), count_cpus(shared)}];
     }
-  }
   std::vector<Cache> caches;
   for (const auto& [kind, count] : counts) {
     const auto& [level, type, bytes, sharing] = kind;
