@@ -42,8 +42,8 @@ std::string folder_name(std::string name) {
 /// Whether the folder has the results of another device.
 bool is_of_another_device(const fs::path& folder, const Provenance& provenance) {
   std::error_code error;  // writing there says it
-  if (!fs::exists(folder / "provenance.json", error)) return false;
-  const Provenance there = read_provenance(folder / "provenance.json");
+  if (!fs::exists(folder / provenance_name, error)) return false;
+  const Provenance there = read_provenance(folder / provenance_name);
   return there.machine.cpu_model != provenance.machine.cpu_model ||
          there.machine.kernel != provenance.machine.kernel;
 }

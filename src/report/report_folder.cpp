@@ -226,7 +226,7 @@ ReportFolder read_report_folder(const fs::path& path) {
   if (const std::string unchecked = about_unchecked_samples(folder.rows); !unchecked.empty())
     folder.problems.push_back((path / timings_name).string() + ": " + unchecked);
   try {
-    folder.provenance = read_provenance(path / "provenance.json");
+    folder.provenance = read_provenance(path / provenance_name);
   } catch (const LaterFormatError&) {
     throw;
   } catch (const ProvenanceError& error) {

@@ -6,6 +6,7 @@
 
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
+#include "output/folders/result_folder.h"
 #include "platform/files.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -57,8 +58,8 @@ ResultRow checked(const std::filesystem::path& file, const ResultRow& row, const
 bool is_web_results(const std::filesystem::path& path) {
   std::error_code error;
   return path.extension() == ".json" && std::filesystem::is_regular_file(path, error) &&
-         path.filename() != "provenance.json" && path.filename() != "benchmark.json" &&
-         path.filename() != "github.json";
+         path.filename() != provenance_name && path.filename() != benchmark_name &&
+         path.filename() != github_name;
 }
 
 MeasuredRun read_web_results(const std::filesystem::path& file) {

@@ -12,6 +12,7 @@
 #include "application/bench/bench_plan.h"
 #include "application/console.h"
 #include "backends/interface/backend.h"
+#include "output/folders/result_folder.h"
 #include "platform/machine.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -130,9 +131,9 @@ class AbProgram {
     const bool has_rows = !result.out_of_time && result.signal == 0 &&
                           (result.exit_code == exit_ok || result.exit_code == exit_not_verified ||
                            result.exit_code == exit_unavailable) &&
-                          fs::exists(out / "timings.csv");
+                          fs::exists(out / timings_name);
     if (!has_rows) fail(result);
-    return read_combination_times(out / "timings.csv");
+    return read_combination_times(out / timings_name);
   }
 
   /// Throws Unavailable if no requested combination can run.

@@ -74,7 +74,7 @@ fs::path folder_of(const fs::path& path) {
   fs::path folder = fs::is_directory(status) ? path
                     : path.has_parent_path() ? path.parent_path()
                                              : fs::path(".");
-  if (!fs::exists(folder / "timings.csv", error))
+  if (!fs::exists(folder / timings_name, error))
     throw UsageError("{} holds no timings.csv: give a folder that mssim bench --out wrote",
                      folder == path
                          ? path.string()
@@ -85,14 +85,14 @@ fs::path folder_of(const fs::path& path) {
 /// Throws UsageError unless the row has a time, and a sample of every round, within the bounds of times.
 void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.status != "ok") return;
-  const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
+  const std::string where = (folder / samples_name).string() + ": " + combination_name(row) + " has ";
   if (row.samples_ms.empty())
     throw UsageError(where +
                      "no samples, although its status in timings.csv is ok; measure the folder again");
   if (row.samples_ms.size() != static_cast<std::size_t>(row.rounds))
     throw UsageError("{}{}, but {} in timings.csv: one of the files is damaged; measure the folder again",
                      where, pluralize(row.samples_ms.size(), "sample"), pluralize(row.rounds, "round"));
-  const std::string timings = (folder / "timings.csv").string();
+  const std::string timings = (folder / timings_name).string();
   if (!row.ms_per_step)
     throw UsageError("{}: {} has no ms_per_step, although its status is ok; measure the folder again",
                      timings, combination_name(row));
@@ -177,7 +177,7 @@ std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan)
   if (!folder.has_results()) return {};
   const BenchOutput& output = plan.output;
   if (output.resume) {
-    const Provenance earlier = read_provenance(std::filesystem::path(output.folder) / "provenance.json");
+    const Provenance earlier = read_provenance(std::filesystem::path(output.folder) / provenance_name);
     require_same_origin(earlier, plan.provenance, output.folder);
     folder.go_on_with(earlier);
     if (!folder.has_rows()) return {};
@@ -229,7 +229,7 @@ void add_published_times(std::vector<ResultRow>& rows, const BenchPlan& plan) {
 
 MeasuredRun read_run(const fs::path& path) {
   const fs::path folder = folder_of(path);
-  MeasuredRun run{read_provenance(folder / "provenance.json"), read_results(folder)};
+  MeasuredRun run{read_provenance(folder / provenance_name), read_results(folder)};
   for (const ResultRow& row : run.rows) require_samples(row, folder);
   return run;
 }

@@ -19,9 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* provenance_name = "provenance.json";
-constexpr const char* github_name = "github.json";
-
 /// A file that is made from rows.
 struct RowFile {
   const char* name;
@@ -33,7 +30,7 @@ struct RowFile {
 constexpr auto row_files = std::to_array<RowFile>({
     {samples_name, [](std::span<const ResultRow> rows, const Provenance&) { return samples_csv(rows); }},
     {garment_name, [](std::span<const ResultRow> rows, const Provenance&) { return garment_csv(rows); }},
-    {"benchmark.json", benchmark_json},
+    {benchmark_name, benchmark_json},
     // Written last, so that its rows have their samples.
     {timings_name, [](std::span<const ResultRow> rows, const Provenance&) { return timings_csv(rows); }},
 });

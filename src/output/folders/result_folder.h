@@ -12,9 +12,11 @@
 
 namespace mssim {
 
-/// Files of a result folder: times, samples, and the dressing of garments.
+/// Files of a result folder: times, samples, the dressing of garments, the provenance, and the times as other
+/// programs read them.
 inline constexpr const char *timings_name = "timings.csv", *samples_name = "samples.csv",
-                            *garment_name = "garment.csv";
+                            *garment_name = "garment.csv", *provenance_name = "provenance.json",
+                            *benchmark_name = "benchmark.json", *github_name = "github.json";
 /// Subfolder with the output of programs that are backends, one file per row, named by file_stems() and .txt.
 inline constexpr const char* programs_name = "programs";
 /// Subfolder with the traces of a bench, of each row one named by file_stems() and .h5, and its .xdmf.
