@@ -74,7 +74,7 @@ void ProgressLine::begin_scene(const std::string& name) {
   wipe();
   scene_ = name;
   ++begun_;
-  if (logs_scenes_) std::cerr << "mssim: " << name << " (" << begun_ << " of " << weights_.size() << ")\n";
+  if (logs_scenes_) tell("{} ({} of {})", name, begun_, weights_.size());
 }
 
 void ProgressLine::skip_scene() { weights_[begun_ - 1] = 0; }
@@ -109,19 +109,21 @@ void ProgressLine::update(const std::string& activity, double done) {
             << std::flush;
 }
 
+void tell(const std::string& sentence) { std::cerr << "mssim: " + sentence + '\n'; }
+
 void tell_first(const std::vector<std::string>& sentences) {
   constexpr std::size_t most = 3;
   const std::size_t told = sentences.size() == most + 1 ? most + 1 : std::min(sentences.size(), most);
-  for (std::size_t i = 0; i < told; ++i) std::cerr << "mssim: " << escaped(sentences[i]) << '\n';
-  if (told < sentences.size()) std::cerr << "mssim: and " << sentences.size() - told << " more\n";
+  for (std::size_t i = 0; i < told; ++i) tell(escaped(sentences[i]));
+  if (told < sentences.size()) tell("and {} more", sentences.size() - told);
 }
 
 void tell_of_opencl() {
   static bool told = false;
   if (std::exchange(told, true)) return;
   const OpenclOffer& offer = opencl_offer();
-  for (const std::string& trouble : offer.troubles) std::cerr << "mssim: " << trouble << '\n';
-  if (!offer.note.empty()) std::cerr << "mssim: " << offer.note << '\n';
+  for (const std::string& trouble : offer.troubles) tell(trouble);
+  if (!offer.note.empty()) tell(offer.note);
 }
 
 StopRequest::StopRequest() : signals_(remember, SA_RESTART) {}

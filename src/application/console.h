@@ -1,10 +1,13 @@
 #pragma once
 
+#include <fmt/core.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/process.h"
@@ -60,6 +63,13 @@ class ProgressLine {
   Clock::time_point start_, shown_;
   std::optional<Clock::time_point> end_;
 };
+
+/// Prints a sentence to stderr, as the program's. Also takes the arguments of fmt::format().
+void tell(const std::string& sentence);
+template <class First, class... Values>
+void tell(fmt::format_string<First, Values...> sentence, First&& first, Values&&... values) {
+  tell(fmt::format(sentence, std::forward<First>(first), std::forward<Values>(values)...));
+}
 
 /// Prints the first few sentences to stderr, one per line, and the number of the others.
 void tell_first(const std::vector<std::string>& sentences);

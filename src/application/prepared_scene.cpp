@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <exception>
-#include <iostream>
 #include <set>
 #include <span>
 #include <utility>
 
+#include "application/console.h"
 #include "bench/verification/verification.h"
 #include "garment/contact/solid.h"
 #include "garment/stepping/dressing_backend.h"
@@ -69,7 +69,7 @@ void require_distinct_names(const std::vector<SceneSpec>& scenes) {
 }
 
 void warn_of_note(const PreparedScene& scene) {
-  if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
+  if (!scene.note.empty()) tell("{}: {}", scene.spec.name, scene.note);
 }
 
 void mark_own_scenes(std::vector<ResultRow>& rows, const Provenance& measured) {

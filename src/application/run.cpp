@@ -176,14 +176,13 @@ class RunRecorder {
     if (curve_) curve_->close();
     if (trace_) trace_->close();
     if (temporary_) return;
-    const auto tell = [](const std::string& what) { std::cerr << "mssim: wrote " << what << '\n'; };
-    if (curve_) tell(printable(curve_->name().string(), 1000));
+    if (curve_) tell("wrote {}", printable(curve_->name().string(), 1000));
     if (trace_)
-      tell(fmt::format("{} and {}", printable(trace_->name().string(), 1000),
-                       printable(xdmf_of(trace_->name()).string(), 1000)));
+      tell("wrote {} and {}", printable(trace_->name().string(), 1000),
+           printable(xdmf_of(trace_->name()).string(), 1000));
     if (pictures_)
-      tell(fmt::format("{} into {}", pluralize(pictures_->pictures(), "picture"),
-                       printable(pictures_->name().string(), 1000)));
+      tell("wrote {} into {}", pluralize(pictures_->pictures(), "picture"),
+           printable(pictures_->name().string(), 1000));
   }
 
   /// The content of files that did not get their names, as the end of a message.
@@ -269,14 +268,13 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   }();
   if (info.uses_device) tell_of_opencl();
   if (const std::string excess = excess_of(info, *backend, execution); !excess.empty())
-    std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
+    tell("{} runs {}", options.backend, excess);
   return backend;
 }
 
 /// Prints the backend's note on its steps.
 void tell_note(const RunOptions& options, const Backend& backend) {
-  if (const std::string note = backend.note(); !note.empty())
-    std::cerr << "mssim: " << options.backend << ": " << note << '\n';
+  if (const std::string note = backend.note(); !note.empty()) tell("{}: {}", options.backend, note);
 }
 
 /// Warns if accounting takes long.
@@ -287,8 +285,7 @@ void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, c
   const double seconds = static_cast<double>(count_steps(plan)) * static_cast<double>(system.springs.size()) *
                          (passes_for_energies + expected_evaluations(integrator)) / springs_per_second;
   if (seconds > patience_s)
-    std::cerr << "mssim: --losses takes a double-precision step for every step, about " << std::round(seconds)
-              << " s in all\n";
+    tell("--losses takes a double-precision step for every step, about {:.6g} s in all", std::round(seconds));
 }
 
 /// The sum of energies and losses at the end, less that at the start, divided by the largest change of one
@@ -412,7 +409,7 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
   if (!options.silent)
     std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << to_text(fitting);
   const std::vector<std::string> found = misfits(result, fit, {});
-  for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
+  for (const std::string& misfit : found) tell("{}: {}", scene.spec.name, misfit);
   return found.empty() ? exit_ok : exit_not_verified;
 }
 
@@ -475,7 +472,7 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
              {"energy_imbalance", losses ? Cell(energy_imbalance(curve, *losses)) : Cell()}});
   if (!options.silent) std::cout << record_text(table, terminal_of(STDOUT_FILENO).width);
   const std::string blow_up = blow_up_of_energy(scene.system, integrator, curve, plan.remedy);
-  if (!blow_up.empty()) std::cerr << "mssim: " << blow_up << '\n';
+  if (!blow_up.empty()) tell(blow_up);
   return blow_up.empty() ? exit_ok : exit_not_verified;
 }
 

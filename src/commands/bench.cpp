@@ -118,11 +118,10 @@ void tell_plan(const BenchPlan& plan, SummaryFormat format) {
 /// Printed before hours of measuring, not after.
 void tell_before(const BenchPlan& plan) {
   if (plan.timed.empty()) return;
-  for (const std::string& noise : plan.provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  for (const std::string& noise : plan.provenance.noise) tell("noise: {}", noise);
   if (plan.uses_device) tell_of_opencl();
   const auto backends = mapped<std::string_view>(plan.settings.backends, &BackendInfo::name);
-  if (const std::string reason = reason_without_speedups(backends); !reason.empty())
-    std::cerr << "mssim: " << reason << '\n';
+  if (const std::string reason = reason_without_speedups(backends); !reason.empty()) tell(reason);
 }
 
 /// The structure of a scene of bodies. Throws std::invalid_argument for a scene without tetrahedra.
@@ -153,16 +152,14 @@ std::vector<StructureRow> describe_scenes(std::vector<UnbuiltScene>& scenes) {
 void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, bool stopped) {
   if (!results.folder()) return;
   const std::string folder = escaped(plan.output.folder);
-  std::cerr << "mssim: ";
   if (!stopped)
-    std::cerr << "results are in " << folder;
+    tell("results are in {}", folder);
   else if (results.rows().empty() && results.folder()->has_results())
-    std::cerr << "nothing was measured yet; earlier results are still in " << folder;
+    tell("nothing was measured yet; earlier results are still in {}", folder);
   else if (results.rows().empty())
-    std::cerr << "nothing was measured yet; --resume continues";
+    tell("nothing was measured yet; --resume continues");
   else
-    std::cerr << "results so far are in " << folder << "; --resume continues";
-  std::cerr << '\n';
+    tell("results so far are in {}; --resume continues", folder);
 }
 
 /// Row names of the requested backends, including those given as a path.

@@ -9,6 +9,7 @@
 #include "application/bench/bench_plan.h"
 #include "application/bench/suites.h"
 #include "application/choices.h"
+#include "application/console.h"
 #include "application/prepared_scene.h"
 #include "application/run.h"
 #include "backends/backends.h"
@@ -130,7 +131,7 @@ int run(const CheckOptions& options) {
     const ModeBound modes = mode_bound(scene.system);
     const Table what = scene_table(scene), combinations = combination_table(scene, size, modes);
     for (const std::string& warning : {scene.note, warning_of_dt(scene, modes), warning_of_memory(size)})
-      if (!warning.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << warning << '\n';
+      if (!warning.empty()) tell("{}: {}", scene.spec.name, warning);
     tables += (tables.empty() ? "" : "\n") + to_text(what) + '\n' + to_text(combinations);
     rows.columns = what.columns;
     std::ranges::copy(combinations.columns, std::back_inserter(rows.columns));

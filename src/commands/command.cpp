@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "application/console.h"
 #include "application/outputs.h"
 #include "backends/backends.h"
 #include "backends/devices/drivers.h"
@@ -74,7 +75,7 @@ constexpr std::string_view complete_word = "--complete";
 std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }
 
 int fail(int code, const std::string& sentence) {
-  std::cerr << "mssim: " << escaped(sentence) << '\n';  // names may contain control characters
+  tell(escaped(sentence));  // names may contain control characters
   return code;
 }
 
@@ -135,7 +136,7 @@ int run_program(int argc, char** argv) {
     if (std::ranges::find(commands(), word, &Command::name) == commands().end())
       return fail(exit_bad_input, unknown_command(word));
   }
-  hear_of_slow_drivers([](const std::string& sentence) { std::cerr << "mssim: " + sentence + '\n'; });
+  hear_of_slow_drivers([](const std::string& sentence) { tell(sentence); });
   const BuildInfo& build = build_info();
   ProgramParser parser(
       "mssim", fmt::format("mssim {}: benchmark harness for parallel mass-spring simulation", build.version),

@@ -46,15 +46,15 @@ void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool f
   if (!force)
     throw UsageError("the two runs are not comparable: " + sentence +
                      "; measure both in the same way, or compare them anyway with --force");
-  std::cerr << "mssim: compared anyway: " << sentence << '\n';
+  tell("compared anyway: {}", sentence);
 }
 
 /// Prints one line about combinations that are not in the table, however many.
-void tell(const std::string& what, const std::vector<std::string>& combinations) {
-  if (combinations.empty()) return;
-  std::cerr << "mssim: " << what << ": " << combinations.front();
-  if (combinations.size() > 1) std::cerr << " and " << combinations.size() - 1 << " more";
-  std::cerr << '\n';
+void tell_left_out(const std::string& what, const std::vector<std::string>& combinations) {
+  if (combinations.size() > 1)
+    tell("{}: {} and {} more", what, combinations.front(), combinations.size() - 1);
+  else if (!combinations.empty())
+    tell("{}: {}", what, combinations.front());
 }
 
 /// Reasons for exit code 1: each combination that is slower or lost.
@@ -85,8 +85,8 @@ int report(const RunComparison& comparison, const CompareOptions& options) {
   tell_first(regressions(comparison));
   const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
   if (undecided > 0)
-    std::cerr << "mssim: " << undecided << " of " << pluralize(comparison.rows.size(), "combination")
-              << (undecided == 1 ? " is undecided\n" : " are undecided\n");
+    tell("{} of {} {} undecided", undecided, pluralize(comparison.rows.size(), "combination"),
+         undecided == 1 ? "is" : "are");
   return has_regression(comparison) ? exit_regression : exit_ok;
 }
 
@@ -99,9 +99,9 @@ int compare_runs(const CompareOptions& options) {
   tell_unchecked_samples(base.rows, options.ab.base);
   tell_unchecked_samples(next.rows, options.ab.next);
   const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
-  tell("only BASE has", comparison.only_base);
-  tell("only NEW has", comparison.only_new);
-  tell("without a verified time in BASE", comparison.untimed);
+  tell_left_out("only BASE has", comparison.only_base);
+  tell_left_out("only NEW has", comparison.only_new);
+  tell_left_out("without a verified time in BASE", comparison.untimed);
   if (comparison.rows.empty() && !comparison.untimed.empty())
     throw UsageError(
         "there is nothing to compare: {} has no verified time of what both have; measure it again",

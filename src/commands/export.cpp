@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <memory>
 #include <span>
 #include <vector>
@@ -82,12 +81,11 @@ std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<
 }
 
 void tell_of(std::span<const fs::path> written) {
-  if (written.empty()) return;
-  std::cerr << "mssim: wrote " << printable(written.front().string());
   if (written.size() > 1)
-    std::cerr << " to " << printable(written.back().filename().string()) << ", " << written.size()
-              << " files";
-  std::cerr << '\n';
+    tell("wrote {} to {}, {} files", printable(written.front().string()),
+         printable(written.back().filename().string()), written.size());
+  else if (!written.empty())
+    tell("wrote {}", printable(written.front().string()));
 }
 
 int run(const ExportOptions& options) {

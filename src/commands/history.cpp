@@ -44,8 +44,7 @@ int add(const HistoryOptions& options) {
     add_entry(history, parse_history(options.folder, line).front(), options.replace);
     entries = history.size();
   });
-  std::cerr << fmt::format("mssim: {} has {}\n", printable(options.file),
-                           entries == 1 ? "1 entry" : fmt::format("{} entries", entries));
+  tell("{} has {}", printable(options.file), entries == 1 ? "1 entry" : fmt::format("{} entries", entries));
   return exit_ok;
 }
 

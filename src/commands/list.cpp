@@ -56,9 +56,7 @@ Table list_scenes(const ListOptions& /*options*/) {
                {"dt_s", spec.dt_s ? Cell(*spec.dt_s) : Cell("auto")},
                {"description", spec.description}});
   }
-  if (!uncounted.empty())
-    std::cerr << "mssim: nodes and springs of " << listed(uncounted) << " are not shown: " << first_reason
-              << '\n';
+  if (!uncounted.empty()) tell("nodes and springs of {} are not shown: {}", listed(uncounted), first_reason);
   return table;
 }
 
@@ -84,7 +82,7 @@ Table list_backends(const ListOptions& options) {
                {"description", backend->description},
                {"reason", reason.empty() ? Cell() : Cell(reason)}});
   }
-  for (const std::string& reason : broken) std::cerr << "mssim: a backend is not shown: " << reason << '\n';
+  for (const std::string& reason : broken) tell("a backend is not shown: {}", reason);
   return table;
 }
 
@@ -134,7 +132,7 @@ Table list_devices(const ListOptions& /*options*/) {
                {"float_width", device.float_width}});
   tell_of_opencl();
   if (opencl_offer().devices.empty() && opencl_offer().troubles.empty())
-    std::cerr << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
+    tell("there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one");
   return table;
 }
 

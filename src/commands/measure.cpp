@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "application/console.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "garment/body/body_profile.h"
@@ -220,13 +221,13 @@ void require_free_scene(const MeasureOptions& options) {
   require_free(scene, "--scene", options.overwrite);
 }
 
-void tell(const MeasureOptions& options, const BodyListing& listing) {
+void print(const MeasureOptions& options, const BodyListing& listing) {
   std::cout << to_text(listing.rows(), options.format);
 }
 
 void tell_of_ignored_parts(const BodyProfile& profile) {
   const std::string ignored = ignored_parts(profile.trunk_and_legs());
-  if (!ignored.empty()) std::cerr << "mssim: " << ignored << '\n';
+  if (!ignored.empty()) tell(ignored);
 }
 
 /// The landmarks of a body. Warns if the crotch is too low for a person.
@@ -235,9 +236,9 @@ BodyLandmarks found_landmarks(const BodyProfile& profile) {
   constexpr double least = 0.43;  // of the height; people of tests/support/persons.csv have 0.46 to 0.52
   const double share = landmarks.crotch_height / (profile.highest() - profile.lowest());
   if (share < least)
-    std::cerr << fmt::format(
-        "mssim: not certain of crotch_height: it is {:.2f} of the height, and people's is {} or more; if the "
-        "thighs touch, give a body with its thighs apart\n",
+    tell(
+        "not certain of crotch_height: it is {:.2f} of the height, and people's is {} or more; if the thighs "
+        "touch, give a body with its thighs apart",
         share, least);
   return landmarks;
 }
@@ -245,11 +246,10 @@ BodyLandmarks found_landmarks(const BodyProfile& profile) {
 /// Measures the body of a file, and prints the results as far as it gets. Throws InputError.
 MeasuredFile measure_file(const MeasureOptions& options) {
   auto [surface, note] = read_surface(options.body);
-  if (!note.empty()) std::cerr << "mssim: " << printable(note, 1000) << '\n';
+  if (!note.empty()) tell(printable(note, 1000));
   require_joined(surface);
   const StanceGuess guess = guess_stance(surface, {unit_given(options.unit), options.up, options.facing});
-  for (const std::string& doubt : guess.doubts)
-    std::cerr << "mssim: not certain of " << printable(doubt, 1000) << '\n';
+  for (const std::string& doubt : guess.doubts) tell("not certain of {}", printable(doubt, 1000));
   surface = stood_up(std::move(surface), guess.stance);
   BodyListing listing;
   const auto source = [](bool is_given) { return is_given ? "given" : "found"; };
@@ -278,10 +278,10 @@ MeasuredFile measure_file(const MeasureOptions& options) {
           facing_names.at(static_cast<std::size_t>(guess.stance.facing)));
     const BodyLandmarks landmarks = found_landmarks(profile);
     listing.add_measures(profile, landmarks);
-    tell(options, listing);
+    print(options, listing);
     return {body, std::move(profile), landmarks};
   } catch (const InputError&) {
-    tell(options, listing);
+    print(options, listing);
     throw;
   }
 }
@@ -297,12 +297,11 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
   try {
     build_system(load_scene(scene));
   } catch (const SceneError& error) {
-    std::cerr << "mssim: " << escaped(options.scene)
-              << " is written, but does not work yet: " << escaped(error.what()) << '\n';
+    tell("{} is written, but does not work yet: {}", escaped(options.scene), escaped(error.what()));
     return exit_not_verified;
   }
-  std::cerr << "mssim: wrote " << escaped(options.scene) << "; mssim run --scene "
-            << escaped(shell_word(options.scene)) << " dresses it\n";
+  tell("wrote {}; mssim run --scene {} dresses it", escaped(options.scene),
+       escaped(shell_word(options.scene)));
   return exit_ok;
 }
 
@@ -323,7 +322,7 @@ int measure_scene(const MeasureOptions& options) {
   const char* const source = "from the scene";
   listing.add_stance(file ? file->stance : BodyStance{}, source, source, source);
   listing.add_measures(body, found_landmarks(body));
-  tell(options, listing);
+  print(options, listing);
   return exit_ok;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "application/choices.h"
+#include "application/console.h"
 #include "backends/backends.h"
 #include "commands/command.h"
 #include "platform/files.h"
@@ -142,7 +143,7 @@ int run_new_backend(const NewBackendOptions& options) {
     const fs::path path = folder / file.name;
     write_file_atomically(path, file.text);
     if (file.executable) make_executable(path);
-    std::cerr << "mssim: wrote " << printable(path.string(), 1000) << '\n';
+    tell("wrote {}", printable(path.string(), 1000));
   }
   for (const std::string& command : starter.commands) std::cout << command << '\n';
   return exit_ok;

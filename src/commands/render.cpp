@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -216,7 +215,7 @@ int render(const RenderOptions& options) {
   StopRequest stop;  // a temporary trace must not stay
   const TraceReader reader(trace);
   write_file_atomically(out, drawn_file(options, picture, reader, stop));
-  std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
+  tell("wrote {}", printable(out.string()));
   return code;
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "application/console.h"
 #include "application/outputs.h"
 #include "application/run.h"
 #include "commands/command.h"
@@ -127,7 +127,7 @@ int report(const ReportOptions& options) {
   if (!options.no_runs) simulate_scenes(input);
   write_file_atomically(out, report_page(input));
   tell_of_problems(input);
-  std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
+  tell("wrote {}", printable(out.string()));
   return exit_ok;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "application/bench/suites.h"
+#include "application/console.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "commands/result_folders.h"
@@ -66,8 +67,9 @@ std::vector<FolderFile> pdfs_of(std::span<const FolderFile> files) {
   if (std::ranges::none_of(files, is_chart)) return pdfs;
   const auto program = find_program("rsvg-convert");
   if (!program) {
-    std::cerr << "mssim: the charts are only SVG, because rsvg-convert is not in PATH: install Debian's "
-                 "package librsvg2-bin and give --overwrite, too\n";
+    tell(
+        "the charts are only SVG, because rsvg-convert is not in PATH: install Debian's package librsvg2-bin "
+        "and give --overwrite, too");
     return pdfs;
   }
   const fs::path& folder = temporary_folder_of_process();
@@ -123,8 +125,7 @@ int table(const TableOptions& options) {
   make_folder(out);
   write_files_atomically(out, files);
   for (const fs::path& old : old_pdfs) fs::remove(old);
-  std::cerr << "mssim: wrote " << pluralize(files.size(), "file") << " to " << printable(out.string())
-            << '\n';
+  tell("wrote {} to {}", pluralize(files.size(), "file"), printable(out.string()));
   return exit_ok;
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iostream>
 #include <memory>
 
 #include "application/bench/suites.h"
+#include "application/console.h"
 #include "application/outputs.h"
 #include "commands/command.h"
 #include "output/folders/provenance_file.h"
@@ -59,7 +59,7 @@ std::string keep(const fs::path& results, const std::string& text) {
   ResultFolder written(folder, run.provenance, comparison_of_suite("tables").tables());
   written.replace_results();
   written.write(run.rows);
-  std::cerr << "mssim: wrote " << printable(folder.string()) << '\n';
+  tell("wrote {}", printable(folder.string()));
   return folder.string();
 }
 
@@ -72,7 +72,7 @@ int web(const WebOptions& options) {
     AtomicFile(out).remove();  // finds what cannot be written before bodies are meshed
     const std::string page = web_page();
     write_file_atomically(out, page);
-    std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
+    tell("wrote {}", printable(out.string()));
     return exit_ok;
   }
   AtomicFile(make_folder(options.results) / ".probe").remove();  // before a phone has measured

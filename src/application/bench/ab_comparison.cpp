@@ -176,7 +176,7 @@ std::vector<PairedTimes> combinations_of(const std::vector<CombinationTime>& bas
   std::vector<PairedTimes> series;
   bool untimed = false;
   const auto tell_only = [](const std::string& program, const CombinationTime& time) {
-    std::cerr << "mssim: only " << program << " has " << combination_name(time) << '\n';
+    tell("only {} has {}", program, combination_name(time));
   };
   for (const CombinationTime& time : base) {
     if (!find_combination(next, time)) {
@@ -185,8 +185,7 @@ std::vector<PairedTimes> combinations_of(const std::vector<CombinationTime>& bas
       series.push_back({static_cast<const CombinationNames&>(time), {}, {}, {}});
     } else {
       untimed = true;
-      std::cerr << "mssim: " << options.base << " has no time for " << combination_name(time) << ": "
-                << time.status << '\n';
+      tell("{} has no time for {}: {}", options.base, combination_name(time), time.status);
     }
   }
   for (const CombinationTime& time : next)
@@ -208,9 +207,8 @@ bool add_round(PairedTimes& pairs, const std::vector<CombinationTime>& base,
                const std::vector<CombinationTime>& next, const AbOptions& options) {
   const CombinationTime *a = find_combination(base, pairs), *b = find_combination(next, pairs);
   if (!a || !a->least_ms) {
-    std::cerr << fmt::format(
-        "mssim: {} had a time for {} but has none in a later round ({}); run it alone to see why\n",
-        options.base, combination_name(pairs), a ? a->status : "the row is missing");
+    tell("{} had a time for {} but has none in a later round ({}); run it alone to see why", options.base,
+         combination_name(pairs), a ? a->status : "the row is missing");
     return false;
   }
   if (!b || !b->least_ms) {
@@ -262,9 +260,8 @@ std::vector<PairedTimes> verify(std::array<AbProgram, 2>& programs, const AbOpti
                                 ProgressLine& progress) {
   for (std::size_t which = 0; which < programs.size(); ++which)
     if (!programs[which].takes_verified()) {
-      std::cerr
-          << "mssim: " << (which == 0 ? options.base : options.next)
-          << " has no bench --verified: each process of both programs verifies again, which takes time\n";
+      tell("{} has no bench --verified: each process of both programs verifies again, which takes time",
+           which == 0 ? options.base : options.next);
       return {};
     }
   progress.update("verify both", 0);
@@ -324,12 +321,10 @@ RunComparison compare_programs(const AbOptions& options) {
       progress.update(fmt::format("round {}", rounds), watch.seconds() / options.time_budget_s);
     }
   }
-  std::cerr << "mssim: " << rounds << (rounds == 1 ? " round in " : " rounds in ")
-            << std::lround(watch.seconds()) << " s"
-            << (settled()               ? ""
-                : noted_ending_signal() ? "; a signal ended it before every verdict was settled"
-                                        : "; the time budget ended before every verdict was settled")
-            << '\n';
+  tell("{} in {} s{}", pluralize(rounds, "round"), std::lround(watch.seconds()),
+       settled()               ? ""
+       : noted_ending_signal() ? "; a signal ended it before every verdict was settled"
+                               : "; the time budget ended before every verdict was settled");
   RunComparison comparison;
   comparison.threshold = options.threshold;
   for (const PairedTimes& one : series) comparison.rows.push_back(compare_pairs(one, options.threshold));

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iostream>
 #include <iterator>
 #include <set>
 #include <system_error>
 #include <utility>
 
 #include "application/bench/suites.h"
+#include "application/console.h"
 #include "bench/results/comparison.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
@@ -244,7 +244,7 @@ std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance
 
 void tell_unchecked_samples(std::span<const ResultRow> rows, const std::string& folder) {
   if (const std::string sentence = about_unchecked_samples(rows); !sentence.empty())
-    std::cerr << "mssim: " << (folder.empty() ? "" : printable(folder) + ": ") << sentence << '\n';
+    tell("{}{}", folder.empty() ? "" : printable(folder) + ": ", sentence);
 }
 
 void require_rows(const std::vector<ResultRow>& verified, const std::string& scene,
