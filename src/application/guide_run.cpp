@@ -150,7 +150,7 @@ SceneGuide measured(const GuidePlan& plan, std::size_t number, double seconds, P
 
 std::string sentence_of(const SceneGuide& guide, const GuidedMethod& method) {
   return fmt::format("{}, {}, {}: {}", guide.scene, method.backend->name, method.integrator->name,
-                     method.status);
+                     method.ending.status());
 }
 
 /// Scenes for which the time was too short, and what programs have failed with. `scenes`: how many share the
@@ -164,7 +164,7 @@ std::vector<std::string> failures(const std::vector<SceneGuide>& guides, std::si
                       "more",
                       guide.scene, decimal(*needed_s * static_cast<double>(scenes))));
     for (const GuidedMethod& method : guide.methods)
-      if (method.status.starts_with("failed")) sentences.push_back(sentence_of(guide, method));
+      if (method.ending.lack == Lack::failed) sentences.push_back(sentence_of(guide, method));
   }
   return sentences;
 }
@@ -172,8 +172,8 @@ std::vector<std::string> failures(const std::vector<SceneGuide>& guides, std::si
 /// Methods whose backend or integrator was asked for by name, and could run on a scene with none.
 std::vector<std::string> missed(const std::vector<SceneGuide>& guides, const GuideOptions& options) {
   const auto ran = [](const GuidedMethod& method) {
-    return std::ranges::none_of(std::array{"unavailable", "unsupported", "not timed"},
-                                [&](const char* reason) { return method.status.starts_with(reason); });
+    return std::ranges::none_of(std::array{Lack::unavailable, Lack::unsupported, Lack::not_timed},
+                                [&](Lack lack) { return method.ending.lack == lack; });
   };
   const bool names_integrators =
       !options.integrators.empty() && options.integrators != std::vector<std::string>{"all"};

@@ -36,14 +36,14 @@ std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& 
   // As many steps as in a frame, so that solvers have the same work as there.
   const int steps = std::min(most_steps, steps_a_frame(curve.dt_s, frame_rates.front()));
   SizeCurve::Sample sample{cloth.system.nodes(), 0};
-  std::vector<LateProgram> late;  // unused: the curve ends in any case
-  const auto measure = [&] {
+  const Ending ending = ending_of([&] {
     const auto backend =
         make_timed_backend(*curve.backend, cloth.system, *curve.integrator, curve.dt_s, execution);
     sample.seconds_a_step = time_steps(*backend, cloth.system, steps, enough_s).seconds;
-  };
-  if (!succeeds(*curve.backend, curve.status, late, measure)) return std::nullopt;
-  return sample;
+  });
+  if (ending.lack == Lack::nothing) return sample;
+  curve.status = ending.status();
+  return std::nullopt;
 }
 
 }  // namespace

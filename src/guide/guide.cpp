@@ -23,10 +23,8 @@ class GuideClock {
  public:
   explicit GuideClock(double seconds) : seconds_(seconds) {}
   double spent() const { return watch_.seconds() - forgiven_; }
-  /// Does not count time lost in waiting for these programs.
-  void forgive(const std::vector<LateProgram>& programs) {
-    for (const LateProgram& program : programs) forgiven_ += program.seconds;
-  }
+  /// Does not count the time lost in waiting for a program that was late.
+  void forgive(const Ending& ending) { forgiven_ += ending.late_s; }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
   /// End of a part that starts now, in seconds of this clock, with the fraction `later` left for the
   /// following parts.
@@ -60,7 +58,7 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
                       .seconds = 0,
                       .stop = {}};
   const double end = clock.end_of_part(share_of_limits, 1 - until_limits);
-  std::string given_up;  // why there is no backend left
+  Ending given_up;  // why there is no backend left
   for (std::size_t i = 0; i < request.integrators.size(); ++i) {
     const Integrator& integrator = *request.integrators[i];
     watch.progress("largest stable step: " + std::string(integrator.name), clock.fraction());
@@ -71,11 +69,11 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
       return watch.stop() || clock.spent() > std::min(last, end);
     };
     StepLimit& limit = guide.limits.emplace_back(find_step_limit(integrator, limits));
-    if (limits.backends.empty()) limit.status = given_up;
-    clock.forgive(limit.late);
+    if (limits.backends.empty()) limit.ending = given_up;
     for (const LateProgram& program : limit.late) {
+      clock.forgive(program.ending);
       std::erase(limits.backends, program.backend);
-      given_up = program.status;
+      given_up = program.ending;
     }
   }
 }
@@ -101,7 +99,7 @@ void measure_longest_steps(SceneGuide& guide, std::span<WorkCurve> curves, const
     watch.progress(fmt::format("longest step: {} {}", method->integrator->name, method->backend->name),
                    clock.fraction());
     auto measured = curve.measure(*steps);
-    if (!measured) return clock.forgive(method->late);
+    if (!measured) return clock.forgive(method->ending);
     guide.points.push_back(std::move(measured->point));
   }
 }
@@ -119,16 +117,19 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
   guide.methods.reserve(request.integrators.size() * request.backends.size());
   for (const StepLimit& limit : guide.limits)
     for (const BackendInfo* backend : request.backends) {
-      GuidedMethod& method = guide.methods.emplace_back(GuidedMethod{limit.integrator, backend, {}});
+      GuidedMethod& method = guide.methods.emplace_back(GuidedMethod{limit.integrator, backend});
       curves.emplace_back(*request.system, guide.trusted, limit, method, request.execution,
                           request.wish.error);
     }
-  const auto give_up = [&](const std::vector<LateProgram>& programs) {
-    for (const LateProgram& program : programs)
-      for (std::size_t i = 0; i < curves.size(); ++i)
-        if (guide.methods[i].backend == program.backend) curves[i].end(Lack::backend, program.status);
+  const auto give_up = [&](const LateProgram& program) {
+    for (std::size_t i = 0; i < curves.size(); ++i)
+      if (guide.methods[i].backend == program.backend) curves[i].end(program.ending);
   };
-  for (const StepLimit& limit : guide.limits) give_up(limit.late);
+  const auto forgive = [&](const GuidedMethod& method) {
+    clock.forgive(method.ending);
+    if (method.ending.late_s > 0) give_up({method.backend, method.ending});
+  };
+  for (const StepLimit& limit : guide.limits) std::ranges::for_each(limit.late, give_up);
   while (true) {
     const auto next = std::ranges::min_element(curves, {}, [](const WorkCurve& curve) {
       return curve.has_next() ? curve.next_seconds() : std::numeric_limits<double>::infinity();
@@ -141,15 +142,13 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
     }
     if (!next->is_timed() && !is_implicit(*method.integrator)) {
       next->time_step();
-      clock.forgive(method.late);
-      give_up(method.late);
+      forgive(method);
       continue;
     }
     watch.progress(fmt::format("work and precision: {} {}", method.integrator->name, method.backend->name),
                    clock.fraction());
     auto measured = next->next();
-    clock.forgive(method.late);
-    give_up(method.late);
+    forgive(method);
     if (!measured) continue;
     if (is_implicit(*method.integrator) && !measured->point.diverged)
       ends.push_back({guide.points.size(), std::move(measured->state)});
@@ -164,8 +163,8 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
     if (!method.next || curve.is_timed() || is_implicit(*method.integrator)) continue;
     if (watch.stop() || clock.spent() > end_of_steps) break;
     curve.time_step();
-    clock.forgive(method.late);
-    if (!method.late.empty()) break;
+    clock.forgive(method.ending);
+    if (method.ending.late_s > 0) break;
   }
   watch.progress("errors of steps and solvers", clock.fraction());
   const double last = clock.end_of_part(share_of_exact_steps, later);
@@ -186,7 +185,8 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
     curve.dt_s = step_for_sizes(guide, method);
     curve.keeps_error = cost_at_error(guide.points, method, request.wish.error).has_value();
     if (curve.dt_s == 0)
-      curve.status = method.status.empty() ? "no step that was measured is stable" : method.status;
+      curve.status =
+          method.ending.status().empty() ? "no step that was measured is stable" : method.ending.status();
     guide.sizes.push_back(curve);
   }
   const double end = clock.end_of_part(share_of_sizes, 0);
@@ -206,8 +206,9 @@ double rounded_up(double value) {
 double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed) {
   constexpr double steps_of_a_limit = 80;  // eight runs of ten steps, the minimum for a search
   const bool asks_reference =
-      !guide.trusted.failure.empty() ||
-      std::ranges::any_of(missed, [](const GuidedMethod* method) { return method->lack != Lack::time; });
+      !guide.trusted.failure.empty() || std::ranges::any_of(missed, [](const GuidedMethod* method) {
+        return method->ending.lack != Lack::time;
+      });
   double needed = 2 * guide.seconds;
   if (asks_reference) needed = std::max(needed, guide.trusted.short_of_s / share_of_trust);
   // Each point of a curve takes twice as long as the one before.

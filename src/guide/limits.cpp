@@ -7,6 +7,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
+#include "platform/machine.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -14,6 +15,11 @@ namespace {
 
 constexpr double worth_a_word = 1.1;
 constexpr std::size_t few_runs = 5;  // of which the fastest is taken
+
+/// Thrown for a backend whose times mean nothing here; what() is its reason.
+struct NotTimed : ErrorWith<exit_unavailable> {
+  using ErrorWith::ErrorWith;
+};
 
 std::string percent_more(double ratio) { return three_digits(100 * (ratio - 1)) + " %"; }
 
@@ -211,6 +217,37 @@ std::string why_they_differ(const Integrator& integrator, const StableStep& meas
   return {};
 }
 
+std::string Ending::status() const {
+  switch (lack) {
+    case Lack::unsupported:
+      return "unsupported: " + why;
+    case Lack::unavailable:
+      return "unavailable: " + why;
+    case Lack::not_timed:
+      return "not timed: " + why;
+    case Lack::failed:
+      return "failed: " + why;
+    default:
+      return why;
+  }
+}
+
+Ending ending_of(const std::function<void()>& work) {
+  const Stopwatch watch;
+  try {
+    work();
+    return {};
+  } catch (const Unsupported& reason) {
+    return {Lack::unsupported, reason.what()};
+  } catch (const Unavailable& reason) {
+    return {Lack::unavailable, reason.what()};
+  } catch (const NotTimed& reason) {
+    return {Lack::not_timed, reason.what()};
+  } catch (const BackendFailure& reason) {
+    return {Lack::failed, reason.what(), reason.late ? watch.seconds() : 0};
+  }
+}
+
 std::unique_ptr<Backend> make_timed_backend(const BackendInfo& info, const System& system,
                                             const Integrator& integrator, double dt_s,
                                             const ExecutionOptions& execution) {
@@ -260,13 +297,13 @@ StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& requ
                         [](const BackendInfo* info) { return info->role == BackendRole::best_of_host; });
   for (const BackendInfo* info : order) {
     StepLimit found = limit;
-    std::string status;
-    if (succeeds(*info, status, limit.late, [&] { find_with(*info, search, request, found); })) {
-      found.status.clear();
-      found.late = limit.late;
+    const Ending ending = ending_of([&] { find_with(*info, search, request, found); });
+    if (ending.lack == Lack::nothing) {
+      found.ending = {};
       return found;
     }
-    if (limit.status.empty()) limit.status = status;
+    if (ending.late_s > 0) limit.late.push_back({info, ending});
+    if (limit.ending.lack == Lack::nothing) limit.ending = ending;
   }
   return limit;
 }

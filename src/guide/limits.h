@@ -10,7 +10,6 @@
 #include "backends/interface/backend.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
-#include "platform/machine.h"
 
 namespace mssim {
 
@@ -122,19 +121,37 @@ StepTheory step_theory(const Integrator& integrator, const System& system, const
 std::string why_they_differ(const Integrator& integrator, const StableStep& measured,
                             const StepTheory& theory, bool floor_is_why);
 
-/// A program that has not answered in time. It gets no more requests, because each would lose as much time.
-struct LateProgram {
-  const BackendInfo* backend = nullptr;
-  double seconds = 0;  ///< lost wall time
-  std::string status;
-};
-
 /// The reason why a method has no points, or no more.
 enum class Lack {
   nothing,      ///< all points are measured
   time,         ///< wall time
   stable_step,  ///< no step that was tried is stable
-  backend       ///< the backend cannot run or be timed here, cannot run this method, or fails
+  unsupported,  ///< the backend does not run this method
+  unavailable,  ///< the backend does not run here
+  not_timed,    ///< the backend's times mean nothing here
+  failed        ///< the backend fails
+};
+
+/// How the measurements of a method ended.
+struct Ending {
+  Lack lack = Lack::nothing;
+  std::string why = {};  ///< in words; empty if all points are measured
+  /// Wall time lost with a program that did not answer in time, s; 0: it answered. A late program gets no
+  /// more requests, because each would lose as much time.
+  double late_s = 0;
+
+  /// The column `status`: `why`, after the word for what the backend lacks.
+  std::string status() const;
+};
+
+/// Calls `work`, which uses a backend. Lacks nothing unless the backend cannot run or be timed here, cannot
+/// run this, or its program fails.
+Ending ending_of(const std::function<void()>& work);
+
+/// A program that was late.
+struct LateProgram {
+  const BackendInfo* backend = nullptr;
+  Ending ending = {};
 };
 
 /// Largest usable step over the largest stable one, which is accurate to 2 % and from other runs than those
@@ -151,11 +168,11 @@ struct StepLimit {
   StepTheory theory;
   bool floor_is_why = false;      ///< the shortest unstable step is stable without the floor
   std::string why;                ///< why the two differ, or empty
-  std::string status;             ///< why nothing was measured, or empty
+  Ending ending;                  ///< why no backend measured anything
   std::vector<LateProgram> late;  ///< programs that were late
 
   Lack lack() const {
-    if (!status.empty()) return Lack::backend;
+    if (ending.lack != Lack::nothing) return ending.lack;
     if (measured.stable_s > 0) return Lack::nothing;
     return measured.finished ? Lack::stable_step : Lack::time;
   }
@@ -174,9 +191,7 @@ struct NextPoint {
 struct GuidedMethod {
   const Integrator* integrator = nullptr;
   const BackendInfo* backend = nullptr;
-  std::string status;                  ///< why there are no points, or no more; empty: all are measured
-  std::vector<LateProgram> late = {};  ///< the backend's program, if it was late
-  Lack lack = Lack::nothing;
+  Ending ending = {};       ///< why there are no points, or no more
   double step_seconds = 0;  ///< wall time per step of the shortest step that was timed; 0: none
   std::optional<NextPoint> next = {};
 };
@@ -186,37 +201,10 @@ inline bool is_of(const WorkPoint& point, const GuidedMethod& method) {
   return point.integrator == method.integrator && point.backend == method.backend->name;
 }
 
-/// Thrown for a backend whose times mean nothing here; what() is its reason.
-struct NotTimed : ErrorWith<exit_unavailable> {
-  using ErrorWith::ErrorWith;
-};
-
-/// A backend to be timed, like make_backend. Throws NotTimed, too.
+/// A backend to be timed, like make_backend. Throws, too, if its times mean nothing here, for ending_of.
 std::unique_ptr<Backend> make_timed_backend(const BackendInfo& info, const System& system,
                                             const Integrator& integrator, double dt_s,
                                             const ExecutionOptions& execution);
-
-/// Calls `work`, which uses a backend. False if the backend cannot run or be timed here, cannot run this, or
-/// its program fails; `status` gives the reason.
-template <class Work>
-bool succeeds(const BackendInfo& backend, std::string& status, std::vector<LateProgram>& late,
-              const Work& work) {
-  const Stopwatch watch;
-  try {
-    work();
-    return true;
-  } catch (const Unsupported& reason) {
-    status = std::string("unsupported: ") + reason.what();
-  } catch (const Unavailable& reason) {
-    status = std::string("unavailable: ") + reason.what();
-  } catch (const NotTimed& reason) {
-    status = std::string("not timed: ") + reason.what();
-  } catch (const BackendFailure& reason) {
-    status = std::string("failed: ") + reason.what();
-    if (reason.late) late.push_back({&backend, watch.seconds(), status});
-  }
-  return false;
-}
 
 /// Measured time of steps.
 struct StepTime {

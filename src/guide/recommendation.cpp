@@ -186,7 +186,8 @@ bool lacks_time(const SceneGuide& guide, const GuidedMethod& method) {
   if (cost_at_error(guide.points, method, guide.wish.error)) return false;
   // Errors grow with the horizon, and smaller errors count with a better reference.
   const bool lacks_reference = guide.trusted.short_of_s > 0;
-  if (method.lack == Lack::time) return lacks_reference || guide.wish.error >= guide.trusted.least_error();
+  if (method.ending.lack == Lack::time)
+    return lacks_reference || guide.wish.error >= guide.trusted.least_error();
   return lacks_reference && std::ranges::any_of(guide.points, [&](const WorkPoint& point) {
            return is_of(point, method) && point.beyond_trust;
          });
@@ -195,7 +196,7 @@ bool lacks_time(const SceneGuide& guide, const GuidedMethod& method) {
 /// Whether the curve of its integrator on another backend is complete but does not reach the requested error.
 bool ends_short(const SceneGuide& guide, const GuidedMethod& method) {
   return std::ranges::any_of(guide.methods, [&](const GuidedMethod& other) {
-    return other.integrator == method.integrator && other.lack == Lack::nothing &&
+    return other.integrator == method.integrator && other.ending.lack == Lack::nothing &&
            !lacks_time(guide, other) && !counting(guide.points, other).empty() &&
            !cost_at_error(guide.points, other, guide.wish.error);
   });
@@ -261,7 +262,7 @@ std::string integrators_of(std::span<const Compared> compared) {
 std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
   std::vector<Compared> all;
   for (const std::string_view name : paper_integrators) {
-    const GuidedMethod method{find_integrator(name), &backend, {}};
+    const GuidedMethod method{find_integrator(name), &backend};
     const auto curve = counting(guide.points, method);
     if (!curve.empty())
       all.push_back(
@@ -420,8 +421,9 @@ Recommendation recommend(const SceneGuide& guide) {
     const bool any_beyond = std::ranges::any_of(guide.points, is_beyond_trust),
                is_too_small = guide.wish.error < guide.trusted.least_error();
     if ((any_beyond && nearest != nullptr) ||
-        (is_too_small &&
-         (any_beyond || std::ranges::count(guide.methods, Lack::time, &GuidedMethod::lack) > 0))) {
+        (is_too_small && (any_beyond || std::ranges::any_of(guide.methods, [](const GuidedMethod& method) {
+                            return method.ending.lack == Lack::time;
+                          })))) {
       chosen.nearest.reset();
       chosen.sentences = {why_not_judged(guide, nearest)};
     } else if (nearest != nullptr) {
@@ -449,39 +451,50 @@ Recommendation recommend(const SceneGuide& guide) {
 }
 
 std::vector<std::string> what_was_measured(const SceneGuide& guide) {
-  std::vector<const GuidedMethod*> measured, late, unavailable, untimed, failed, unstable, beyond,
-      late_at_error, others;
+  struct Group {
+    std::string what;
+    std::vector<const GuidedMethod*> methods = {};
+  };
+  const std::string error = decimal(guide.wish.error);
+  Group late{"Not measured, for lack of time"};
+  Group unavailable{"Not measured, because the backend cannot run them here"};
+  Group not_timed{"Not measured, because their times mean nothing here"};
+  Group failed{"Not measured down to an error of " + error + ", because the backend fails"};
+  Group unstable{"Not measured, because no step that was tried is stable"};
+  Group beyond{"Not compared at an error of " + error +
+               ", because their smaller errors cannot be told apart from the reference's"};
+  Group late_at_error{"Not measured down to an error of " + error + ", for lack of time"};
+  Group others{"Not within an error of " + error + " with any step that was tried"};
+  std::size_t measured = 0;
   for (const GuidedMethod& method : guide.methods) {
     const bool counts = !counting(guide.points, method).empty();
-    if (counts) measured.push_back(&method);
+    if (counts) ++measured;
     if (counts && cost_at_error(guide.points, method, guide.wish.error)) continue;
     const bool is_beyond = std::ranges::any_of(
         guide.points, [&](const WorkPoint& point) { return is_of(point, method) && is_beyond_trust(point); });
-    auto& group = method.status.starts_with("failed")      ? failed
-                  : method.status.starts_with("not timed") ? untimed
-                  : method.lack == Lack::backend           ? unavailable
-                  : is_beyond                              ? beyond
-                  : method.lack == Lack::time              ? counts ? late_at_error : late
-                  : counts                                 ? others
-                                                           : unstable;
-    group.push_back(&method);
+    const auto group = [&]() -> Group& {
+      switch (method.ending.lack) {
+        case Lack::failed:
+          return failed;
+        case Lack::not_timed:
+          return not_timed;
+        case Lack::unsupported:
+        case Lack::unavailable:
+          return unavailable;
+        case Lack::time:
+          return is_beyond ? beyond : counts ? late_at_error : late;
+        default:
+          return is_beyond ? beyond : counts ? others : unstable;
+      }
+    };
+    group().methods.push_back(&method);
   }
   std::vector<std::string> sentences{
-      fmt::format("Measured: {} of {}.", measured.size(), pluralize(guide.methods.size(), "method"))};
-  const auto say = [&](std::string_view what, const std::vector<const GuidedMethod*>& methods) {
-    if (!methods.empty()) sentences.push_back(fmt::format("{}: {}.", what, names_of(methods)));
-  };
-  const std::string error = decimal(guide.wish.error);
-  say("Not measured, for lack of time", late);
-  say("Not measured, because the backend cannot run them here", unavailable);
-  say("Not measured, because their times mean nothing here", untimed);
-  say("Not measured down to an error of " + error + ", because the backend fails", failed);
-  say("Not measured, because no step that was tried is stable", unstable);
-  say("Not compared at an error of " + error +
-          ", because their smaller errors cannot be told apart from the reference's",
-      beyond);
-  say("Not measured down to an error of " + error + ", for lack of time", late_at_error);
-  say("Not within an error of " + error + " with any step that was tried", others);
+      fmt::format("Measured: {} of {}.", measured, pluralize(guide.methods.size(), "method"))};
+  for (const Group* group :
+       {&late, &unavailable, &not_timed, &failed, &unstable, &beyond, &late_at_error, &others})
+    if (!group->methods.empty())
+      sentences.push_back(fmt::format("{}: {}.", group->what, names_of(group->methods)));
   return sentences;
 }
 

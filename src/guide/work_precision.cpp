@@ -338,32 +338,37 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
   if (is_explicit && limit.backend == method.backend->name) method_.step_seconds = limit.step_seconds;
   next_seconds_ = setup_seconds_ + seconds_of_runs(steps_ * limit.step_seconds, enough_s);
   if (const std::string reason = unsupported_reason(*method.backend, *method.integrator); !reason.empty())
-    end(Lack::backend, "unsupported: " + reason);
-  else if (!limit.status.empty())
-    end(Lack::backend, limit.status);
-  else if (stable_s_ == 0 && is_explicit)
-    end(limit.lack(), limit.measured.finished ? "no step that was tried is stable"
-                                              : "no time was left to find a step that is stable");
+    end({Lack::unsupported, reason});
+  else if (limit.ending.lack != Lack::nothing)
+    end(limit.ending);
   else if (stable_s_ == 0) {
-    method_.lack = limit.lack();
-    method_.status = limit.measured.finished
-                         ? "no step that was tried is stable beyond the horizon"
-                         : "no time was left to find a step that is stable beyond the horizon";
+    const std::string why = limit.measured.finished ? "no step that was tried is stable"
+                                                    : "no time was left to find a step that is stable";
+    if (is_explicit)
+      end({limit.lack(), why});
+    else
+      method_.ending = {limit.lack(), why + " beyond the horizon"};
   }
 }
 
-void WorkCurve::end(Lack lack, std::string_view why) {
+void WorkCurve::end(const Ending& ending) {
   has_next_ = false;
-  if (!method_.status.empty()) return;
-  method_.status = why;
-  method_.lack = lack;
+  if (method_.ending.status().empty()) method_.ending = ending;
+}
+
+bool WorkCurve::succeeds(const std::function<void()>& run) {
+  Ending ending = ending_of(run);
+  if (ending.lack == Lack::nothing) return true;
+  method_.ending = std::move(ending);
+  has_next_ = false;
+  return false;
 }
 
 void WorkCurve::end_without_time() {
   method_.next = NextPoint{next_seconds_, trusted_.horizon_s / steps_, most_points - points_ - 1};
-  end(Lack::time, points_ == 0 ? "no time was left for any step"
-                  : counted_   ? "no time was left for smaller steps"
-                               : "no time was left for a step that is stable");
+  end({Lack::time, points_ == 0 ? "no time was left for any step"
+                   : counted_   ? "no time was left for smaller steps"
+                                : "no time was left for a step that is stable"});
 }
 
 double WorkCurve::seconds_of(int steps) const {
@@ -378,13 +383,9 @@ void WorkCurve::time_step() {
     setup_seconds_ = watch.seconds();
     method_.step_seconds = seconds_of_step(*backend, system_);
   };
-  if (succeeds(*method_.backend, method_.status, method_.late, run)) {
-    next_seconds_ = seconds_of(steps_);
-    if (method_.next) method_.next->seconds = next_seconds_;
-  } else {
-    has_next_ = false;
-    method_.lack = Lack::backend;
-  }
+  if (!succeeds(run)) return;
+  next_seconds_ = seconds_of(steps_);
+  if (method_.next) method_.next->seconds = next_seconds_;
 }
 
 bool WorkCurve::ends_with_same_error(const WorkPoint& point) {
@@ -399,9 +400,9 @@ bool WorkCurve::ends_with_same_error(const WorkPoint& point) {
           : 0;
   if (points_ < fewest_points || error <= wanted_error_ / 4) return false;
   if (unchanged_ < 2 && !(is_rounded && last_error_ && error >= 0.9 * *last_error_)) return false;
-  end(Lack::nothing, is_rounded ? "smaller steps are no more accurate: roundings"
-                                : "smaller steps are no more accurate: roundings, or the backend steps "
-                                  "another system");
+  end({Lack::nothing, is_rounded ? "smaller steps are no more accurate: roundings"
+                                 : "smaller steps are no more accurate: roundings, or the backend steps "
+                                   "another system"});
   return true;
 }
 
@@ -411,13 +412,12 @@ bool WorkCurve::goes_on_after(const WorkPoint& point) {
   diverged_ += point.diverged && point.within_limit ? 1 : 0;
   // A step that is stable for a shorter time may diverge within the horizon.
   if (diverged_ == enough_diverged && !counted_ && stable_span_s_ >= trusted_.horizon_s) {
-    end(Lack::backend,
-        fmt::format("failed: its energy grows or is not finite with {} steps that should be stable",
-                    enough_diverged));
+    end({Lack::failed, fmt::format("its energy grows or is not finite with {} steps that should be stable",
+                                   enough_diverged)});
     return false;
   }
   if (points_ == most_points && !counted_)
-    end(Lack::stable_step, "no step that was tried is stable over the horizon");
+    end({Lack::stable_step, "no step that was tried is stable over the horizon"});
   if (points_ == most_points) return false;
   if (points_ < fewest_points || !point.counts()) return !point.beyond_trust;
   return *point.position_error > wanted_error_ / 4;
@@ -439,10 +439,7 @@ std::optional<MeasuredPoint> WorkCurve::measure(int steps) {
     state = prompt_state(*backend, system_, steps, time.seconds * steps);
     point.note = backend->note();
   };
-  if (!succeeds(*method_.backend, method_.status, method_.late, run)) {
-    method_.lack = Lack::backend;
-    return std::nullopt;
-  }
+  if (!succeeds(run)) return std::nullopt;
   method_.step_seconds = point.seconds_a_step;
   point.evaluations = evaluations_of(*method_.integrator, system_);
   take_state(point, system_, trusted_, state);

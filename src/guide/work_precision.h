@@ -102,8 +102,8 @@ class WorkCurve {
   /// step was not timed, it assumes the backend of the limit.
   double next_seconds() const { return next_seconds_; }
   bool has_next() const { return has_next_; }
-  /// Ends the curve for this reason.
-  void end(Lack lack, std::string_view why);
+  /// Ends the curve for this reason, unless it has another one.
+  void end(const Ending& ending);
   /// Ends the curve because there is no time for the next point.
   void end_without_time();
   /// Whether a step on this backend has been timed.
@@ -111,7 +111,7 @@ class WorkCurve {
   /// Times a step of an explicit method. If the backend does not run, or fails, the curve ends.
   void time_step();
   /// Measures the next point, with half the step of the one before. None if the backend does not run, or
-  /// fails; method.status gives the reason.
+  /// fails; the method's ending gives the reason.
   std::optional<MeasuredPoint> next();
   /// Measures an additional point, of `steps` steps over the horizon. None as for next().
   std::optional<MeasuredPoint> measure(int steps);
@@ -119,10 +119,12 @@ class WorkCurve {
   double seconds_of(int steps) const;
 
  private:
-  /// Whether the curve continues. If it ends before it is accurate enough, the method's status says why.
+  /// Whether the curve continues. If it ends before it is accurate enough, the method's ending says why.
   bool goes_on_after(const WorkPoint& point);
   /// Ends the curve if the error of the point, which counts, shows that smaller steps do not help.
   bool ends_with_same_error(const WorkPoint& point);
+  /// Calls `run`. If the backend does not run, or fails, the curve ends.
+  bool succeeds(const std::function<void()>& run);
 
   const System& system_;
   const TrustedState& trusted_;

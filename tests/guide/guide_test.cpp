@@ -24,7 +24,7 @@ WorkPoint made_point(std::string_view integrator, double dt_s, double cost, doub
 TEST(CostAtError, IsALineThroughTheLogarithms) {
   const std::vector<WorkPoint> points{made_point("rk4", 4e-4, 1, 1e-2), made_point("rk4", 2e-4, 2, 1e-4),
                                       made_point("verlet", 2e-4, 0.1, 1e-6)};
-  const GuidedMethod rk4{find_integrator("rk4"), find_backend("openmp"), {}};
+  const GuidedMethod rk4{find_integrator("rk4"), find_backend("openmp")};
   const auto cost = cost_at_error(points, rk4, 1e-3);
   ASSERT_TRUE(cost);
   EXPECT_NEAR(cost->seconds_a_second, std::sqrt(2), 1e-9);
@@ -34,13 +34,13 @@ TEST(CostAtError, IsALineThroughTheLogarithms) {
   EXPECT_NEAR(cost_at_error(points, rk4, 1)->seconds_a_second, 1, 1e-12);
   EXPECT_TRUE(cost_at_error(points, rk4, 1)->at_longest_step);
   EXPECT_FALSE(cost_at_error(points, rk4, 0.9e-4));
-  EXPECT_FALSE(cost_at_error(points, {find_integrator("rk4"), find_backend("serial"), {}}, 1));
+  EXPECT_FALSE(cost_at_error(points, {find_integrator("rk4"), find_backend("serial")}, 1));
 }
 
 TEST(CostAtError, LeavesOutWhatDoesNotCount) {
   std::vector<WorkPoint> points{made_point("rk4", 4e-4, 1, 1e-3), made_point("rk4", 2e-4, 2, 1e-4)};
   points.front().diverged = true;
-  const auto cost = cost_at_error(points, {find_integrator("rk4"), find_backend("openmp"), {}}, 1e-3);
+  const auto cost = cost_at_error(points, {find_integrator("rk4"), find_backend("openmp")}, 1e-3);
   ASSERT_TRUE(cost);
   EXPECT_NEAR(cost->seconds_a_second, 2, 1e-12);
   EXPECT_TRUE(cost->at_longest_step);
@@ -50,7 +50,7 @@ TEST(CostAtError, IsThatOfTheLongestStepThatKeepsTheError) {
   // A shorter step is off by more, and one that was measured last is longer than one that was first.
   const std::vector<WorkPoint> points{made_point("rk4", 1e-4, 4, 2e-3), made_point("rk4", 2e-4, 2, 5e-4),
                                       made_point("rk4", 4e-4, 1, 8e-3)};
-  const GuidedMethod rk4{find_integrator("rk4"), find_backend("openmp"), {}};
+  const GuidedMethod rk4{find_integrator("rk4"), find_backend("openmp")};
   // log(8) of log(16): three quarters of the way.
   EXPECT_NEAR(cost_at_error(points, rk4, 1e-3)->seconds_a_second, std::pow(2, 0.75), 1e-9);
   EXPECT_NEAR(cost_at_error(points, rk4, 1e-3)->dt_s, 4e-4 / std::pow(2, 0.75), 1e-12);
@@ -67,7 +67,7 @@ SceneGuide guide_of(std::vector<WorkPoint> points) {
   guide.trusted.horizon_s = 0.05;
   for (const WorkPoint& point : points)
     if (std::ranges::none_of(guide.methods, [&](const GuidedMethod& method) { return is_of(point, method); }))
-      guide.methods.push_back({point.integrator, find_backend(point.backend), {}});
+      guide.methods.push_back({point.integrator, find_backend(point.backend)});
   guide.points = std::move(points);
   return guide;
 }
@@ -296,8 +296,8 @@ SceneGuide with_unfinished(std::optional<WorkPoint> point, double step_seconds) 
   std::vector<WorkPoint> points{made_point("verlet", 1e-4, 0.3, 1e-3)};
   if (point) points.push_back(*point);
   SceneGuide guide = guide_of(std::move(points));
-  if (!point) guide.methods.push_back({find_integrator("rk4"), find_backend("openmp"), {}});
-  guide.methods.back().lack = Lack::time;
+  if (!point) guide.methods.push_back({find_integrator("rk4"), find_backend("openmp")});
+  guide.methods.back().ending.lack = Lack::time;
   guide.methods.back().step_seconds = step_seconds;
   return guide;
 }
@@ -311,11 +311,11 @@ TEST(MissedMethods, AreThoseThatCouldBeTheCheapest) {
   EXPECT_EQ(missed(with_unfinished(coarse, 1.01 * 0.3 * 2e-4)), 0U);
   EXPECT_EQ(missed(with_unfinished(coarse, 0.99 * 0.3 * 2e-4)), 1U);
   SceneGuide guide = with_unfinished(coarse, 0.99 * 0.3 * 2e-4);
-  guide.methods.back().lack = Lack::nothing;
+  guide.methods.back().ending.lack = Lack::nothing;
   EXPECT_EQ(missed(guide), 0U) << "more time would not help";
-  guide.methods.back().lack = Lack::time;
+  guide.methods.back().ending.lack = Lack::time;
   guide.points.push_back(made_point("rk4", 1e-4, 1, 1.1e-3, "serial"));
-  guide.methods.insert(guide.methods.begin(), {find_integrator("rk4"), find_backend("serial"), {}});
+  guide.methods.insert(guide.methods.begin(), {find_integrator("rk4"), find_backend("serial")});
   EXPECT_EQ(missed(guide), 0U) << "its integrator comes to its end short of the error";
   // No step is longer than the longest usable one: 0.95 * 1e-4 s takes longer.
   guide = with_unfinished(coarse, 0.99 * 0.3 * 2e-4);
@@ -334,7 +334,7 @@ TEST(MissedMethods, AreThoseThatCouldBeTheCheapest) {
   EXPECT_EQ(missed(guide), 0U) << "it is implicit";
   guide.points.clear();
   EXPECT_EQ(missed(guide), 1U) << "nothing else was measured";
-  guide.methods.front().lack = Lack::time;
+  guide.methods.front().ending.lack = Lack::time;
   EXPECT_EQ(missed_methods(guide), std::vector<const GuidedMethod*>{&guide.methods.front()});
 }
 
@@ -356,8 +356,8 @@ TEST(NeededTime, IsThatOfTheCurvesThatAreMissed) {
   guide.seconds = 5;
   guide.seconds_on_points = 10;
   guide.methods.back().next = NextPoint{2, 3.2e-4, 10};
-  guide.methods.push_back({find_integrator("xpbd"), find_backend("serial"), {}});
-  guide.methods.back().lack = Lack::time;
+  guide.methods.push_back({find_integrator("xpbd"), find_backend("serial")});
+  guide.methods.back().ending.lack = Lack::time;
   guide.methods.back().next = NextPoint{3, 1e-3, 10};
   const Recommendation chosen = recommend(guide);
   EXPECT_EQ(chosen.needed_s, 64);  // 63.3
@@ -377,8 +377,8 @@ TEST(NeededTime, IsThatOfThePointsThatACurveMayHave) {
   // 0.3. The curve of serial may have points of 1 s and 2 s.
   guide.methods.back().next = NextPoint{3, 3.2e-4, 0};
   EXPECT_EQ(recommend(guide).needed_s, 40);
-  guide.methods.push_back({find_integrator("xpbd"), find_backend("serial"), {}});
-  guide.methods.back().lack = Lack::time;
+  guide.methods.push_back({find_integrator("xpbd"), find_backend("serial")});
+  guide.methods.back().ending.lack = Lack::time;
   guide.methods.back().next = NextPoint{1, 1e-3, 10};
   EXPECT_EQ(recommend(guide).needed_s, 50);
   guide.methods.back().next = NextPoint{0.25, 1e-3, 1};  // and 0.5 s, but not 1 s and 2 s
@@ -455,7 +455,7 @@ TEST(Recommendation, KnowsThatLargeErrorsAreTooLarge) {
   EXPECT_EQ(recommend(guide).nearest, 0U);
   EXPECT_THAT(recommend(guide).sentences.at(0), HasSubstr("No measured method keeps"));
   // Smaller steps could keep the error, but that would not show.
-  guide.methods[0].lack = Lack::time;
+  guide.methods[0].ending.lack = Lack::time;
   EXPECT_FALSE(recommend(guide).needed_s || recommend(guide).nearest);
   EXPECT_THAT(recommend(guide).sentences, ElementsAre(HasSubstr("--error 9.1e-06")));
   guide.trusted.short_of_s = 1;  // with a better reference it could
@@ -476,23 +476,23 @@ TEST(Recommendation, ShowsOnWhichSideOfTheWishedErrorANumberIs) {
 TEST(WhatWasMeasured, SaysWhichMethodsWereNotAndWhy) {
   SceneGuide guide = guide_of({made_point("verlet", 1e-4, 1, 5e-4), made_point("rk4", 1e-4, 1, 5e-3)});
   const auto add = [&](const char* integrator, const char* backend, Lack lack) {
-    guide.methods.push_back({find_integrator(integrator), find_backend(backend), {}});
-    guide.methods.back().lack = lack;
+    guide.methods.push_back({find_integrator(integrator), find_backend(backend)});
+    guide.methods.back().ending.lack = lack;
   };
   add("rk4", "serial", Lack::time);
   add("verlet", "serial", Lack::time);
-  add("xpbd", "serial", Lack::backend);
-  add("xpbd", "opencl", Lack::backend);
+  add("xpbd", "serial", Lack::unsupported);
+  add("xpbd", "opencl", Lack::unavailable);
   add("explicit-euler", "serial", Lack::stable_step);
   EXPECT_THAT(what_was_measured(guide),
               ElementsAre(HasSubstr("2 of 7 methods"),
                           AllOf(HasSubstr("time"), EndsWith(": rk4 and verlet on serial.")),
                           EndsWith(": xpbd on serial and opencl."), EndsWith(": explicit-euler on serial."),
                           AllOf(HasSubstr("0.001"), EndsWith(": rk4 on openmp."))));
-  guide.methods[1].lack = Lack::time;
+  guide.methods[1].ending.lack = Lack::time;
   EXPECT_THAT(what_was_measured(guide).back(), AllOf(HasSubstr("time"), EndsWith(": rk4 on openmp.")));
-  guide.methods[4].status = "not timed: too crowded";
-  guide.methods[5].status = "failed: it stumbled";
+  guide.methods[4].ending = {Lack::not_timed, "too crowded"};
+  guide.methods[5].ending = {Lack::failed, "it stumbled"};
   EXPECT_THAT(what_was_measured(guide),
               testing::IsSupersetOf({AllOf(HasSubstr("times mean nothing"), EndsWith(": xpbd on serial.")),
                                      AllOf(HasSubstr("fails"), EndsWith(": xpbd on opencl."))}));

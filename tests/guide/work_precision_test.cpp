@@ -32,7 +32,7 @@ std::vector<WorkPoint> curve_of(std::string_view integrator, double stable_s, do
   TrustedState trusted = trusted_after_10_ms(system);
   trusted.own_error = std::max(trusted.own_error, own_error);
   const StepLimit limit = limit_of(integrator, stable_s);
-  GuidedMethod method{limit.integrator, find_backend("serial"), {}};
+  GuidedMethod method{limit.integrator, find_backend("serial")};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, wanted_error);
   std::vector<WorkPoint> points;
   while (curve.has_next())
@@ -83,23 +83,23 @@ TEST(WorkCurve, IsUnsupportedWithoutSpendingTimeWhereTheBackendLacksTheIntegrato
   const System system = cloth_system(8, 8);
   StepLimit unfinished;  // as of a guide whose time ended before it had found a stable step
   unfinished.integrator = find_integrator("newton-euler");
-  GuidedMethod method{unfinished.integrator, find_backend("opencl"), {}};
+  GuidedMethod method{unfinished.integrator, find_backend("opencl")};
   const WorkCurve curve(system, {}, unfinished, method, {.threads = 1}, 1e-6);
   EXPECT_FALSE(curve.has_next());
-  EXPECT_EQ(method.lack, Lack::backend);
-  EXPECT_THAT(method.status, testing::HasSubstr("implicit"));
+  EXPECT_EQ(method.ending.lack, Lack::unsupported);
+  EXPECT_THAT(method.ending.status(), testing::HasSubstr("implicit"));
 }
 
 TEST(WorkCurve, EndsWithAProgramThatPostponesItsSteps) {
   const System system = cloth_system(30, 30);
   const TrustedState trusted = trusted_after_10_ms(system, 1e-3);
   const StepLimit limit = limit_of("semi-euler");
-  GuidedMethod method{limit.integrator, &postponing, {}};
+  GuidedMethod method{limit.integrator, &postponing};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-3);
   EXPECT_FALSE(curve.next());
   EXPECT_FALSE(curve.has_next());
-  EXPECT_EQ(method.lack, Lack::backend);
-  EXPECT_THAT(method.status, StartsWith("failed: it reports steps before they are done"));
+  EXPECT_EQ(method.ending.lack, Lack::failed);
+  EXPECT_THAT(method.ending.status(), StartsWith("failed: it reports steps before they are done"));
 }
 
 /// A backend whose steps take a while but change nothing.
@@ -139,7 +139,7 @@ std::pair<int, GuidedMethod> curve_on(const BackendInfo& backend, double stable_
   const TrustedState trusted = trusted_after_10_ms(system);
   StepLimit limit = limit_of("semi-euler");
   limit.measured.span_s = stable_span_s;
-  GuidedMethod method{limit.integrator, &backend, {}};
+  GuidedMethod method{limit.integrator, &backend};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-6);
   int points = 0;
   while (curve.has_next()) points += curve.next() ? 1 : 0;
@@ -150,35 +150,35 @@ TEST(WorkCurve, EndsWithABackendWhoseStableStepsDiverge) {
   // The first step is longer than the largest stable one.
   const auto [points, method] = curve_on(astray, 0.2);
   EXPECT_EQ(points, 4);
-  EXPECT_EQ(method.lack, Lack::backend);
-  EXPECT_THAT(method.status, StartsWith("failed: its energy grows or is not finite with 3 steps"));
+  EXPECT_EQ(method.ending.lack, Lack::failed);
+  EXPECT_THAT(method.ending.status(), StartsWith("failed: its energy grows or is not finite with 3 steps"));
   // Where steps were stable for a shorter time than the horizon, smaller ones may not diverge.
   const auto [all, unstable] = curve_on(astray, 0.005);
   EXPECT_EQ(all, 11);
-  EXPECT_EQ(unstable.lack, Lack::stable_step);
-  EXPECT_THAT(unstable.status, HasSubstr("no step that was tried is stable"));
+  EXPECT_EQ(unstable.ending.lack, Lack::stable_step);
+  EXPECT_THAT(unstable.ending.status(), HasSubstr("no step that was tried is stable"));
 }
 
 TEST(WorkCurve, EndsWhereTwoHalvingsLeaveALargeError) {
   // In 10 ms free nodes fall by 0.05 of a rest length.
   const auto [points, method] = curve_on(frozen, 0.2);
   EXPECT_EQ(points, 4);
-  EXPECT_EQ(method.lack, Lack::nothing);
-  EXPECT_THAT(method.status,
+  EXPECT_EQ(method.ending.lack, Lack::nothing);
+  EXPECT_THAT(method.ending.status(),
               AllOf(StartsWith("smaller steps are no more accurate"), HasSubstr("another system")));
 }
 
 TEST(WorkCurve, HasNoTimesThatMeanNothing) {
   const auto [points, method] = curve_on(crowded, 0.2);
   EXPECT_EQ(points, 0);
-  EXPECT_EQ(method.lack, Lack::backend);
-  EXPECT_EQ(method.status, "not timed: too crowded");
+  EXPECT_EQ(method.ending.lack, Lack::not_timed);
+  EXPECT_EQ(method.ending.status(), "not timed: too crowded");
   const System system = cloth_system(8, 8);
   const TrustedState trusted = trusted_after_10_ms(system, 1e-3);
   const StepLimit limit = limit_of("semi-euler");
-  GuidedMethod one{limit.integrator, &crowded, {}};
+  GuidedMethod one{limit.integrator, &crowded};
   WorkCurve(system, trusted, limit, one, {.threads = 1}, 1e-6).time_step();
-  EXPECT_EQ(one.status, "not timed: too crowded");
+  EXPECT_EQ(one.ending.status(), "not timed: too crowded");
   EXPECT_EQ(one.step_seconds, 0);
   std::vector<SizeCurve> sizes{
       {.integrator = limit.integrator, .backend = &crowded, .dt_s = 1e-4, .samples = {}, .status = {}}};
@@ -195,18 +195,18 @@ TEST(WorkCurve, SaysForWhichStepsThereWasNoTime) {
   const StepLimit limit = limit_of("semi-euler");
   std::vector<std::string> statuses;
   for (const int points : {0, 1, 2}) {  // none, one that diverges, and one that counts
-    GuidedMethod method{limit.integrator, find_backend("serial"), {}};
+    GuidedMethod method{limit.integrator, find_backend("serial")};
     WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-6);
     int steps = first_steps(*limit.integrator, limit.measured, trusted.horizon_s);
     for (int taken = 0; taken < points; ++taken, steps *= 2) curve.next();
     curve.end_without_time();
     EXPECT_FALSE(curve.has_next());
-    EXPECT_EQ(method.lack, Lack::time);
+    EXPECT_EQ(method.ending.lack, Lack::time);
     ASSERT_TRUE(method.next);
     EXPECT_DOUBLE_EQ(method.next->dt_s, trusted.horizon_s / steps);
     EXPECT_EQ(method.next->later, 10 - points);  // of 11
     EXPECT_GT(method.next->seconds, 0);
-    statuses.push_back(method.status);
+    statuses.push_back(method.ending.status());
   }
   for (const std::size_t without_any : {0U, 1U})
     EXPECT_THAT(statuses[without_any], Not(HasSubstr("smaller")));
@@ -222,10 +222,10 @@ TEST(WorkCurve, TimesAStepOnABackendThatIsNotTheLimits) {
   limit.backend = "openmp";
   limit.step_seconds = 10;
   limit.measured = {.stable_s = 2.2e-4, .unstable_s = 2.21e-4};
-  GuidedMethod method{limit.integrator, find_backend("openmp"), {}};
+  GuidedMethod method{limit.integrator, find_backend("openmp")};
   EXPECT_TRUE(WorkCurve(system, trusted, limit, method, {.threads = 1}, 1e-3).is_timed());
   EXPECT_EQ(method.step_seconds, 10);
-  method = {limit.integrator, find_backend("serial"), {}};
+  method = {limit.integrator, find_backend("serial")};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-3);
   EXPECT_FALSE(curve.is_timed());
   EXPECT_GT(curve.next_seconds(), 100) << "as on openmp";
@@ -536,13 +536,14 @@ TEST(StepLimit, OfBackwardEulerIsTheFloors) {
 
 TEST(StepLimit, IsNoneOnABackendThatIsNeverStable) {
   const StepLimit failed = found_limit("semi-euler", cloth_system(4, 4), astray);
-  EXPECT_EQ(failed.lack(), Lack::backend);
-  EXPECT_THAT(failed.status, StartsWith("failed: its energy grows or is not finite even with a step of "));
+  EXPECT_EQ(failed.lack(), Lack::failed);
+  EXPECT_THAT(failed.ending.status(),
+              StartsWith("failed: its energy grows or is not finite even with a step of "));
   // Here the integrator is never stable.
   const StepLimit unstable =
       found_limit("explicit-euler", undamped(cloth_system(4, 4)), *find_backend("serial"));
   EXPECT_EQ(unstable.lack(), Lack::stable_step);
-  EXPECT_EQ(unstable.status, "");
+  EXPECT_EQ(unstable.ending.status(), "");
 }
 
 TEST(StepTheory, SaysWhyAMeasuredStepIsAnotherOne) {

@@ -206,8 +206,8 @@ SceneGuide made_up_guide() {
   guide.trusted.horizon_s = 0.1;
   guide.trusted.why_there = "it was made up";
   const BackendInfo* serial = find_backend("serial");
-  guide.methods = {{find_integrator("rk4"), serial, ""},
-                   {find_integrator("xpbd"), serial, "no time was left"}};
+  guide.methods = {{find_integrator("rk4"), serial},
+                   {find_integrator("xpbd"), serial, {Lack::time, "no time was left"}}};
   guide.points = {work_point(0.01, std::nullopt), work_point(0.005, 0.125), work_point(0.0025, 0.001)};
   guide.points[0].diverged = guide.points[1].on_front = guide.points[2].beyond_trust = true;
   for (const char* name : {"rk4", "xpbd"}) guide.limits.emplace_back().integrator = find_integrator(name);

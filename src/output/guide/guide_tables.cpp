@@ -111,7 +111,7 @@ Table limits_table(const SceneGuide& guide) {
     return seconds > 0 && std::isfinite(seconds) ? Cell(two_digits(seconds)) : Cell();
   };
   for (const StepLimit& limit : guide.limits) {
-    std::string remark = limit.status.empty() ? limit.why : limit.status;
+    std::string remark = limit.ending.lack == Lack::nothing ? limit.why : limit.ending.status();
     if (!limit.measured.finished && limit.measured.stable_s > 0)
       remark = "the limit is between these two; time ran out" + (remark.empty() ? "" : "; " + remark);
     table.add({{"integrator", limit.integrator->name},
@@ -233,7 +233,7 @@ void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method
              {"samples", of_point(&WorkPoint::samples)},
              {"diverged", of_point(&WorkPoint::diverged)},
              {"on_front", of_point(&WorkPoint::on_front)},
-             {"status", point ? Cell(state_of(*point)) : Cell(method.status)},
+             {"status", point ? Cell(state_of(*point)) : Cell(method.ending.status())},
              {"note", of_point(&WorkPoint::note)},
              {"recommended", point ? Cell(is_recommended(guide, *point)) : Cell()}});
 }
@@ -267,7 +267,7 @@ Table steps_table(const SceneGuide& guide) {
                {"span_s", limit.measured.span_s},
                {"finished", limit.measured.finished},
                {"why", limit.why},
-               {"status", limit.status}});
+               {"status", limit.ending.status()}});
   return table;
 }
 
@@ -412,7 +412,7 @@ Table guide_summary(const SceneGuide& guide) {
                {"energy_error", point ? Cell(point->energy_error) : Cell()},
                {"accurate", point ? Cell(accurate) : Cell()},
                {"on_front", point ? Cell(point->on_front) : Cell()},
-               {"remark", worded(line.method->status)}});
+               {"remark", worded(line.method->ending.status())}});
   }
   return table;
 }

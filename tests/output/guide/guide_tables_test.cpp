@@ -33,7 +33,7 @@ std::vector<SceneGuide> measured_guides() {
     WorkPoint point;
     point.integrator = find_integrator(points.text(i, points.column("integrator")));
     point.backend = points.text(i, points.column("backend"));
-    const GuidedMethod method{point.integrator, find_backend(point.backend), {}};
+    const GuidedMethod method{point.integrator, find_backend(point.backend)};
     if (std::ranges::none_of(guide.methods, [&](const GuidedMethod& known) { return is_of(point, known); }))
       guide.methods.push_back(method);
     if (points.text(i, points.column("status")) != "ok") continue;
@@ -52,7 +52,7 @@ std::vector<SceneGuide> measured_guides() {
 
 std::optional<CostAtError> cost_of(const SceneGuide& guide, std::string_view integrator,
                                    std::string_view backend) {
-  return cost_at_error(guide.points, {find_integrator(integrator), find_backend(backend), {}}, error);
+  return cost_at_error(guide.points, {find_integrator(integrator), find_backend(backend)}, error);
 }
 
 double stable_step(const SceneGuide& guide, std::string_view integrator) {
@@ -164,7 +164,7 @@ TEST(GuidePage, HasTheNumbersOfItsResults) {
 TEST(GuideTables, HaveTheirColumnsWhereTheyWere) {
   SceneGuide guide;
   guide.wish.error = error;
-  const GuidedMethod method{find_integrator("rk4"), find_backend("serial"), {}};
+  const GuidedMethod method{find_integrator("rk4"), find_backend("serial")};
   guide.methods = {method};
   WorkPoint point;
   point.integrator = method.integrator;
