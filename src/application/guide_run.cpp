@@ -255,7 +255,7 @@ int run_guide(const GuideOptions& options) {
         break;
       }
       // A guide that was stopped before it had a point replaces nothing.
-      if (!folder || (stop.requested() && guides.back().points.empty())) continue;
+      if (!folder || (stop.requested() && !guides.back().has_points())) continue;
       folder->write(guide_tables(guides, provenance));
       written = true;
     }

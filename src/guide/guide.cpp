@@ -98,9 +98,7 @@ void measure_longest_steps(SceneGuide& guide, std::span<WorkCurve> curves, const
     if (watch.stop() || clock.spent() + curve.seconds_of(*steps) > end) return;
     watch.progress(fmt::format("longest step: {} {}", method->integrator->name, method->backend->name),
                    clock.fraction());
-    auto measured = curve.measure(*steps);
-    if (!measured) return clock.forgive(method->ending);
-    guide.points.push_back(std::move(measured->point));
+    if (!curve.measure(*steps)) return clock.forgive(method->ending);
   }
 }
 
@@ -122,8 +120,8 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
                           request.wish.error);
     }
   const auto give_up = [&](const LateProgram& program) {
-    for (std::size_t i = 0; i < curves.size(); ++i)
-      if (guide.methods[i].backend == program.backend) curves[i].end(program.ending);
+    for (WorkCurve& curve : curves)
+      if (curve.method().backend == program.backend) curve.end(program.ending);
   };
   const auto forgive = [&](const GuidedMethod& method) {
     clock.forgive(method.ending);
@@ -135,7 +133,7 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
       return curve.has_next() ? curve.next_seconds() : std::numeric_limits<double>::infinity();
     });
     if (next == curves.end() || !next->has_next()) break;
-    GuidedMethod& method = guide.methods[static_cast<std::size_t>(next - curves.begin())];
+    GuidedMethod& method = next->method();
     if (watch.stop() || clock.spent() + next->next_seconds() > end) {
       next->end_without_time();
       continue;
@@ -147,19 +145,17 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
     }
     watch.progress(fmt::format("work and precision: {} {}", method.integrator->name, method.backend->name),
                    clock.fraction());
-    auto measured = next->next();
+    auto state = next->next();
     forgive(method);
-    if (!measured) continue;
-    if (is_implicit(*method.integrator) && !measured->point.diverged)
-      ends.push_back({guide.points.size(), std::move(measured->state)});
-    guide.points.push_back(std::move(measured->point));
+    if (state && is_implicit(*method.integrator) && !method.points.back().diverged)
+      ends.push_back({&method, method.points.size() - 1, std::move(*state)});
   }
   guide.seconds_on_points = clock.spent() - begin;
   const double end_of_steps = clock.end_of_part(share_of_longest_steps, later + share_of_exact_steps);
   measure_longest_steps(guide, curves, watch, clock, end_of_steps);
   // A step takes far less time than a point, and shows what the method would have cost.
   for (WorkCurve& curve : curves) {
-    GuidedMethod& method = guide.methods[static_cast<std::size_t>(&curve - curves.data())];
+    const GuidedMethod& method = curve.method();
     if (!method.next || curve.is_timed() || is_implicit(*method.integrator)) continue;
     if (watch.stop() || clock.spent() > end_of_steps) break;
     curve.time_step();
@@ -168,14 +164,9 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
   }
   watch.progress("errors of steps and solvers", clock.fraction());
   const double last = clock.end_of_part(share_of_exact_steps, later);
-  tell_errors_apart(guide.points, ends, *request.system, guide.trusted,
+  tell_errors_apart(guide.methods, ends, *request.system, guide.trusted,
                     [&] { return watch.stop() || clock.spent() > last; });
-  const auto place = [&](const WorkPoint& point) {
-    const auto method = std::ranges::find_if(
-        guide.methods, [&](const GuidedMethod& candidate) { return is_of(point, candidate); });
-    return std::pair(method - guide.methods.begin(), point.steps);
-  };
-  std::ranges::stable_sort(guide.points, {}, [&](const WorkPoint& point) { return place(point); });
+  for (GuidedMethod& method : guide.methods) std::ranges::stable_sort(method.points, {}, &WorkPoint::steps);
 }
 
 void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
@@ -183,7 +174,7 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
   for (const GuidedMethod& method : guide.methods) {
     SizeCurve curve{.integrator = method.integrator, .backend = method.backend, .samples = {}, .status = {}};
     curve.dt_s = step_for_sizes(guide, method);
-    curve.keeps_error = cost_at_error(guide.points, method, request.wish.error).has_value();
+    curve.keeps_error = cost_at_error(method, request.wish.error).has_value();
     if (curve.dt_s == 0)
       curve.status =
           method.ending.status().empty() ? "no step that was measured is stable" : method.ending.status();
@@ -197,6 +188,10 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
 }
 
 }  // namespace
+
+bool SceneGuide::has_points() const {
+  return std::ranges::any_of(methods, [](const GuidedMethod& method) { return !method.points.empty(); });
+}
 
 double rounded_up(double value) {
   const double places = 1 - std::floor(std::log10(value)), scale = std::pow(10, std::abs(places));
@@ -260,7 +255,7 @@ SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
   }
   measure_points(guide, request, watch, clock);
   guide.stopped = watch.stop();
-  mark_pareto_front(guide.points);
+  mark_pareto_front(guide.methods);
   guide.recommendation = recommend(guide);
   if (request.make_cloth) measure_cloths(guide, request, watch, clock);
   return guide;

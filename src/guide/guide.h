@@ -77,13 +77,14 @@ struct Wish {
   double error = 1e-3;  ///< of positions at the horizon, in mean rest lengths
 };
 
-/// The recommended method, as indices into the points.
+/// The recommended method, as indices into the methods.
 struct Recommendation {
-  std::optional<std::size_t> best;  ///< point_at_error of the cheapest method at the requested error
-  /// point_at_error of the cheapest method with another integrator, else on another backend.
+  /// The cheapest method at the requested error. The recommended step is that of its point_at_error.
+  std::optional<std::size_t> best;
+  /// The cheapest method with another integrator, else on another backend.
   std::optional<std::size_t> runner_up;
-  /// The most accurate point, if none is accurate enough, nor too accurate to be told apart from the
-  /// reference.
+  /// The method of the most accurate point, if none is accurate enough, nor too accurate to be told apart
+  /// from the reference.
   std::optional<std::size_t> nearest;
   /// Wall time, s, with which the guide would have recommended a method; none: the time sufficed, or the
   /// guide was stopped. If set, none of the above is.
@@ -121,10 +122,11 @@ struct SceneGuide {
   Spectrum at_start, on_the_way;
   TrustedState trusted;  ///< if it failed, there are no points
   std::vector<StepLimit> limits;
-  std::vector<GuidedMethod> methods;
-  std::vector<WorkPoint> points;  ///< by method, from coarse to fine, with the front marked
+  std::vector<GuidedMethod> methods;  ///< with the front marked
   std::vector<SizeCurve> sizes;
   Recommendation recommendation;
+
+  bool has_points() const;
 };
 
 /// Measures a scene other than a garment: the trusted state, the largest stable steps, the work-precision
@@ -145,12 +147,13 @@ struct CostAtError {
 /// The cost at which the method's curve, from long to short steps, first reaches the error. Cost and step are
 /// interpolated between two points on logarithmic axes. None if no point is accurate enough. Ignores points
 /// that do not count.
-std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
-                                         double error);
+std::optional<CostAtError> cost_at_error(const GuidedMethod& method, double error);
 
-/// The index of the method's measured point with the longest step that counts and keeps the error.
-std::optional<std::size_t> point_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
-                                          double error);
+/// The method's measured point with the longest step that counts and keeps the error; null if there is none.
+const WorkPoint* point_at_error(const GuidedMethod& method, double error);
+
+/// The method's most accurate point that counts; null if none does.
+const WorkPoint* most_accurate(const GuidedMethod& method);
 
 /// The number of steps over the horizon with which the method should keep the requested error, if their
 /// length exceeds that of its point_at_error by more than step_resolution. It follows from the curve, or is

@@ -218,18 +218,12 @@ std::string why_they_differ(const Integrator& integrator, const StableStep& meas
 }
 
 std::string Ending::status() const {
-  switch (lack) {
-    case Lack::unsupported:
-      return "unsupported: " + why;
-    case Lack::unavailable:
-      return "unavailable: " + why;
-    case Lack::not_timed:
-      return "not timed: " + why;
-    case Lack::failed:
-      return "failed: " + why;
-    default:
-      return why;
-  }
+  const std::string word = lack == Lack::unsupported   ? "unsupported: "
+                           : lack == Lack::unavailable ? "unavailable: "
+                           : lack == Lack::not_timed   ? "not timed: "
+                           : lack == Lack::failed      ? "failed: "
+                                                       : "";
+  return word + why;
 }
 
 Ending ending_of(const std::function<void()>& work) {

@@ -16,8 +16,6 @@ namespace mssim {
 /// Cost and error of one step size: a point of a work-precision curve (Hairer, Norsett and Wanner, Solving
 /// Ordinary Differential Equations I, section II.10).
 struct WorkPoint {
-  const Integrator* integrator = nullptr;
-  std::string backend;
   int steps = 0;              ///< over the horizon
   double dt_s = 0;            ///< simulated time
   double seconds_a_step = 0;  ///< wall time, in the fastest of `samples` runs over the horizon
@@ -187,19 +185,15 @@ struct NextPoint {
   int later = 0;       ///< points that the curve may have after it
 };
 
-/// A method: an integrator on a backend.
+/// A method: an integrator on a backend, and its work-precision curve.
 struct GuidedMethod {
   const Integrator* integrator = nullptr;
   const BackendInfo* backend = nullptr;
   Ending ending = {};       ///< why there are no points, or no more
   double step_seconds = 0;  ///< wall time per step of the shortest step that was timed; 0: none
   std::optional<NextPoint> next = {};
+  std::vector<WorkPoint> points = {};  ///< from coarse to fine, once all are measured
 };
-
-/// Whether the point is of the method.
-inline bool is_of(const WorkPoint& point, const GuidedMethod& method) {
-  return point.integrator == method.integrator && point.backend == method.backend->name;
-}
 
 /// A backend to be timed, like make_backend. Throws, too, if its times mean nothing here, for ending_of.
 std::unique_ptr<Backend> make_timed_backend(const BackendInfo& info, const System& system,

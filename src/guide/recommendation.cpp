@@ -10,17 +10,6 @@
 namespace mssim {
 namespace {
 
-/// The index of the point with the least measure among those that count and that `takes` accepts.
-template <class Takes, class Measure>
-std::optional<std::size_t> least(std::span<const WorkPoint> points, const Takes& takes,
-                                 const Measure& measure) {
-  std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].counts() && takes(points[i]) && (!found || measure(points[i]) < measure(points[*found])))
-      found = i;
-  return found;
-}
-
 double cost_of(const WorkPoint& point) { return point.seconds_a_second(); }
 double error_of(const WorkPoint& point) { return *point.position_error; }
 
@@ -39,15 +28,20 @@ std::string digits_beside(double value, double limit) {
   return decimal(value);
 }
 
-std::string named(const WorkPoint& point) {
-  return fmt::format("{} on {}", point.integrator->name, point.backend);
+/// Whether the method has such a point.
+bool has_beyond_trust(const GuidedMethod& method) {
+  return std::ranges::any_of(method.points, is_beyond_trust);
+}
+
+std::string named(const GuidedMethod& method) {
+  return fmt::format("{} on {}", method.integrator->name, method.backend->name);
 }
 
 /// The points of the method that count, from the longest step to the shortest.
-std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const GuidedMethod& method) {
+std::vector<const WorkPoint*> counting(const GuidedMethod& method) {
   std::vector<const WorkPoint*> curve;
-  for (const WorkPoint& point : points)
-    if (point.counts() && is_of(point, method)) curve.push_back(&point);
+  for (const WorkPoint& point : method.points)
+    if (point.counts()) curve.push_back(&point);
   std::ranges::stable_sort(curve, std::ranges::greater(), &WorkPoint::dt_s);
   return curve;
 }
@@ -59,18 +53,16 @@ std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
                      decimal(wish.frames_per_second));
 }
 
-std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const CostAtError& cost) {
+std::string what_to_take(const SceneGuide& guide, const Ranked& winner, const WorkPoint& point) {
   const double rate = guide.wish.frames_per_second;
-  const auto method = std::ranges::find_if(
-      guide.methods, [&](const GuidedMethod& candidate) { return is_of(point, candidate); });
-  const auto steps = steps_to_try(guide, *method);
-  const StepLimit* limit = limit_of(guide, point.integrator);
-  const bool is_limited = !steps && cost.at_longest_step && limit != nullptr &&
+  const auto steps = steps_to_try(guide, *winner.method);
+  const StepLimit* limit = limit_of(guide, winner.method->integrator);
+  const bool is_limited = !steps && winner.cost.at_longest_step && limit != nullptr &&
                           limit->measured.unstable_s > 0 && limit->measured.finished &&
                           guide.trusted.horizon_s > limit->measured.stable_s;  // else that limits it
   std::string text =
       fmt::format("Take {} with a step of {} s{}, which is {} per frame at {} frames per second.",
-                  named(point), two_digits(point.dt_s),
+                  named(*winner.method), two_digits(point.dt_s),
                   is_limited ? fmt::format(", {} of the longest that is stable",
                                            two_digits(point.dt_s / limit->measured.stable_s))
                              : "",
@@ -81,11 +73,11 @@ std::string what_to_take(const SceneGuide& guide, const WorkPoint& point, const 
   return text;
 }
 
-std::string what_is_nearest(const WorkPoint& point, const Wish& wish) {
+std::string what_is_nearest(const GuidedMethod& method, const WorkPoint& point, const Wish& wish) {
   return fmt::format(
       "No measured method keeps the error within {} of a mean rest length: the most accurate is {} with a "
       "step of {} s.",
-      decimal(wish.error), named(point), two_digits(point.dt_s));
+      decimal(wish.error), named(method), two_digits(point.dt_s));
 }
 
 /// Why it is not known whether a method keeps the error. `nearest`: the most accurate point that counts.
@@ -114,9 +106,8 @@ struct ErrorRange {
 
 /// Advantage in cost of `other` over `winner` at an error, as the logarithm of the ratio. If only one of them
 /// keeps the error, it is infinite, and negative if that is `winner`; it is negative, too, if neither does.
-double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winner, const GuidedMethod& other,
-                    double error) {
-  const auto mine = cost_at_error(points, other, error), its = cost_at_error(points, winner, error);
+double advantage_at(const GuidedMethod& winner, const GuidedMethod& other, double error) {
+  const auto mine = cost_at_error(other, error), its = cost_at_error(winner, error);
   constexpr double endless = std::numeric_limits<double>::infinity();
   if (!mine) return -endless;
   return its ? std::log(its->seconds_a_second / mine->seconds_a_second) : endless;
@@ -124,11 +115,10 @@ double advantage_at(std::span<const WorkPoint> points, const GuidedMethod& winne
 
 /// The errors at which `other` is cheaper than `winner`, in ascending order. Between the errors of their
 /// points, the advantage is linear in the logarithm of the error.
-std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const GuidedMethod& winner,
-                                      const GuidedMethod& other) {
+std::vector<ErrorRange> ranges_to_win(const GuidedMethod& winner, const GuidedMethod& other) {
   std::vector<double> errors;
   for (const GuidedMethod* method : {&winner, &other})
-    for (const WorkPoint* point : counting(points, *method)) errors.push_back(error_of(*point));
+    for (const WorkPoint* point : counting(*method)) errors.push_back(error_of(*point));
   std::ranges::sort(errors);
   // The advantage cannot change between equal errors.
   errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
@@ -142,10 +132,10 @@ std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const G
       ranges.back().to = error;
   };
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double here = advantage_at(points, winner, other, errors[i]);
+    const double here = advantage_at(winner, other, errors[i]);
     if ((here > 0) != cheaper) turn_at(errors[i]);
     if (i + 1 == errors.size()) break;
-    const double below_next = advantage_at(points, winner, other, errors[i + 1] * (1 - 1e-9));
+    const double below_next = advantage_at(winner, other, errors[i + 1] * (1 - 1e-9));
     if ((below_next > 0) != cheaper && std::isfinite(here))
       turn_at(errors[i] * std::pow(errors[i + 1] / errors[i], here / (here - below_next)));
   }
@@ -169,36 +159,33 @@ std::string in_words(std::span<const ErrorRange> ranges, double wished) {
   return listed(texts);
 }
 
-std::string who_comes_second(const SceneGuide& guide, const Ranked& winner, const Ranked* second,
-                             const WorkPoint* point) {
+std::string who_comes_second(const SceneGuide& guide, const Ranked& winner, const Ranked* second) {
   if (second == nullptr) return "No other measured method is accurate enough.";
-  const std::vector<ErrorRange> wins = ranges_to_win(guide.points, *winner.method, *second->method);
+  const WorkPoint* point = point_at_error(*second->method, guide.wish.error);
+  const std::vector<ErrorRange> wins = ranges_to_win(*winner.method, *second->method);
   const double ratio = second->cost.seconds_a_second / winner.cost.seconds_a_second;
   return fmt::format(
       "The runner-up is {} with a step of {} s, which takes {} times as long at an error of {}{}",
-      named(*point), two_digits(point->dt_s), three_digits(ratio), decimal(guide.wish.error),
+      named(*second->method), two_digits(point->dt_s), three_digits(ratio), decimal(guide.wish.error),
       wins.empty() ? "; it is cheaper at no error."
                    : fmt::format("; it is cheaper at errors of {}.", in_words(wins, guide.wish.error)));
 }
 
 /// Whether more time would have given the method a cost at the requested error.
 bool lacks_time(const SceneGuide& guide, const GuidedMethod& method) {
-  if (cost_at_error(guide.points, method, guide.wish.error)) return false;
+  if (cost_at_error(method, guide.wish.error)) return false;
   // Errors grow with the horizon, and smaller errors count with a better reference.
   const bool lacks_reference = guide.trusted.short_of_s > 0;
   if (method.ending.lack == Lack::time)
     return lacks_reference || guide.wish.error >= guide.trusted.least_error();
-  return lacks_reference && std::ranges::any_of(guide.points, [&](const WorkPoint& point) {
-           return is_of(point, method) && point.beyond_trust;
-         });
+  return lacks_reference && std::ranges::any_of(method.points, &WorkPoint::beyond_trust);
 }
 
 /// Whether the curve of its integrator on another backend is complete but does not reach the requested error.
 bool ends_short(const SceneGuide& guide, const GuidedMethod& method) {
   return std::ranges::any_of(guide.methods, [&](const GuidedMethod& other) {
     return other.integrator == method.integrator && other.ending.lack == Lack::nothing &&
-           !lacks_time(guide, other) && !counting(guide.points, other).empty() &&
-           !cost_at_error(guide.points, other, guide.wish.error);
+           !lacks_time(guide, other) && !counting(other).empty() && !cost_at_error(other, guide.wish.error);
   });
 }
 
@@ -261,13 +248,12 @@ std::string integrators_of(std::span<const Compared> compared) {
 /// than two were measured.
 std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
   std::vector<Compared> all;
-  for (const std::string_view name : paper_integrators) {
-    const GuidedMethod method{find_integrator(name), &backend};
-    const auto curve = counting(guide.points, method);
-    if (!curve.empty())
-      all.push_back(
-          {name, curve.back()->seconds_a_step, cost_at_error(guide.points, method, guide.wish.error)});
-  }
+  for (const std::string_view name : paper_integrators)
+    for (const GuidedMethod& method : guide.methods) {
+      if (method.backend != &backend || method.integrator->name != name) continue;
+      if (const auto curve = counting(method); !curve.empty())
+        all.push_back({name, curve.back()->seconds_a_step, cost_at_error(method, guide.wish.error)});
+    }
   if (all.size() < 2) return {};
   std::ranges::stable_sort(all, {}, &Compared::seconds_a_step);
   std::vector<std::string> milliseconds, seconds;
@@ -300,7 +286,7 @@ std::string explicit_euler_beside(const SceneGuide& guide) {
   if (euler <= 0 || semi <= 0) return {};
   std::optional<double> cheapest, its;
   for (const GuidedMethod& method : guide.methods)
-    if (const auto cost = cost_at_error(guide.points, method, guide.wish.error)) {
+    if (const auto cost = cost_at_error(method, guide.wish.error)) {
       const double seconds = cost->seconds_a_second;
       cheapest = std::min(cheapest.value_or(seconds), seconds);
       if (method.integrator == find_integrator("explicit-euler"))
@@ -324,9 +310,9 @@ std::optional<double> expected_step(const SceneGuide& guide, const Integrator& i
   const auto take = [&](double dt_s) { longest = std::max(longest.value_or(dt_s), dt_s); };
   for (const GuidedMethod& method : guide.methods) {
     if (method.integrator != &integrator) continue;
-    if (const auto cost = cost_at_error(guide.points, method, error))
+    if (const auto cost = cost_at_error(method, error))
       take(cost->dt_s);
-    else if (const auto curve = counting(guide.points, method); !curve.empty())
+    else if (const auto curve = counting(method); !curve.empty())
       take(curve.back()->dt_s * std::pow(error / error_of(*curve.back()), 1.0 / integrator.order));
   }
   const StepLimit* limit = limit_of(guide, &integrator);
@@ -335,11 +321,10 @@ std::optional<double> expected_step(const SceneGuide& guide, const Integrator& i
 }
 
 double step_for_sizes(const SceneGuide& guide, const GuidedMethod& method) {
-  if (const auto cost = cost_at_error(guide.points, method, guide.wish.error)) return cost->dt_s;
+  if (const auto cost = cost_at_error(method, guide.wish.error)) return cost->dt_s;
   const WorkPoint* cheapest = nullptr;
-  for (const WorkPoint& point : guide.points)
-    if (is_of(point, method) && !point.diverged && point.within_limit &&
-        (cheapest == nullptr || cost_of(point) < cost_of(*cheapest)))
+  for (const WorkPoint& point : method.points)
+    if (!point.diverged && point.within_limit && (cheapest == nullptr || cost_of(point) < cost_of(*cheapest)))
       cheapest = &point;
   return cheapest != nullptr ? cheapest->dt_s : 0;
 }
@@ -347,7 +332,7 @@ double step_for_sizes(const SceneGuide& guide, const GuidedMethod& method) {
 std::vector<Ranked> by_cost(const SceneGuide& guide, double error) {
   std::vector<Ranked> ranked;
   for (const GuidedMethod& method : guide.methods)
-    if (const auto cost = cost_at_error(guide.points, method, error)) ranked.push_back({&method, *cost});
+    if (const auto cost = cost_at_error(method, error)) ranked.push_back({&method, *cost});
   std::ranges::stable_sort(ranked, {}, [](const Ranked& one) { return one.cost.seconds_a_second; });
   return ranked;
 }
@@ -361,27 +346,33 @@ const Ranked* second_of(std::span<const Ranked> ranked) {
   return ranked.size() > 1 ? &ranked[1] : nullptr;
 }
 
-std::optional<std::size_t> point_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
-                                          double error) {
-  return least(
-      points, [&](const WorkPoint& point) { return is_of(point, method) && error_of(point) <= error; },
-      [](const WorkPoint& point) { return -point.dt_s; });
+const WorkPoint* point_at_error(const GuidedMethod& method, double error) {
+  const auto curve = counting(method);
+  const auto found =
+      std::ranges::find_if(curve, [&](const WorkPoint* point) { return error_of(*point) <= error; });
+  return found != curve.end() ? *found : nullptr;
+}
+
+const WorkPoint* most_accurate(const GuidedMethod& method) {
+  const WorkPoint* found = nullptr;
+  for (const WorkPoint& point : method.points)
+    if (point.counts() && (found == nullptr || error_of(point) < error_of(*found))) found = &point;
+  return found;
 }
 
 std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& method) {
-  const auto cost = cost_at_error(guide.points, method, guide.wish.error);
+  const auto cost = cost_at_error(method, guide.wish.error);
   if (!cost) return std::nullopt;
   double dt_s = cost->dt_s;
   const StepLimit* limit = limit_of(guide, method.integrator);
   if (cost->at_longest_step && limit != nullptr) dt_s = std::max(dt_s, limit->usable_s());
   const double horizon_s = guide.trusted.horizon_s;
   const int steps = std::max(1, static_cast<int>(std::ceil(horizon_s / dt_s - 1e-6)));
-  const int known = guide.points[*point_at_error(guide.points, method, guide.wish.error)].steps;
+  const int known = point_at_error(method, guide.wish.error)->steps;
   if (steps * step_resolution > known) return std::nullopt;
   // A measured point between them does not count or is not accurate enough, unlike the curve.
-  const bool was_tried = std::ranges::any_of(guide.points, [&](const WorkPoint& point) {
-    return is_of(point, method) && point.steps >= steps && point.steps < known;
-  });
+  const bool was_tried = std::ranges::any_of(
+      method.points, [&](const WorkPoint& point) { return point.steps >= steps && point.steps < known; });
   return was_tried ? std::nullopt : std::optional(steps);
 }
 
@@ -398,12 +389,15 @@ std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide) {
     else if (!step || method.step_seconds == 0 || method.step_seconds / *step < cheapest)
       missed.push_back(&method);
   }
-  const bool any_counts = std::ranges::any_of(guide.points, &WorkPoint::counts);
+  const bool any_counts = std::ranges::any_of(guide.methods, most_accurate);
   return missed.empty() && !any_counts ? implicit : missed;
 }
 
 Recommendation recommend(const SceneGuide& guide) {
   Recommendation chosen;
+  const auto place_of = [&](const GuidedMethod& method) {
+    return static_cast<std::size_t>(&method - guide.methods.data());
+  };
   const std::vector<const GuidedMethod*> missed = missed_methods(guide);
   const bool without_reference = !guide.trusted.failure.empty() && guide.trusted.short_of_s > 0;
   if (!missed.empty() || without_reference) {
@@ -415,20 +409,24 @@ Recommendation recommend(const SceneGuide& guide) {
   if (!guide.trusted.failure.empty()) return chosen;
   const std::vector<Ranked> ranked = by_cost(guide, guide.wish.error);
   if (ranked.empty()) {
-    chosen.nearest = least(
-        guide.points, [](const WorkPoint&) { return true; }, error_of);
-    const WorkPoint* nearest = chosen.nearest ? &guide.points[*chosen.nearest] : nullptr;
-    const bool any_beyond = std::ranges::any_of(guide.points, is_beyond_trust),
-               is_too_small = guide.wish.error < guide.trusted.least_error();
-    if ((any_beyond && nearest != nullptr) ||
-        (is_too_small && (any_beyond || std::ranges::any_of(guide.methods, [](const GuidedMethod& method) {
-                            return method.ending.lack == Lack::time;
-                          })))) {
+    const WorkPoint* nearest = nullptr;
+    for (const GuidedMethod& method : guide.methods)
+      if (const WorkPoint* point = most_accurate(method);
+          point != nullptr && (nearest == nullptr || error_of(*point) < error_of(*nearest))) {
+        nearest = point;
+        chosen.nearest = place_of(method);
+      }
+    const bool any_beyond = std::ranges::any_of(guide.methods, has_beyond_trust),
+               is_too_small = guide.wish.error < guide.trusted.least_error(),
+               any_late = std::ranges::any_of(
+                   guide.methods, [](const GuidedMethod&method) { return method.ending.lack == Lack::time; });
+    if ((any_beyond && nearest != nullptr) || (is_too_small && (any_beyond || any_late))) {
       chosen.nearest.reset();
       chosen.sentences = {why_not_judged(guide, nearest)};
     } else if (nearest != nullptr) {
-      chosen.sentences = {what_is_nearest(*nearest, guide.wish), what_it_costs(*nearest, guide)};
-    } else if (guide.points.empty()) {
+      chosen.sentences = {what_is_nearest(guide.methods[*chosen.nearest], *nearest, guide.wish),
+                          what_it_costs(*nearest, guide)};
+    } else if (!guide.has_points()) {
       chosen.sentences = {"Nothing was measured: the remark of each method gives the reason."};
     } else {
       chosen.sentences = {any_beyond ? "No method can be recommended: the errors of all stable points cannot "
@@ -437,16 +435,12 @@ Recommendation recommend(const SceneGuide& guide) {
     }
     return chosen;
   }
-  const auto place = [&](const Ranked& one) {
-    return point_at_error(guide.points, *one.method, guide.wish.error);
-  };
-  const Ranked *winner = &ranked.front(), *second = second_of(ranked);
-  chosen.best = place(*winner);
-  if (second != nullptr) chosen.runner_up = place(*second);
-  const WorkPoint& best = guide.points[*chosen.best];
-  chosen.sentences = {what_to_take(guide, best, winner->cost), what_it_costs(best, guide),
-                      who_comes_second(guide, *winner, second,
-                                       chosen.runner_up ? &guide.points[*chosen.runner_up] : nullptr)};
+  const Ranked &winner = ranked.front(), *second = second_of(ranked);
+  chosen.best = place_of(*winner.method);
+  if (second != nullptr) chosen.runner_up = place_of(*second->method);
+  const WorkPoint& best = *point_at_error(*winner.method, guide.wish.error);
+  chosen.sentences = {what_to_take(guide, winner, best), what_it_costs(best, guide),
+                      who_comes_second(guide, winner, second)};
   return chosen;
 }
 
@@ -467,27 +461,18 @@ std::vector<std::string> what_was_measured(const SceneGuide& guide) {
   Group others{"Not within an error of " + error + " with any step that was tried"};
   std::size_t measured = 0;
   for (const GuidedMethod& method : guide.methods) {
-    const bool counts = !counting(guide.points, method).empty();
+    const bool counts = most_accurate(method) != nullptr;
     if (counts) ++measured;
-    if (counts && cost_at_error(guide.points, method, guide.wish.error)) continue;
-    const bool is_beyond = std::ranges::any_of(
-        guide.points, [&](const WorkPoint& point) { return is_of(point, method) && is_beyond_trust(point); });
-    const auto group = [&]() -> Group& {
-      switch (method.ending.lack) {
-        case Lack::failed:
-          return failed;
-        case Lack::not_timed:
-          return not_timed;
-        case Lack::unsupported:
-        case Lack::unavailable:
-          return unavailable;
-        case Lack::time:
-          return is_beyond ? beyond : counts ? late_at_error : late;
-        default:
-          return is_beyond ? beyond : counts ? others : unstable;
-      }
-    };
-    group().methods.push_back(&method);
+    if (cost_at_error(method, guide.wish.error)) continue;
+    const Lack lack = method.ending.lack;
+    Group& group = lack == Lack::failed                                     ? failed
+                   : lack == Lack::not_timed                                ? not_timed
+                   : lack == Lack::unsupported || lack == Lack::unavailable ? unavailable
+                   : has_beyond_trust(method)                               ? beyond
+                   : lack == Lack::time                                     ? counts ? late_at_error : late
+                   : counts                                                 ? others
+                                                                            : unstable;
+    group.methods.push_back(&method);
   }
   std::vector<std::string> sentences{
       fmt::format("Measured: {} of {}.", measured, pluralize(guide.methods.size(), "method"))};
@@ -498,10 +483,9 @@ std::vector<std::string> what_was_measured(const SceneGuide& guide) {
   return sentences;
 }
 
-std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
-                                         double error) {
+std::optional<CostAtError> cost_at_error(const GuidedMethod& method, double error) {
   const WorkPoint* coarser = nullptr;
-  for (const WorkPoint* point : counting(points, method)) {
+  for (const WorkPoint* point : counting(method)) {
     if (error_of(*point) > error) {
       coarser = point;
       continue;
@@ -522,12 +506,8 @@ std::array<double, 4> errors_around(const Wish& wish) {
 
 std::vector<std::string> beside_the_paper(const SceneGuide& guide) {
   std::vector<std::string> sentences;
-  std::vector<const BackendInfo*> backends;
-  for (const GuidedMethod& method : guide.methods)
-    if (std::ranges::find(backends, method.backend) == backends.end()) {
-      backends.push_back(method.backend);
-      sentences.push_back(order_on(guide, *method.backend));
-    }
+  for (const BackendInfo* backend : distinct<const BackendInfo*>(guide.methods, &GuidedMethod::backend))
+    sentences.push_back(order_on(guide, *backend));
   sentences.push_back(explicit_euler_beside(guide));
   std::erase(sentences, "");
   return sentences;

@@ -105,7 +105,7 @@ Horizon find_horizon(const System& system, double dt_s, int looks, int steps,
 }
 
 constexpr double enough_s = 0.03;  // for the runs of a point
-constexpr int fewest_points = 4, most_points = 11;
+constexpr std::size_t fewest_points = 4, most_points = 11;
 
 /// Wall seconds per step of rk4 in double precision.
 double seconds_a_step(const System& system, double dt_s) {
@@ -137,14 +137,15 @@ std::optional<State> exact_state(const System& system, const TrustedState& trust
 }
 
 /// Numbers of steps over the horizon, in ascending order of newton-euler's time.
-std::vector<int> by_cost(std::span<const WorkPoint> points, std::span<const ImplicitEnd> ends) {
+std::vector<int> by_cost(std::span<const GuidedMethod> methods, std::span<const ImplicitEnd> ends) {
   std::map<int, double> seconds;
   for (const ImplicitEnd& end : ends)
-    seconds.try_emplace(points[end.point].steps, std::numeric_limits<double>::infinity());
-  for (const WorkPoint& point : points)
-    if (const auto known = seconds.find(point.steps);
-        known != seconds.end() && point.integrator->solver == Solver::newton)
-      known->second = std::min(known->second, point.steps * point.seconds_a_step);
+    seconds.try_emplace(end.method->points[end.point].steps, std::numeric_limits<double>::infinity());
+  for (const GuidedMethod& method : methods)
+    if (method.integrator->solver == Solver::newton)
+      for (const WorkPoint& point : method.points)
+        if (const auto known = seconds.find(point.steps); known != seconds.end())
+          known->second = std::min(known->second, point.steps * point.seconds_a_step);
   std::vector<int> order;
   for (const auto& [steps, cost] : seconds) order.push_back(steps);
   std::ranges::stable_sort(order, {}, [&](int steps) { return seconds.at(steps); });
@@ -294,22 +295,26 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   return trusted;
 }
 
-void mark_pareto_front(std::span<WorkPoint> points) {
-  for (WorkPoint& point : points)
-    point.on_front = point.counts() && std::ranges::none_of(points, [&](const WorkPoint& other) {
-                       return other.counts() && beats(other, point);
-                     });
+void mark_pareto_front(std::span<GuidedMethod> methods) {
+  const auto is_beaten = [&](const WorkPoint& point) {
+    return std::ranges::any_of(methods, [&](const GuidedMethod& method) {
+      return std::ranges::any_of(
+          method.points, [&](const WorkPoint& other) { return other.counts() && beats(other, point); });
+    });
+  };
+  for (GuidedMethod& method : methods)
+    for (WorkPoint& point : method.points) point.on_front = point.counts() && !is_beaten(point);
 }
 
-void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd> ends, const System& system,
-                       const TrustedState& trusted, const std::function<bool()>& stop) {
-  for (const int steps : by_cost(points, ends)) {
+void tell_errors_apart(std::span<GuidedMethod> methods, std::span<const ImplicitEnd> ends,
+                       const System& system, const TrustedState& trusted, const std::function<bool()>& stop) {
+  for (const int steps : by_cost(methods, ends)) {
     if (stop()) return;
     const std::optional<State> exact = exact_state(system, trusted, steps, stop);
     if (!exact) continue;
     const double step_error = position_deviation(system, trusted.state, *exact);
     for (const ImplicitEnd& end : ends)
-      if (WorkPoint& point = points[end.point]; point.steps == steps) {
+      if (WorkPoint& point = end.method->points[end.point]; point.steps == steps) {
         point.solver_error = position_deviation(system, *exact, end.state);
         point.step_error = step_error;
       }
@@ -365,11 +370,14 @@ bool WorkCurve::succeeds(const std::function<void()>& run) {
 }
 
 void WorkCurve::end_without_time() {
-  method_.next = NextPoint{next_seconds_, trusted_.horizon_s / steps_, most_points - points_ - 1};
-  end({Lack::time, points_ == 0 ? "no time was left for any step"
-                   : counted_   ? "no time was left for smaller steps"
-                                : "no time was left for a step that is stable"});
+  method_.next = NextPoint{next_seconds_, trusted_.horizon_s / steps_,
+                           static_cast<int>(most_points - method_.points.size() - 1)};
+  end({Lack::time, method_.points.empty() ? "no time was left for any step"
+                   : has_counted()        ? "no time was left for smaller steps"
+                                          : "no time was left for a step that is stable"});
 }
+
+bool WorkCurve::has_counted() const { return std::ranges::any_of(method_.points, &WorkPoint::counts); }
 
 double WorkCurve::seconds_of(int steps) const {
   return setup_seconds_ + seconds_of_runs(steps * method_.step_seconds, enough_s);
@@ -388,45 +396,49 @@ void WorkCurve::time_step() {
   if (method_.next) method_.next->seconds = next_seconds_;
 }
 
-bool WorkCurve::ends_with_same_error(const WorkPoint& point) {
+bool WorkCurve::ends_with_same_error() {
   constexpr double largest_rounding = 0.02;  // of a rest length: seen as rounding error within a horizon
   constexpr double same = 0.01;
-  const double error = *point.position_error;
+  const std::vector<WorkPoint>& points = method_.points;
+  const double error = *points.back().position_error;
+  const WorkPoint* before = points.size() > 1 ? &points[points.size() - 2] : nullptr;
+  const auto last_error = before != nullptr && before->counts() ? before->position_error : std::nullopt;
   const bool is_rounded = error < largest_rounding;
   // Errors of implicit steps that are far too long hardly change at first.
   unchanged_ =
-      !is_implicit(*method_.integrator) && last_error_ && std::abs(error - *last_error_) < same * *last_error_
+      !is_implicit(*method_.integrator) && last_error && std::abs(error - *last_error) < same * *last_error
           ? unchanged_ + 1
           : 0;
-  if (points_ < fewest_points || error <= wanted_error_ / 4) return false;
-  if (unchanged_ < 2 && !(is_rounded && last_error_ && error >= 0.9 * *last_error_)) return false;
+  if (points.size() < fewest_points || error <= wanted_error_ / 4) return false;
+  if (unchanged_ < 2 && !(is_rounded && last_error && error >= 0.9 * *last_error)) return false;
   end({Lack::nothing, is_rounded ? "smaller steps are no more accurate: roundings"
                                  : "smaller steps are no more accurate: roundings, or the backend steps "
                                    "another system"});
   return true;
 }
 
-bool WorkCurve::goes_on_after(const WorkPoint& point) {
+bool WorkCurve::goes_on() {
   constexpr int enough_diverged = 3;
-  if (point.counts() && ends_with_same_error(point)) return false;
-  diverged_ += point.diverged && point.within_limit ? 1 : 0;
+  const std::vector<WorkPoint>& points = method_.points;
+  const WorkPoint& point = points.back();
+  if (point.counts() && ends_with_same_error()) return false;
+  const auto diverged =
+      std::ranges::count_if(points, [](const WorkPoint& one) { return one.diverged && one.within_limit; });
   // A step that is stable for a shorter time may diverge within the horizon.
-  if (diverged_ == enough_diverged && !counted_ && stable_span_s_ >= trusted_.horizon_s) {
+  if (diverged == enough_diverged && !has_counted() && stable_span_s_ >= trusted_.horizon_s) {
     end({Lack::failed, fmt::format("its energy grows or is not finite with {} steps that should be stable",
                                    enough_diverged)});
     return false;
   }
-  if (points_ == most_points && !counted_)
+  if (points.size() == most_points && !has_counted())
     end({Lack::stable_step, "no step that was tried is stable over the horizon"});
-  if (points_ == most_points) return false;
-  if (points_ < fewest_points || !point.counts()) return !point.beyond_trust;
+  if (points.size() == most_points) return false;
+  if (points.size() < fewest_points || !point.counts()) return !point.beyond_trust;
   return *point.position_error > wanted_error_ / 4;
 }
 
-std::optional<MeasuredPoint> WorkCurve::measure(int steps) {
+std::optional<State> WorkCurve::measure(int steps) {
   WorkPoint point;
-  point.integrator = method_.integrator;
-  point.backend = method_.backend->name;
   point.steps = steps;
   point.dt_s = trusted_.horizon_s / steps;
   State state;
@@ -444,22 +456,18 @@ std::optional<MeasuredPoint> WorkCurve::measure(int steps) {
   point.evaluations = evaluations_of(*method_.integrator, system_);
   take_state(point, system_, trusted_, state);
   point.within_limit = point.dt_s <= stable_s_ * (1 + 1e-9);
-  return MeasuredPoint{std::move(point), std::move(state)};
+  method_.points.push_back(std::move(point));
+  return state;
 }
 
-std::optional<MeasuredPoint> WorkCurve::next() {
+std::optional<State> WorkCurve::next() {
   const Stopwatch watch;
-  has_next_ = false;
-  auto measured = measure(steps_);
-  if (!measured) return std::nullopt;
-  const WorkPoint& point = measured->point;
-  ++points_;
-  counted_ = counted_ || point.counts();
-  has_next_ = goes_on_after(point);
-  last_error_ = point.counts() ? point.position_error : std::nullopt;
+  auto state = measure(steps_);
+  if (!state) return std::nullopt;
+  has_next_ = goes_on();
   next_seconds_ = 2 * watch.seconds();
   steps_ *= 2;
-  return measured;
+  return state;
 }
 
 }  // namespace mssim

@@ -67,13 +67,15 @@ struct TrustedState {
 /// mean rest lengths away has grown by more than allowed_parting.
 TrustedState trusted_state(const System& system, const TrustedRequest& request);
 
-/// Marks the points that no other point dominates. A point dominates if it counts, is neither slower nor less
-/// accurate, and is better in one of the two. Points that do not count are never on the front.
-void mark_pareto_front(std::span<WorkPoint> points);
+/// Marks the points that no other point of any method dominates. A point dominates if it counts, is neither
+/// slower nor less accurate, and is better in one of the two. Points that do not count are never on the
+/// front.
+void mark_pareto_front(std::span<GuidedMethod> methods);
 
 /// The final state of a point of an implicit method.
 struct ImplicitEnd {
-  std::size_t point = 0;  ///< index of the point
+  GuidedMethod* method = nullptr;
+  std::size_t point = 0;  ///< index of the method's point
   State state;            ///< at the horizon
 };
 
@@ -81,16 +83,10 @@ struct ImplicitEnd {
 /// same step: newton-euler in double precision, iterated until it no longer improves. Steps for which
 /// newton-euler took the least time come first, until `stop`. The other points have no such errors, nor have
 /// points that newton-euler does not run or for which it diverges.
-void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd> ends, const System& system,
-                       const TrustedState& trusted, const std::function<bool()>& stop);
+void tell_errors_apart(std::span<GuidedMethod> methods, std::span<const ImplicitEnd> ends,
+                       const System& system, const TrustedState& trusted, const std::function<bool()>& stop);
 
-/// A point of a curve, and its final state.
-struct MeasuredPoint {
-  WorkPoint point;
-  State state;  ///< at the horizon
-};
-
-/// A work-precision curve, from its coarsest step on.
+/// Measures the work-precision curve of a method, from its coarsest step on.
 class WorkCurve {
  public:
   /// `limit`: of the method's integrator. All references must outlive the curve. `wanted_error`: the curve
@@ -102,6 +98,7 @@ class WorkCurve {
   /// step was not timed, it assumes the backend of the limit.
   double next_seconds() const { return next_seconds_; }
   bool has_next() const { return has_next_; }
+  GuidedMethod& method() const { return method_; }
   /// Ends the curve for this reason, unless it has another one.
   void end(const Ending& ending);
   /// Ends the curve because there is no time for the next point.
@@ -110,19 +107,22 @@ class WorkCurve {
   bool is_timed() const { return method_.step_seconds > 0; }
   /// Times a step of an explicit method. If the backend does not run, or fails, the curve ends.
   void time_step();
-  /// Measures the next point, with half the step of the one before. None if the backend does not run, or
-  /// fails; the method's ending gives the reason.
-  std::optional<MeasuredPoint> next();
-  /// Measures an additional point, of `steps` steps over the horizon. None as for next().
-  std::optional<MeasuredPoint> measure(int steps);
+  /// Adds the next point to the method, with half the step of the one before, and returns its state at the
+  /// horizon. None if the backend does not run, or fails; the method's ending gives the reason.
+  std::optional<State> next();
+  /// Adds a point of `steps` steps over the horizon, after the last of next(). None as for next().
+  std::optional<State> measure(int steps);
   /// Approximate wall seconds of measure(), once a step is timed.
   double seconds_of(int steps) const;
 
  private:
-  /// Whether the curve continues. If it ends before it is accurate enough, the method's ending says why.
-  bool goes_on_after(const WorkPoint& point);
-  /// Ends the curve if the error of the point, which counts, shows that smaller steps do not help.
-  bool ends_with_same_error(const WorkPoint& point);
+  /// Whether the curve continues after its last point. If it ends before it is accurate enough, the method's
+  /// ending says why.
+  bool goes_on();
+  /// Ends the curve if the error of its last point, which counts, shows that smaller steps do not help.
+  bool ends_with_same_error();
+  /// Whether any point counts.
+  bool has_counted() const;
   /// Calls `run`. If the backend does not run, or fails, the curve ends.
   bool succeeds(const std::function<void()>& run);
 
@@ -133,12 +133,9 @@ class WorkCurve {
   double wanted_error_, stable_s_;
   double stable_span_s_;  ///< for which stable_s_ was stable
   int steps_;
-  int points_ = 0;
-  int diverged_ = 0;   ///< points with steps that should be stable
   int unchanged_ = 0;  ///< halvings in a row that left the error as it was
-  bool has_next_ = true, counted_ = false;
+  bool has_next_ = true;
   double setup_seconds_, next_seconds_ = 0;
-  std::optional<double> last_error_;
 };
 
 /// Number of steps of the coarsest point of a curve. An explicit method starts with twice the largest stable

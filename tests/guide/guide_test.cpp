@@ -8,12 +8,18 @@
 namespace mssim {
 namespace {
 
+/// A point and its method.
+struct MadePoint : WorkPoint {
+  const Integrator* integrator = nullptr;
+  const BackendInfo* backend = nullptr;
+};
+
 /// A point that counts. `cost`: wall seconds a simulated second.
-WorkPoint made_point(std::string_view integrator, double dt_s, double cost, double error,
-                     const std::string& backend = "openmp") {
-  WorkPoint point;
+MadePoint made_point(std::string_view integrator, double dt_s, double cost, double error,
+                     std::string_view backend = "openmp") {
+  MadePoint point;
   point.integrator = find_integrator(integrator);
-  point.backend = backend;
+  point.backend = find_backend(backend);
   point.dt_s = dt_s;
   point.seconds_a_step = cost * dt_s;
   point.position_error = error;
@@ -21,26 +27,42 @@ WorkPoint made_point(std::string_view integrator, double dt_s, double cost, doub
   return point;
 }
 
+/// With the methods of the points, in the order of their first ones.
+SceneGuide guide_of(const std::vector<MadePoint>& points) {
+  SceneGuide guide;
+  guide.wish.error = 1e-3;
+  guide.trusted.horizon_s = 0.05;
+  for (const MadePoint& point : points) {
+    auto its = std::ranges::find_if(guide.methods, [&](const GuidedMethod& method) {
+      return method.integrator == point.integrator && method.backend == point.backend;
+    });
+    if (its == guide.methods.end()) its = guide.methods.insert(its, {point.integrator, point.backend});
+    its->points.push_back(point);
+  }
+  return guide;
+}
+
 TEST(CostAtError, IsALineThroughTheLogarithms) {
-  const std::vector<WorkPoint> points{made_point("rk4", 4e-4, 1, 1e-2), made_point("rk4", 2e-4, 2, 1e-4),
-                                      made_point("verlet", 2e-4, 0.1, 1e-6)};
-  const GuidedMethod rk4{find_integrator("rk4"), find_backend("openmp")};
-  const auto cost = cost_at_error(points, rk4, 1e-3);
+  const SceneGuide guide =
+      guide_of({made_point("rk4", 4e-4, 1, 1e-2), made_point("rk4", 2e-4, 2, 1e-4),
+                made_point("verlet", 2e-4, 0.1, 1e-6), made_point("rk4", 2e-4, 0.1, 1e-6, "serial")});
+  const GuidedMethod& rk4 = guide.methods[0];
+  const auto cost = cost_at_error(rk4, 1e-3);
   ASSERT_TRUE(cost);
   EXPECT_NEAR(cost->seconds_a_second, std::sqrt(2), 1e-9);
   EXPECT_NEAR(cost->dt_s, 2e-4 * std::sqrt(2), 1e-12);
   EXPECT_FALSE(cost->at_longest_step);
-  // No longer step than the coarsest, no smaller error than the finest, no other backend.
-  EXPECT_NEAR(cost_at_error(points, rk4, 1)->seconds_a_second, 1, 1e-12);
-  EXPECT_TRUE(cost_at_error(points, rk4, 1)->at_longest_step);
-  EXPECT_FALSE(cost_at_error(points, rk4, 0.9e-4));
-  EXPECT_FALSE(cost_at_error(points, {find_integrator("rk4"), find_backend("serial")}, 1));
+  // No longer step than the coarsest, no smaller error than the finest.
+  EXPECT_NEAR(cost_at_error(rk4, 1)->seconds_a_second, 1, 1e-12);
+  EXPECT_TRUE(cost_at_error(rk4, 1)->at_longest_step);
+  EXPECT_FALSE(cost_at_error(rk4, 0.9e-4));
+  EXPECT_FALSE(cost_at_error({find_integrator("rk4"), find_backend("openmp")}, 1)) << "no points";
 }
 
 TEST(CostAtError, LeavesOutWhatDoesNotCount) {
-  std::vector<WorkPoint> points{made_point("rk4", 4e-4, 1, 1e-3), made_point("rk4", 2e-4, 2, 1e-4)};
-  points.front().diverged = true;
-  const auto cost = cost_at_error(points, {find_integrator("rk4"), find_backend("openmp")}, 1e-3);
+  SceneGuide guide = guide_of({made_point("rk4", 4e-4, 1, 1e-3), made_point("rk4", 2e-4, 2, 1e-4)});
+  guide.methods[0].points.front().diverged = true;
+  const auto cost = cost_at_error(guide.methods[0], 1e-3);
   ASSERT_TRUE(cost);
   EXPECT_NEAR(cost->seconds_a_second, 2, 1e-12);
   EXPECT_TRUE(cost->at_longest_step);
@@ -48,32 +70,20 @@ TEST(CostAtError, LeavesOutWhatDoesNotCount) {
 
 TEST(CostAtError, IsThatOfTheLongestStepThatKeepsTheError) {
   // A shorter step is off by more, and one that was measured last is longer than one that was first.
-  const std::vector<WorkPoint> points{made_point("rk4", 1e-4, 4, 2e-3), made_point("rk4", 2e-4, 2, 5e-4),
-                                      made_point("rk4", 4e-4, 1, 8e-3)};
-  const GuidedMethod rk4{find_integrator("rk4"), find_backend("openmp")};
+  const SceneGuide guide = guide_of(
+      {made_point("rk4", 1e-4, 4, 2e-3), made_point("rk4", 2e-4, 2, 5e-4), made_point("rk4", 4e-4, 1, 8e-3)});
+  const GuidedMethod& rk4 = guide.methods[0];
   // log(8) of log(16): three quarters of the way.
-  EXPECT_NEAR(cost_at_error(points, rk4, 1e-3)->seconds_a_second, std::pow(2, 0.75), 1e-9);
-  EXPECT_NEAR(cost_at_error(points, rk4, 1e-3)->dt_s, 4e-4 / std::pow(2, 0.75), 1e-12);
-  EXPECT_EQ(point_at_error(points, rk4, 1e-3), 1U);
-  EXPECT_EQ(point_at_error(points, rk4, 3e-3), 1U);
-  EXPECT_EQ(point_at_error(points, rk4, 1e-2), 2U);
-  EXPECT_FALSE(point_at_error(points, rk4, 1e-4));
+  EXPECT_NEAR(cost_at_error(rk4, 1e-3)->seconds_a_second, std::pow(2, 0.75), 1e-9);
+  EXPECT_NEAR(cost_at_error(rk4, 1e-3)->dt_s, 4e-4 / std::pow(2, 0.75), 1e-12);
+  EXPECT_EQ(point_at_error(rk4, 1e-3), &rk4.points[1]);
+  EXPECT_EQ(point_at_error(rk4, 3e-3), &rk4.points[1]);
+  EXPECT_EQ(point_at_error(rk4, 1e-2), &rk4.points[2]);
+  EXPECT_FALSE(point_at_error(rk4, 1e-4));
 }
 
-/// With the methods of the points, each once.
-SceneGuide guide_of(std::vector<WorkPoint> points) {
-  SceneGuide guide;
-  guide.wish.error = 1e-3;
-  guide.trusted.horizon_s = 0.05;
-  for (const WorkPoint& point : points)
-    if (std::ranges::none_of(guide.methods, [&](const GuidedMethod& method) { return is_of(point, method); }))
-      guide.methods.push_back({point.integrator, find_backend(point.backend)});
-  guide.points = std::move(points);
-  return guide;
-}
-
-Recommendation recommend_from(std::vector<WorkPoint> points, Wish wish = {60, 1e-3}) {
-  SceneGuide guide = guide_of(std::move(points));
+Recommendation recommend_from(const std::vector<MadePoint>& points, Wish wish = {60, 1e-3}) {
+  SceneGuide guide = guide_of(points);
   guide.wish = wish;
   return recommend(guide);
 }
@@ -113,26 +123,32 @@ TEST(BesideThePaper, SaysHowExplicitEulerStands) {
           "long as the cheapest method at an error of 0.001."));
 }
 
-WorkPoint diverged(WorkPoint point) {
+MadePoint diverged(MadePoint point) {
   point.diverged = true;
   return point;
 }
 
-WorkPoint beyond_trust(WorkPoint point) {
+MadePoint beyond_trust(MadePoint point) {
   point.beyond_trust = true;
   return point;
 }
 
-std::vector<std::size_t> front_of(std::vector<WorkPoint> points) {
-  mark_pareto_front(points);
+/// The numbers of the points on the front. Points of a method follow each other.
+std::vector<std::size_t> front_of(const std::vector<MadePoint>& points) {
+  SceneGuide guide = guide_of(points);
+  mark_pareto_front(guide.methods);
   std::vector<std::size_t> front;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].on_front) front.push_back(i);
+  std::size_t number = 0;
+  for (const GuidedMethod& method : guide.methods)
+    for (const WorkPoint& point : method.points) {
+      if (point.on_front) front.push_back(number);
+      ++number;
+    }
   return front;
 }
 
 TEST(ParetoFront, HasWhatNothingBeats) {
-  const std::vector<WorkPoint> points{
+  const std::vector<MadePoint> points{
       made_point("rk4", 1e-3, 3, 1e-6),        made_point("verlet", 1e-3, 1, 1e-3),
       made_point("semi-euler", 1e-3, 2, 1e-2),  // slower and worse than verlet
       made_point("midpoint", 1e-3, 3, 1e-5),    // as fast as rk4, and worse
@@ -168,14 +184,14 @@ TEST(StepsAFrame, AreNoneMoreWhereOnlyRoundingSaysSo) {
 }
 
 TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
-  const std::vector<WorkPoint> points{
+  const std::vector<MadePoint> points{
       made_point("semi-euler", 1e-4, 0.2, 2e-3), made_point("verlet", 1e-4, 0.3, 5e-4),
       made_point("verlet", 5e-5, 0.6, 1e-4),     made_point("verlet", 1e-4, 3, 5e-4, "serial"),
       made_point("rk4", 2e-4, 0.5, 1e-6),        diverged(made_point("rk4", 4e-4, 0.1, 1e-9)),
   };
   const Recommendation chosen = recommend_from(points);
   EXPECT_EQ(chosen.best, 1U);
-  EXPECT_EQ(chosen.runner_up, 4U);  // of another integrator
+  EXPECT_EQ(chosen.runner_up, 3U);  // of another integrator
   ASSERT_EQ(chosen.sentences.size(), 3U);
   EXPECT_THAT(chosen.sentences[0], HasSubstr("Take verlet on openmp with a step of 0.0001 s"));
   EXPECT_THAT(chosen.sentences[0], HasSubstr("167 steps per frame"));
@@ -197,19 +213,21 @@ TEST(Recommendation, ComparesAStepWithTheLongestStableOneUnlessTheHorizonLimitsI
   }
 }
 
-std::string runner_up_sentence(const std::vector<WorkPoint>& points) {
+std::string runner_up_sentence(const std::vector<MadePoint>& points) {
   return recommend_from(points).sentences.at(2);
 }
 
 TEST(Recommendation, ComparesAtEqualError) {
   // At 1e-3 verlet takes sqrt(2) s, halfway between its points, and rk4, with its longest step, 1.8 s. Of
   // their points within 1e-3 rk4 has the cheaper one.
-  const std::vector<WorkPoint> points{made_point("verlet", 2e-4, 1, 2e-3),
+  const std::vector<MadePoint> points{made_point("verlet", 2e-4, 1, 2e-3),
                                       made_point("verlet", 1e-4, 2, 5e-4),
                                       made_point("rk4", 4e-4, 1.8, 9e-4)};
   const Recommendation chosen = recommend_from(points);
-  EXPECT_EQ(chosen.best, 1U);
-  EXPECT_EQ(chosen.runner_up, 2U);
+  EXPECT_EQ(chosen.best, 0U);
+  EXPECT_EQ(chosen.runner_up, 1U);
+  EXPECT_THAT(chosen.sentences.at(0), HasSubstr("verlet on openmp with a step of 0.0001 s"));
+  EXPECT_THAT(chosen.sentences.at(2), HasSubstr("rk4 on openmp with a step of 0.0004 s"));
   EXPECT_THAT(chosen.sentences.at(2), HasSubstr("1.27 times as long at an error of 0.001"));
   EXPECT_THAT(chosen.sentences.at(2), HasSubstr("cheaper at no error"));
 }
@@ -218,7 +236,7 @@ TEST(Recommendation, SaysForWhichErrorsTheRunnerUpIsCheaper) {
   // Only rk4 keeps 1e-6 to 1e-5. From there on verlet is cheaper, until rk4 comes down from 4 s at 1e-3 to
   // the 1 s that verlet takes with its longest step: log(4) of log(8), two thirds of the two decades up to
   // 0.1.
-  const std::vector<WorkPoint> by_turns{
+  const std::vector<MadePoint> by_turns{
       made_point("rk4", 1e-5, 8, 1e-6),      made_point("rk4", 2e-5, 5, 1e-4),
       made_point("rk4", 1e-4, 4, 1e-3),      made_point("rk4", 2e-4, 0.5, 0.1),
       made_point("verlet", 1e-5, 4.5, 1e-5), made_point("verlet", 2e-5, 4, 1e-4),
@@ -239,43 +257,44 @@ TEST(Recommendation, SaysForWhichErrorsTheRunnerUpIsCheaper) {
 SceneGuide between_two_steps() {
   SceneGuide guide = guide_of({made_point("verlet", 2e-4, 1, 2e-3), made_point("verlet", 1e-4, 2, 5e-4)});
   guide.trusted.horizon_s = 0.01;
-  guide.points[0].steps = 50;
-  guide.points[1].steps = 100;
+  guide.methods[0].points[0].steps = 50;
+  guide.methods[0].points[1].steps = 100;
   return guide;
 }
 
 TEST(LongestStep, IsWhereTheCurveComesToTheError) {
   SceneGuide guide = between_two_steps();
-  const GuidedMethod verlet = guide.methods.front();
+  GuidedMethod& verlet = guide.methods.front();
   const auto add = [&](int steps, double error) {
-    guide.points.push_back(made_point("verlet", 0.01 / steps, 0.02 * steps, error));
-    guide.points.back().steps = steps;
+    verlet.points.push_back(made_point("verlet", 0.01 / steps, 0.02 * steps, error));
+    verlet.points.back().steps = steps;
   };
   EXPECT_EQ(steps_to_try(guide, verlet), 71);  // of sqrt(2) * 1e-4 s, 70.7
   add(71, 1.1e-3);                             // which is off by a little more than the curve says
   EXPECT_EQ(steps_to_try(guide, verlet), 75);  // 74.001
   add(75, 9.9e-4);
   EXPECT_EQ(steps_to_try(guide, verlet), std::nullopt);
-  EXPECT_EQ(recommend(guide).best, 3U);
+  EXPECT_EQ(point_at_error(verlet, guide.wish.error), &verlet.points[3]);
+  EXPECT_THAT(recommend(guide).sentences.at(0), HasSubstr("0.00013 s"));  // 0.01 s / 75
   guide.wish.error = 1e-4;
   EXPECT_EQ(steps_to_try(guide, verlet), std::nullopt) << "nothing keeps it";
 }
 
 TEST(LongestStep, IsThatOfLargerClothsForEveryMethod) {
   SceneGuide guide = between_two_steps();
-  const GuidedMethod verlet = guide.methods.front();
+  GuidedMethod& verlet = guide.methods.front();
   EXPECT_NEAR(step_for_sizes(guide, verlet), 1e-4 * std::sqrt(2), 1e-12);
   guide.wish.error = 1e-4;  // which nothing keeps: of the cheapest point
   EXPECT_EQ(step_for_sizes(guide, verlet), 2e-4);
-  guide.points[0].diverged = true;
+  verlet.points[0].diverged = true;
   EXPECT_EQ(step_for_sizes(guide, verlet), 1e-4);
-  guide.points[1].within_limit = false;
+  verlet.points[1].within_limit = false;
   EXPECT_EQ(step_for_sizes(guide, verlet), 0);
 }
 
 TEST(LongestStep, IsBoundedByStability) {
   SceneGuide guide = between_two_steps();
-  const GuidedMethod verlet = guide.methods.front();
+  GuidedMethod& verlet = guide.methods.front();
   guide.wish.error = 1e-2;
   add_limit(guide, "verlet", 4e-4);
   EXPECT_EQ(steps_to_try(guide, verlet), 27);  // 0.01 s / (0.95 * 4e-4 s) = 26.3
@@ -284,18 +303,18 @@ TEST(LongestStep, IsBoundedByStability) {
   EXPECT_EQ(steps_to_try(guide, verlet), std::nullopt);
   EXPECT_THAT(recommend(guide).sentences.at(0), AllOf(HasSubstr("0.0002 s"), HasSubstr("stable")));
   guide.limits[0].measured.stable_s = 4e-4;
-  guide.points.push_back(made_point("verlet", 0.01 / 30, 0.5, 1));
-  guide.points.back().steps = 30;
-  guide.points.back().diverged = true;
+  verlet.points.push_back(made_point("verlet", 0.01 / 30, 0.5, 1));
+  verlet.points.back().steps = 30;
+  verlet.points.back().diverged = true;
   EXPECT_EQ(steps_to_try(guide, verlet), std::nullopt) << "a step between the two diverged";
 }
 
 /// verlet takes 0.3 s at the wished error, with a step of 1e-4 s; of rk4 one point was measured, or none, and
 /// then the time was over.
-SceneGuide with_unfinished(std::optional<WorkPoint> point, double step_seconds) {
-  std::vector<WorkPoint> points{made_point("verlet", 1e-4, 0.3, 1e-3)};
+SceneGuide with_unfinished(const std::optional<MadePoint>& point, double step_seconds) {
+  std::vector<MadePoint> points{made_point("verlet", 1e-4, 0.3, 1e-3)};
   if (point) points.push_back(*point);
-  SceneGuide guide = guide_of(std::move(points));
+  SceneGuide guide = guide_of(points);
   if (!point) guide.methods.push_back({find_integrator("rk4"), find_backend("openmp")});
   guide.methods.back().ending.lack = Lack::time;
   guide.methods.back().step_seconds = step_seconds;
@@ -303,10 +322,10 @@ SceneGuide with_unfinished(std::optional<WorkPoint> point, double step_seconds) 
 }
 
 /// Of order 4: a sixteenth of the error, 1e-3, with half the step, 2e-4 s.
-WorkPoint coarse_rk4() { return made_point("rk4", 4e-4, 0.1, 1.6e-2); }
+MadePoint coarse_rk4() { return made_point("rk4", 4e-4, 0.1, 1.6e-2); }
 
 TEST(MissedMethods, AreThoseThatCouldBeTheCheapest) {
-  const WorkPoint coarse = coarse_rk4();
+  const MadePoint coarse = coarse_rk4();
   const auto missed = [](const SceneGuide& guide) { return missed_methods(guide).size(); };
   EXPECT_EQ(missed(with_unfinished(coarse, 1.01 * 0.3 * 2e-4)), 0U);
   EXPECT_EQ(missed(with_unfinished(coarse, 0.99 * 0.3 * 2e-4)), 1U);
@@ -314,8 +333,9 @@ TEST(MissedMethods, AreThoseThatCouldBeTheCheapest) {
   guide.methods.back().ending.lack = Lack::nothing;
   EXPECT_EQ(missed(guide), 0U) << "more time would not help";
   guide.methods.back().ending.lack = Lack::time;
-  guide.points.push_back(made_point("rk4", 1e-4, 1, 1.1e-3, "serial"));
-  guide.methods.insert(guide.methods.begin(), {find_integrator("rk4"), find_backend("serial")});
+  GuidedMethod on_serial{find_integrator("rk4"), find_backend("serial")};
+  on_serial.points = {made_point("rk4", 1e-4, 1, 1.1e-3)};
+  guide.methods.insert(guide.methods.begin(), on_serial);
   EXPECT_EQ(missed(guide), 0U) << "its integrator comes to its end short of the error";
   // No step is longer than the longest usable one: 0.95 * 1e-4 s takes longer.
   guide = with_unfinished(coarse, 0.99 * 0.3 * 2e-4);
@@ -332,7 +352,7 @@ TEST(MissedMethods, AreThoseThatCouldBeTheCheapest) {
   EXPECT_EQ(missed(guide), 1U);
   guide.methods.back().integrator = find_integrator("xpbd");
   EXPECT_EQ(missed(guide), 0U) << "it is implicit";
-  guide.points.clear();
+  guide.methods.front().points.clear();
   EXPECT_EQ(missed(guide), 1U) << "nothing else was measured";
   guide.methods.front().ending.lack = Lack::time;
   EXPECT_EQ(missed_methods(guide), std::vector<const GuidedMethod*>{&guide.methods.front()});
@@ -443,14 +463,13 @@ TEST(Recommendation, SaysThatTheReferenceIsNotAccurateEnough) {
       ElementsAre(HasSubstr("1 of 2"), AllOf(HasSubstr("reference"), EndsWith(": rk4 on openmp.")),
                   AllOf(HasSubstr("Not within an error of 1e-06"), EndsWith(": semi-euler on openmp."))));
   // The curve of rk4 passes the error between two points, of which only one counts.
-  guide.points.push_back(made_point("rk4", 2e-4, 0.5, 2.03e-5));
+  guide.methods[1].points.push_back(made_point("rk4", 2e-4, 0.5, 2.03e-5));
   guide.wish.error = 1e-5;
   EXPECT_THAT(recommend(guide).sentences, ElementsAre(HasSubstr("--error 2.1e-05")));
 }
 
 TEST(Recommendation, KnowsThatLargeErrorsAreTooLarge) {
   SceneGuide guide = beyond_the_reference();
-  guide.points.pop_back();
   guide.methods.pop_back();
   EXPECT_EQ(recommend(guide).nearest, 0U);
   EXPECT_THAT(recommend(guide).sentences.at(0), HasSubstr("No measured method keeps"));
@@ -508,14 +527,14 @@ TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
 TEST(Recommendation, CountsWholeStepsForTheTimeOfAFrame) {
   // 60 frames a second have 2.5 steps of 1/150 s each, so that 3 are taken. At 6 ms a step these take 18
   // ms; 2.5 would take 15 ms, and a frame lasts 16.7 ms. At 50 frames a second, 3 steps are fast enough.
-  const std::vector<WorkPoint> points{made_point("verlet", 1.0 / 150, 0.9, 5e-4)};
+  const std::vector<MadePoint> points{made_point("verlet", 1.0 / 150, 0.9, 5e-4)};
   EXPECT_THAT(recommend_from(points).sentences[1], HasSubstr("too slow for 60 frames per second. "));
   EXPECT_THAT(recommend_from(points, {50, 1e-3}).sentences[1],
               HasSubstr("fast enough for 50 frames per second. "));
 }
 
 TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator) {
-  const std::vector<WorkPoint> points{made_point("verlet", 1e-4, 0.3, 5e-4),
+  const std::vector<MadePoint> points{made_point("verlet", 1e-4, 0.3, 5e-4),
                                       made_point("verlet", 1e-4, 3, 5e-4, "serial")};
   const Recommendation chosen = recommend_from(points);
   EXPECT_EQ(chosen.runner_up, 1U);
@@ -523,7 +542,7 @@ TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator
 }
 
 TEST(Recommendation, NamesTheNearestWhereNothingIsAccurateEnough) {
-  const std::vector<WorkPoint> points{made_point("semi-euler", 1e-4, 0.2, 2e-3),
+  const std::vector<MadePoint> points{made_point("semi-euler", 1e-4, 0.2, 2e-3),
                                       made_point("verlet", 1e-4, 0.9, 1e-3)};
   const Recommendation chosen = recommend_from(points, {60, 1e-4});
   EXPECT_FALSE(chosen.best);

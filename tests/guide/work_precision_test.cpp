@@ -34,10 +34,8 @@ std::vector<WorkPoint> curve_of(std::string_view integrator, double stable_s, do
   const StepLimit limit = limit_of(integrator, stable_s);
   GuidedMethod method{limit.integrator, find_backend("serial")};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, wanted_error);
-  std::vector<WorkPoint> points;
-  while (curve.has_next())
-    if (const auto measured = curve.next()) points.push_back(measured->point);
-  return points;
+  while (curve.has_next()) curve.next();
+  return method.points;
 }
 
 TEST(WorkCurve, FallsWithTheOrderOfItsMethod) {
@@ -133,44 +131,43 @@ class Crowded final : public OtherSerial {
 constexpr BackendInfo crowded{
     .name = "crowded", .description = "has too few processors", .make = make_other<Crowded>};
 
-/// The number of points of semi-euler on the backend over 10 ms, and why there are no more.
-std::pair<int, GuidedMethod> curve_on(const BackendInfo& backend, double stable_span_s) {
+/// semi-euler on the backend over 10 ms.
+GuidedMethod curve_on(const BackendInfo& backend, double stable_span_s) {
   const System system = cloth_system(8, 8);
   const TrustedState trusted = trusted_after_10_ms(system);
   StepLimit limit = limit_of("semi-euler");
   limit.measured.span_s = stable_span_s;
   GuidedMethod method{limit.integrator, &backend};
   WorkCurve curve(system, trusted, limit, method, {.threads = 1}, 1e-6);
-  int points = 0;
-  while (curve.has_next()) points += curve.next() ? 1 : 0;
-  return {points, method};
+  while (curve.has_next()) curve.next();
+  return method;
 }
 
 TEST(WorkCurve, EndsWithABackendWhoseStableStepsDiverge) {
   // The first step is longer than the largest stable one.
-  const auto [points, method] = curve_on(astray, 0.2);
-  EXPECT_EQ(points, 4);
+  const GuidedMethod method = curve_on(astray, 0.2);
+  EXPECT_EQ(method.points.size(), 4U);
   EXPECT_EQ(method.ending.lack, Lack::failed);
   EXPECT_THAT(method.ending.status(), StartsWith("failed: its energy grows or is not finite with 3 steps"));
   // Where steps were stable for a shorter time than the horizon, smaller ones may not diverge.
-  const auto [all, unstable] = curve_on(astray, 0.005);
-  EXPECT_EQ(all, 11);
+  const GuidedMethod unstable = curve_on(astray, 0.005);
+  EXPECT_EQ(unstable.points.size(), 11U);
   EXPECT_EQ(unstable.ending.lack, Lack::stable_step);
   EXPECT_THAT(unstable.ending.status(), HasSubstr("no step that was tried is stable"));
 }
 
 TEST(WorkCurve, EndsWhereTwoHalvingsLeaveALargeError) {
   // In 10 ms free nodes fall by 0.05 of a rest length.
-  const auto [points, method] = curve_on(frozen, 0.2);
-  EXPECT_EQ(points, 4);
+  const GuidedMethod method = curve_on(frozen, 0.2);
+  EXPECT_EQ(method.points.size(), 4U);
   EXPECT_EQ(method.ending.lack, Lack::nothing);
   EXPECT_THAT(method.ending.status(),
               AllOf(StartsWith("smaller steps are no more accurate"), HasSubstr("another system")));
 }
 
 TEST(WorkCurve, HasNoTimesThatMeanNothing) {
-  const auto [points, method] = curve_on(crowded, 0.2);
-  EXPECT_EQ(points, 0);
+  const GuidedMethod method = curve_on(crowded, 0.2);
+  EXPECT_THAT(method.points, IsEmpty());
   EXPECT_EQ(method.ending.lack, Lack::not_timed);
   EXPECT_EQ(method.ending.status(), "not timed: too crowded");
   const System system = cloth_system(8, 8);
@@ -358,59 +355,63 @@ TEST(TrustedState, EndsItsHorizonWhereNeighboursPart) {
   EXPECT_THAT(trusted.why_there, HasSubstr("neighbouring trajectories part"));
 }
 
-/// Points of both Newton methods with a few steps over 20 ms, and where they ended.
+/// Both Newton methods with a few steps over 20 ms, and where they ended.
 struct Measured {
   System system = cloth_system(8, 8);
   TrustedState trusted =
       trusted_state(system, {.longest_s = 0.02, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-7});
-  std::vector<WorkPoint> points;
+  std::vector<GuidedMethod> methods{{find_integrator("implicit-euler"), find_backend("serial")},
+                                    {find_integrator("newton-euler"), find_backend("serial")}};
   std::vector<ImplicitEnd> ends;
 
   Measured() {
-    for (const std::string_view name : {"implicit-euler", "newton-euler"})
+    for (GuidedMethod& method : methods)
       for (const int steps : {8, 16, 32}) {
-        WorkPoint point;
-        point.integrator = find_integrator(name);
-        point.steps = steps;
-        const auto backend = make_backend(*find_backend("serial"), system, *point.integrator,
+        const auto backend = make_backend(*method.backend, system, *method.integrator,
                                           trusted.horizon_s / steps, {.threads = 1});
         backend->step(steps);
-        ends.push_back({points.size(), backend->state()});
+        ends.push_back({&method, method.points.size(), backend->state()});
+        WorkPoint& point = method.points.emplace_back();
+        point.steps = steps;
         point.position_error = position_deviation(system, trusted.state, ends.back().state);
-        points.push_back(point);
       }
   }
 };
 
 TEST(ExactSteps, TellTheErrorOfTheSolverFromThatOfTheStep) {
   Measured measured;
-  tell_errors_apart(measured.points, measured.ends, measured.system, measured.trusted, [] { return false; });
-  for (const WorkPoint& point : measured.points) {
-    ASSERT_TRUE(point.solver_error && point.step_error) << point.steps;
-    EXPECT_LE(*point.position_error, *point.solver_error + *point.step_error);
-    EXPECT_GE(*point.position_error, *point.step_error - *point.solver_error);
-    // newton-euler solves the step's equation, to its tolerance and what single precision leaves.
-    if (point.integrator->solver == Solver::newton)
-      EXPECT_LT(*point.solver_error, 1e-3 * *point.step_error) << point.steps;
-    else
-      EXPECT_GT(*point.solver_error, 1e-2 * *point.step_error) << point.steps;
-  }
-  EXPECT_LT(*measured.points[1].step_error, *measured.points[0].step_error);
-  EXPECT_LT(*measured.points[2].step_error, *measured.points[1].step_error);
-  EXPECT_EQ(measured.points[0].step_error, measured.points[3].step_error);
+  tell_errors_apart(measured.methods, measured.ends, measured.system, measured.trusted, [] { return false; });
+  for (const GuidedMethod& method : measured.methods)
+    for (const WorkPoint& point : method.points) {
+      ASSERT_TRUE(point.solver_error && point.step_error) << point.steps;
+      EXPECT_LE(*point.position_error, *point.solver_error + *point.step_error);
+      EXPECT_GE(*point.position_error, *point.step_error - *point.solver_error);
+      // newton-euler solves the step's equation, to its tolerance and what single precision leaves.
+      if (method.integrator->solver == Solver::newton)
+        EXPECT_LT(*point.solver_error, 1e-3 * *point.step_error) << point.steps;
+      else
+        EXPECT_GT(*point.solver_error, 1e-2 * *point.step_error) << point.steps;
+    }
+  const std::vector<WorkPoint>& points = measured.methods[0].points;
+  EXPECT_LT(*points[1].step_error, *points[0].step_error);
+  EXPECT_LT(*points[2].step_error, *points[1].step_error);
+  EXPECT_EQ(points[0].step_error, measured.methods[1].points[0].step_error);
 }
 
 TEST(ExactSteps, AreLeftOutWhereTimeIsOver) {
   Measured measured;
+  std::vector<WorkPoint>&implicit = measured.methods[0].points, &newton = measured.methods[1].points;
   int asked = 0;
   // Enough for the cheapest, which newton-euler took no time for, and not for the others.
-  measured.points[4].seconds_a_step = 1;
-  measured.points[5].seconds_a_step = 1;
-  tell_errors_apart(measured.points, measured.ends, measured.system, measured.trusted,
-                    [&] { return measured.points[0].step_error && ++asked > 2; });
-  EXPECT_TRUE(measured.points[0].step_error);
-  EXPECT_TRUE(measured.points[3].step_error);
-  for (const std::size_t point : {1U, 2U, 4U, 5U}) EXPECT_FALSE(measured.points[point].step_error) << point;
+  newton[1].seconds_a_step = 1;
+  newton[2].seconds_a_step = 1;
+  tell_errors_apart(measured.methods, measured.ends, measured.system, measured.trusted,
+                    [&] { return implicit[0].step_error && ++asked > 2; });
+  for (const std::vector<WorkPoint>& points : {implicit, newton}) {
+    EXPECT_TRUE(points[0].step_error);
+    EXPECT_FALSE(points[1].step_error);
+    EXPECT_FALSE(points[2].step_error);
+  }
 }
 
 StepMaker reference_of(const System& system, std::string_view integrator) {

@@ -189,8 +189,6 @@ TEST(EnergyCurveIn, RefusesOtherTables) {
 
 WorkPoint work_point(double dt_s, std::optional<double> error) {
   WorkPoint point;
-  point.integrator = find_integrator("rk4");
-  point.backend = "serial";
   point.steps = 10;
   point.dt_s = dt_s;
   point.seconds_a_step = 3 * dt_s;
@@ -208,8 +206,9 @@ SceneGuide made_up_guide() {
   const BackendInfo* serial = find_backend("serial");
   guide.methods = {{find_integrator("rk4"), serial},
                    {find_integrator("xpbd"), serial, {Lack::time, "no time was left"}}};
-  guide.points = {work_point(0.01, std::nullopt), work_point(0.005, 0.125), work_point(0.0025, 0.001)};
-  guide.points[0].diverged = guide.points[1].on_front = guide.points[2].beyond_trust = true;
+  std::vector<WorkPoint>& points = guide.methods[0].points;
+  points = {work_point(0.01, std::nullopt), work_point(0.005, 0.125), work_point(0.0025, 0.001)};
+  points[0].diverged = points[1].on_front = points[2].beyond_trust = true;
   for (const char* name : {"rk4", "xpbd"}) guide.limits.emplace_back().integrator = find_integrator(name);
   guide.sizes = {{find_integrator("rk4"), serial, 0.005, true, {{256, 1e-3}, {529, 2e-3}}, ""}};
   guide.recommendation.sentences = {"Take rk4 | serial."};

@@ -22,14 +22,15 @@ void show_small_numbers(Table& table) {
 }
 
 Table front_table(const SceneGuide& guide) {
-  std::vector<const WorkPoint*> front;
-  for (const WorkPoint& point : guide.points)
-    if (point.on_front) front.push_back(&point);
-  std::ranges::sort(front, {}, [](const WorkPoint* point) { return point->seconds_a_second(); });
+  std::vector<std::pair<const GuidedMethod*, const WorkPoint*>> front;
+  for (const GuidedMethod& method : guide.methods)
+    for (const WorkPoint& point : method.points)
+      if (point.on_front) front.emplace_back(&method, &point);
+  std::ranges::sort(front, {}, [](const auto& one) { return one.second->seconds_a_second(); });
   Table table;
-  for (const WorkPoint* point : front)
-    table.add({{"integrator", point->integrator->name},
-               {"backend", point->backend},
+  for (const auto& [method, point] : front)
+    table.add({{"integrator", method->integrator->name},
+               {"backend", method->backend->name},
                {"dt_s", point->dt_s},
                {"wall_s_per_s", point->seconds_a_second()},
                {"position_error", point->position_error}});
@@ -138,7 +139,7 @@ Table costs_at_errors(const SceneGuide& guide) {
     double at_wish = std::numeric_limits<double>::infinity();
     bool any = false;
     for (const double error : errors) {
-      const auto cost = cost_at_error(guide.points, method, error);
+      const auto cost = cost_at_error(method, error);
       row.push_back(cost ? Cell(three_digits(cost->seconds_a_second) + (cost->at_longest_step ? " ‡" : ""))
                          : Cell());
       if (cost && error == guide.wish.error) at_wish = cost->seconds_a_second;
@@ -208,7 +209,7 @@ std::string_view state_of(const WorkPoint& point) {
 
 bool is_recommended(const SceneGuide& guide, const WorkPoint& point) {
   const auto& best = guide.recommendation.best;
-  return best && &point == &guide.points[*best];
+  return best && &point == point_at_error(guide.methods[*best], guide.wish.error);
 }
 
 /// Adds a point of the method or, if it is null, why the method has none.
@@ -241,13 +242,8 @@ void add_point(Table& table, const SceneGuide& guide, const GuidedMethod& method
 Table points_table(const SceneGuide& guide) {
   Table table;
   for (const GuidedMethod& method : guide.methods) {
-    bool any = false;
-    for (const WorkPoint& point : guide.points)
-      if (is_of(point, method)) {
-        add_point(table, guide, method, &point);
-        any = true;
-      }
-    if (!any) add_point(table, guide, method, nullptr);
+    for (const WorkPoint& point : method.points) add_point(table, guide, method, &point);
+    if (method.points.empty()) add_point(table, guide, method, nullptr);
   }
   return table;
 }
@@ -275,7 +271,7 @@ Table errors_table(const SceneGuide& guide) {
   Table table;
   for (const GuidedMethod& method : guide.methods)
     for (const double error : errors_around(guide.wish))
-      if (const auto cost = cost_at_error(guide.points, method, error))
+      if (const auto cost = cost_at_error(method, error))
         table.add({{"integrator", method.integrator->name},
                    {"backend", method.backend->name},
                    {"position_error", error},
@@ -317,13 +313,8 @@ Table frames_table(const SceneGuide& guide) {
 
 /// The longest step that keeps the error, else the most accurate point; null if no point counts.
 const WorkPoint* point_to_show(const SceneGuide& guide, const GuidedMethod& method) {
-  if (const auto place = point_at_error(guide.points, method, guide.wish.error)) return &guide.points[*place];
-  const WorkPoint* nearest = nullptr;
-  for (const WorkPoint& point : guide.points)
-    if (is_of(point, method) && point.counts() &&
-        (nearest == nullptr || *point.position_error < *nearest->position_error))
-      nearest = &point;
-  return nearest;
+  const WorkPoint* point = point_at_error(method, guide.wish.error);
+  return point != nullptr ? point : most_accurate(method);
 }
 
 /// The rows of every guide, with its scene in the first column.
@@ -385,9 +376,7 @@ Table guide_summary(const SceneGuide& guide) {
   };
   std::vector<Line> lines;
   for (const GuidedMethod& method : guide.methods) lines.push_back({&method, point_to_show(guide, method)});
-  const auto cost_of = [&](const Line& line) {
-    return cost_at_error(guide.points, *line.method, guide.wish.error);
-  };
+  const auto cost_of = [&](const Line& line) { return cost_at_error(*line.method, guide.wish.error); };
   // First the methods that keep the error, by their cost; then the others, by their error.
   std::ranges::stable_sort(lines, {}, [&](const Line& line) {
     if (line.point == nullptr) return std::pair(2, 0.0);

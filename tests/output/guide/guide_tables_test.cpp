@@ -17,6 +17,14 @@ constexpr double error = 1e-3;
 
 CsvTable results_of(const std::string& name) { return CsvTable(source_file(results + name)); }
 
+/// The method of these names; null if the guide has none.
+auto find_method(auto& guide, std::string_view integrator, std::string_view backend) {
+  const auto found = std::ranges::find_if(guide.methods, [&](const GuidedMethod& method) {
+    return method.integrator->name == integrator && method.backend->name == backend;
+  });
+  return found == guide.methods.end() ? nullptr : &*found;
+}
+
 /// The guides of guide.csv and guide-steps.csv, as far as costs at equal error ask for them.
 std::vector<SceneGuide> measured_guides() {
   std::vector<SceneGuide> guides;
@@ -30,17 +38,16 @@ std::vector<SceneGuide> measured_guides() {
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     SceneGuide& guide = guide_of(points.text(i, points.column("scene")));
-    WorkPoint point;
-    point.integrator = find_integrator(points.text(i, points.column("integrator")));
-    point.backend = points.text(i, points.column("backend"));
-    const GuidedMethod method{point.integrator, find_backend(point.backend)};
-    if (std::ranges::none_of(guide.methods, [&](const GuidedMethod& known) { return is_of(point, known); }))
-      guide.methods.push_back(method);
+    const std::string& integrator = points.text(i, points.column("integrator"));
+    const std::string& backend = points.text(i, points.column("backend"));
+    GuidedMethod* method = find_method(guide, integrator, backend);
+    if (method == nullptr)
+      method = &guide.methods.emplace_back(GuidedMethod{find_integrator(integrator), find_backend(backend)});
     if (points.text(i, points.column("status")) != "ok") continue;
+    WorkPoint& point = method->points.emplace_back();
     point.dt_s = points.number(i, points.column("dt_s"));
     point.seconds_a_step = points.number(i, points.column("ms_per_step")) / 1000;
     point.position_error = points.number(i, points.column("position_error"));
-    guide.points.push_back(point);
   }
   for (std::size_t i = 0; i < steps.size(); ++i) {
     StepLimit& limit = guide_of(steps.text(i, steps.column("scene"))).limits.emplace_back();
@@ -52,7 +59,8 @@ std::vector<SceneGuide> measured_guides() {
 
 std::optional<CostAtError> cost_of(const SceneGuide& guide, std::string_view integrator,
                                    std::string_view backend) {
-  return cost_at_error(guide.points, {find_integrator(integrator), find_backend(backend)}, error);
+  const GuidedMethod* method = find_method(guide, integrator, backend);
+  return method != nullptr ? cost_at_error(*method, error) : std::nullopt;
 }
 
 double stable_step(const SceneGuide& guide, std::string_view integrator) {
@@ -60,9 +68,10 @@ double stable_step(const SceneGuide& guide, std::string_view integrator) {
       ->measured.stable_s;
 }
 
-std::string method_of(const WorkPoint& point) {
-  return point.backend == "openmp" ? std::string(point.integrator->name)
-                                   : fmt::format("{} on {}", point.integrator->name, point.backend);
+std::string named(const GuidedMethod& method) {
+  return method.backend->name == "openmp"
+             ? std::string(method.integrator->name)
+             : fmt::format("{} on {}", method.integrator->name, method.backend->name);
 }
 
 /// The cheapest method at equal error, and how much longer the runner-up takes.
@@ -70,14 +79,13 @@ Table cheapest_methods(const std::vector<SceneGuide>& guides) {
   Table table;
   for (const SceneGuide& guide : guides) {
     const Recommendation chosen = recommend(guide);
-    const WorkPoint &best = guide.points[*chosen.best], &second = guide.points[*chosen.runner_up];
-    const auto cost = cost_of(guide, best.integrator->name, best.backend),
-               other = cost_of(guide, second.integrator->name, second.backend);
+    const GuidedMethod &best = guide.methods[*chosen.best], &second = guide.methods[*chosen.runner_up];
+    const auto cost = cost_at_error(best, error), other = cost_at_error(second, error);
     table.add({{"scene", guide.scene},
-               {"cheapest", method_of(best)},
+               {"cheapest", named(best)},
                {"step (ms)", 1000 * cost->dt_s},
                {"s per simulated second", cost->seconds_a_second},
-               {"runner-up", method_of(second)},
+               {"runner-up", named(second)},
                {"times as long", other->seconds_a_second / cost->seconds_a_second}});
   }
   return table;
@@ -129,12 +137,7 @@ Table implicit_methods(const SceneGuide& guide) {
   Table table;
   const double verlet = cost_of(guide, "verlet", "openmp")->seconds_a_second;
   const auto longest = [&](std::string_view integrator) -> const WorkPoint& {
-    const WorkPoint* found = nullptr;
-    for (const WorkPoint& point : guide.points)
-      if (point.integrator == find_integrator(integrator) && point.backend == "openmp" &&
-          (found == nullptr || point.dt_s > found->dt_s))
-        found = &point;
-    return *found;
+    return *std::ranges::max_element(find_method(guide, integrator, "openmp")->points, {}, &WorkPoint::dt_s);
   };
   const auto add = [&](std::string_view name) {
     const auto cost = cost_of(guide, name, "openmp");
@@ -164,15 +167,12 @@ TEST(GuidePage, HasTheNumbersOfItsResults) {
 TEST(GuideTables, HaveTheirColumnsWhereTheyWere) {
   SceneGuide guide;
   guide.wish.error = error;
-  const GuidedMethod method{find_integrator("rk4"), find_backend("serial")};
-  guide.methods = {method};
-  WorkPoint point;
-  point.integrator = method.integrator;
-  point.backend = method.backend->name;
+  guide.methods.push_back({find_integrator("rk4"), find_backend("serial")});
+  GuidedMethod& method = guide.methods.front();
+  WorkPoint& point = method.points.emplace_back();
   point.dt_s = 1e-3;
   point.seconds_a_step = 1e-3;
   point.position_error = error;
-  guide.points = {point};
   guide.limits.emplace_back().integrator = method.integrator;
   guide.sizes = {{method.integrator, method.backend, 1e-3, true, {{256, 1e-3}}, ""}};
   guide.recommendation = recommend(guide);
