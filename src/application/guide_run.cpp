@@ -135,7 +135,7 @@ SceneGuide measured(const GuidePlan& plan, std::size_t number, double seconds, P
   const PreparedScene scene = prepare_scene(spec);
   warn_of_note(scene);
   GuideRequest request = plan.request;
-  request.scene = request.execution.scene = spec.name;
+  request.execution.scene = spec.name;
   request.execution.scene_file = spec.file;
   request.system = &scene.system;
   request.seconds = seconds;

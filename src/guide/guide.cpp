@@ -233,7 +233,7 @@ double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* con
 SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
   GuideClock clock(request.seconds);
   SceneGuide guide;
-  guide.scene = request.scene;
+  guide.scene = request.execution.scene;
   guide.seconds = request.seconds;
   guide.nodes = request.system->nodes();
   guide.springs = request.system->springs.size();
@@ -242,22 +242,17 @@ SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
   guide.at_start = guide.on_the_way = spectrum_at(*request.system, request.system->start);
   watch.progress("trusted trajectory", clock.fraction());
   find_trusted_state(guide, request, watch);
-  if (guide.trusted.failure.empty()) {
+  const bool has_reference = guide.trusted.failure.empty();
+  if (has_reference) {
     watch.progress("spectrum on the way", clock.fraction());
     guide.on_the_way = spectrum_at(*request.system, guide.trusted.state);
   }
-  if (guide.trusted.failure.empty() || clock.spent() <= request.seconds)
-    find_limits(guide, request, watch, clock);
-  if (!guide.trusted.failure.empty()) {
-    guide.stopped = watch.stop();
-    guide.recommendation = recommend(guide);
-    return guide;
-  }
-  measure_points(guide, request, watch, clock);
+  if (has_reference || clock.spent() <= request.seconds) find_limits(guide, request, watch, clock);
+  if (has_reference) measure_points(guide, request, watch, clock);
   guide.stopped = watch.stop();
   mark_pareto_front(guide.methods);
   guide.recommendation = recommend(guide);
-  if (request.make_cloth) measure_cloths(guide, request, watch, clock);
+  if (has_reference && request.make_cloth) measure_cloths(guide, request, watch, clock);
   return guide;
 }
 

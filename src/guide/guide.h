@@ -94,11 +94,10 @@ struct Recommendation {
 
 /// A request for the guide of a scene. All that it points to must outlive the guide.
 struct GuideRequest {
-  std::string scene;
   const System* system = nullptr;
   std::vector<const BackendInfo*> backends;
   std::vector<const Integrator*> integrators;
-  ExecutionOptions execution;
+  ExecutionOptions execution;  ///< with the scene's name and file
   Wish wish;
   double seconds = 120;            ///< approximate wall time
   double longest_horizon_s = 0.1;  ///< longest simulated time after which errors are measured
@@ -155,30 +154,9 @@ const WorkPoint* point_at_error(const GuidedMethod& method, double error);
 /// The method's most accurate point that counts; null if none does.
 const WorkPoint* most_accurate(const GuidedMethod& method);
 
-/// The number of steps over the horizon with which the method should keep the requested error, if their
-/// length exceeds that of its point_at_error by more than step_resolution. It follows from the curve, or is
-/// that of the largest usable step if the curve is accurate enough at its longest step. None if no point
-/// keeps the error.
-std::optional<int> steps_to_try(const SceneGuide& guide, const GuidedMethod& method);
-
-/// Explicit methods that could be the cheapest at the requested error, but whose curves had no time to reach
-/// it. The step that such a method needs follows from its integrator's finest point that counts, on any
-/// backend, and its order; it is at most the largest usable step. With that step and the measured time per
-/// step, the method is cheaper than all measured ones. A method also counts if its step or time is unknown,
-/// but not if its integrator's curve on another backend is complete and does not reach the error. Implicit
-/// methods, whose cost per step is not known in advance, count only if there are no such explicit methods and
-/// no point counts.
-std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide);
-
-/// Wall time, s, with which the curves of these methods would have reached the requested error, with the
-/// points of other methods that take no longer; no curve gets more points than NextPoint::later. Rounded up
-/// to two digits, and at least twice the time of the request. A lower bound if the horizon ended for lack of
-/// time.
-double needed_seconds(const SceneGuide& guide, std::span<const GuidedMethod* const> missed);
-
 /// Recommends the cheapest method at the requested error, with the longest measured step that keeps it, its
 /// speed relative to real time, and the errors at which the runner-up is cheaper. Recommends nothing if there
-/// are missed_methods().
+/// are methods that could be the cheapest, but were not measured for lack of time (missed_methods).
 Recommendation recommend(const SceneGuide& guide);
 
 /// Sentences with full stops: the number of measured methods, those not measured or not down to the requested

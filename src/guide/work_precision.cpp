@@ -332,11 +332,10 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
                      GuidedMethod& method, const ExecutionOptions& execution, double wanted_error)
     : system_(system),
       trusted_(trusted),
+      limit_(limit),
       method_(method),
       execution_(execution),
       wanted_error_(wanted_error),
-      stable_s_(limit.measured.stable_s),
-      stable_span_s_(limit.measured.span_s),
       steps_(first_steps(*method.integrator, limit.measured, trusted.horizon_s)),
       setup_seconds_(limit.first_seconds) {
   const bool is_explicit = !is_implicit(*method.integrator);
@@ -346,7 +345,7 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
     end({Lack::unsupported, reason});
   else if (limit.ending.lack != Lack::nothing)
     end(limit.ending);
-  else if (stable_s_ == 0) {
+  else if (limit.measured.stable_s == 0) {
     const std::string why = limit.measured.finished ? "no step that was tried is stable"
                                                     : "no time was left to find a step that is stable";
     if (is_explicit)
@@ -425,7 +424,7 @@ bool WorkCurve::goes_on() {
   const auto diverged =
       std::ranges::count_if(points, [](const WorkPoint& one) { return one.diverged && one.within_limit; });
   // A step that is stable for a shorter time may diverge within the horizon.
-  if (diverged == enough_diverged && !has_counted() && stable_span_s_ >= trusted_.horizon_s) {
+  if (diverged == enough_diverged && !has_counted() && limit_.measured.span_s >= trusted_.horizon_s) {
     end({Lack::failed, fmt::format("its energy grows or is not finite with {} steps that should be stable",
                                    enough_diverged)});
     return false;
@@ -455,7 +454,7 @@ std::optional<State> WorkCurve::measure(int steps) {
   method_.step_seconds = point.seconds_a_step;
   point.evaluations = evaluations_of(*method_.integrator, system_);
   take_state(point, system_, trusted_, state);
-  point.within_limit = point.dt_s <= stable_s_ * (1 + 1e-9);
+  point.within_limit = point.dt_s <= limit_.measured.stable_s * (1 + 1e-9);
   method_.points.push_back(std::move(point));
   return state;
 }

@@ -13,6 +13,54 @@
 
 namespace mssim {
 
+/// Cost and error of one step size: a point of a work-precision curve (Hairer, Norsett and Wanner, Solving
+/// Ordinary Differential Equations I, section II.10).
+struct WorkPoint {
+  int steps = 0;              ///< over the horizon
+  double dt_s = 0;            ///< simulated time
+  double seconds_a_step = 0;  ///< wall time, in the fastest of `samples` runs over the horizon
+  int samples = 0;
+  /// Force evaluations per step: the stages of an explicit method, the iterations of fast-springs, the small
+  /// steps of xpbd. None for methods with conjugate gradients, whose number varies from step to step.
+  std::optional<double> evaluations;
+  bool diverged = false;  ///< not finite, or with more energy than energy_bound allows
+  /// The step is no longer than the largest that was stable in runs. These may be longer than the horizon: a
+  /// motion that does not diverge within the horizon may do so when it reaches the floor.
+  bool within_limit = true;
+  /// Largest distance from the trusted state at the horizon, in mean rest lengths; none if not finite.
+  std::optional<double> position_error;
+  std::optional<double> energy_error;  ///< of the total energy, over the trusted kinetic + elastic energy
+  /// Errors of an implicit method, in mean rest lengths, if there was time to separate them. The solver's is
+  /// the distance from exact backward Euler with the same step; the step's is the distance of exact backward
+  /// Euler from the trusted state.
+  std::optional<double> solver_error, step_error;
+  bool beyond_trust = false;  ///< the error is below trusted_margin times the trusted state's own
+  bool on_front = false;      ///< no other point is both as fast and as accurate (mark_pareto_front)
+  std::string note;           ///< of the backend
+
+  /// Wall time of a simulated second, s.
+  double seconds_a_second() const { return seconds_a_step / dt_s; }
+  /// Whether conclusions may use the point.
+  bool counts() const { return !diverged && within_limit && !beyond_trust && position_error.has_value(); }
+};
+
+/// A point of a method's curve for which there was no time.
+struct NextPoint {
+  double seconds = 0;  ///< approximate wall time to measure it
+  double dt_s = 0;     ///< its step
+  int later = 0;       ///< points that the curve may have after it
+};
+
+/// A method: an integrator on a backend, and its work-precision curve.
+struct GuidedMethod {
+  const Integrator* integrator = nullptr;
+  const BackendInfo* backend = nullptr;
+  Ending ending = {};       ///< why there are no points, or no more
+  double step_seconds = 0;  ///< wall time per step of the shortest step that was timed; 0: none
+  std::optional<NextPoint> next = {};
+  std::vector<WorkPoint> points = {};  ///< from coarse to fine, once all are measured
+};
+
 /// The state of a system `span_s` after its start, in double precision, by a solver that shares only the laws
 /// of springs and acceleration with the table of integrators: Boost.Odeint's Bulirsch-Stoer method
 /// (extrapolated modified midpoint rules of variable order and step; Hairer, Norsett and Wanner, Solving
@@ -128,10 +176,10 @@ class WorkCurve {
 
   const System& system_;
   const TrustedState& trusted_;
+  const StepLimit& limit_;
   GuidedMethod& method_;
   ExecutionOptions execution_;
-  double wanted_error_, stable_s_;
-  double stable_span_s_;  ///< for which stable_s_ was stable
+  double wanted_error_;
   int steps_;
   int unchanged_ = 0;  ///< halvings in a row that left the error as it was
   bool has_next_ = true;

@@ -133,22 +133,22 @@ Table costs_at_errors(const SceneGuide& guide) {
   Table table;
   table.columns = {{"integrator"}, {"backend"}};
   for (const double error : errors) table.columns.push_back({two_digits(error), Align::right});
-  std::vector<std::pair<double, std::vector<Cell>>> rows;
-  for (const GuidedMethod& method : guide.methods) {
+  const auto order = ordered_places(guide.methods, [&](const GuidedMethod& method) {
+    const auto cost = cost_at_error(method, guide.wish.error);
+    return cost ? cost->seconds_a_second : std::numeric_limits<double>::infinity();
+  });
+  for (const std::size_t place : order) {
+    const GuidedMethod& method = guide.methods[place];
     std::vector<Cell> row{method.integrator->name, method.backend->name};
-    double at_wish = std::numeric_limits<double>::infinity();
     bool any = false;
     for (const double error : errors) {
       const auto cost = cost_at_error(method, error);
       row.push_back(cost ? Cell(three_digits(cost->seconds_a_second) + (cost->at_longest_step ? " ‡" : ""))
                          : Cell());
-      if (cost && error == guide.wish.error) at_wish = cost->seconds_a_second;
       any = any || cost;
     }
-    if (any) rows.emplace_back(at_wish, std::move(row));
+    if (any) table.rows.push_back(std::move(row));
   }
-  std::ranges::stable_sort(rows, {}, &std::pair<double, std::vector<Cell>>::first);
-  for (auto& [cost, row] : rows) table.rows.push_back(std::move(row));
   return table;
 }
 
@@ -370,28 +370,23 @@ std::vector<std::string> about_trusted_state(const TrustedState& trusted) {
 }
 
 Table guide_summary(const SceneGuide& guide) {
-  struct Line {
-    const GuidedMethod* method;
-    const WorkPoint* point;
-  };
-  std::vector<Line> lines;
-  for (const GuidedMethod& method : guide.methods) lines.push_back({&method, point_to_show(guide, method)});
-  const auto cost_of = [&](const Line& line) { return cost_at_error(*line.method, guide.wish.error); };
   // First the methods that keep the error, by their cost; then the others, by their error.
-  std::ranges::stable_sort(lines, {}, [&](const Line& line) {
-    if (line.point == nullptr) return std::pair(2, 0.0);
-    const auto cost = cost_of(line);
-    return cost ? std::pair(0, cost->seconds_a_second) : std::pair(1, *line.point->position_error);
+  const auto order = ordered_places(guide.methods, [&](const GuidedMethod& method) {
+    if (const auto cost = cost_at_error(method, guide.wish.error))
+      return std::pair(0, cost->seconds_a_second);
+    const WorkPoint* point = most_accurate(method);
+    return point != nullptr ? std::pair(1, *point->position_error) : std::pair(2, 0.0);
   });
   Table table;
-  for (const Line& line : lines) {
-    const auto limit = std::ranges::find(guide.limits, line.method->integrator, &StepLimit::integrator);
-    const WorkPoint* point = line.point;
+  for (const std::size_t place : order) {
+    const GuidedMethod& method = guide.methods[place];
+    const StepLimit* limit = found_in(guide.limits, method.integrator, &StepLimit::integrator);
+    const WorkPoint* point = point_to_show(guide, method);
     const double rate = guide.wish.frames_per_second;
-    const auto cost = cost_of(line);
+    const auto cost = cost_at_error(method, guide.wish.error);
     const std::string_view accurate = cost ? "yes" : "no";
-    table.add({{"integrator", line.method->integrator->name},
-               {"backend", line.method->backend->name},
+    table.add({{"integrator", method.integrator->name},
+               {"backend", method.backend->name},
                {"stable_dt_s", found(limit->measured.stable_s)},
                {"dt_s", point ? Cell(point->dt_s) : Cell()},
                {"steps_per_frame", point ? Cell(steps_a_frame(point->dt_s, rate)) : Cell()},
@@ -401,7 +396,7 @@ Table guide_summary(const SceneGuide& guide) {
                {"energy_error", point ? Cell(point->energy_error) : Cell()},
                {"accurate", point ? Cell(accurate) : Cell()},
                {"on_front", point ? Cell(point->on_front) : Cell()},
-               {"remark", worded(line.method->ending.status())}});
+               {"remark", worded(method.ending.status())}});
   }
   return table;
 }
