@@ -169,24 +169,26 @@ std::vector<std::string> failures(const std::vector<SceneGuide>& guides, std::si
   return sentences;
 }
 
+/// Whether the backend runs the method here, and can be timed.
+bool can_run(const GuidedMethod& method) {
+  const Lack lack = method.ending.lack;
+  return lack != Lack::unsupported && lack != Lack::unavailable && lack != Lack::not_timed;
+}
+
 /// Methods whose backend or integrator was asked for by name, and could run on a scene with none.
 std::vector<std::string> missed(const std::vector<SceneGuide>& guides, const GuideOptions& options) {
-  const auto ran = [](const GuidedMethod& method) {
-    return std::ranges::none_of(std::array{Lack::unavailable, Lack::unsupported, Lack::not_timed},
-                                [&](Lack lack) { return method.ending.lack == lack; });
-  };
   const bool names_integrators =
       !options.integrators.empty() && options.integrators != std::vector<std::string>{"all"};
   std::vector<std::string> sentences;
   for (const SceneGuide& guide : guides)
     for (const GuidedMethod& method : guide.methods) {
-      const auto nothing_ran = [&](auto GuidedMethod::*member) {
+      const auto nothing_runs = [&](auto GuidedMethod::*member) {
         return std::ranges::none_of(guide.methods, [&](const GuidedMethod& other) {
-          return other.*member == method.*member && ran(other);
+          return other.*member == method.*member && can_run(other);
         });
       };
-      if ((!options.backends.empty() && nothing_ran(&GuidedMethod::backend)) ||
-          (names_integrators && nothing_ran(&GuidedMethod::integrator)))
+      if ((!options.backends.empty() && nothing_runs(&GuidedMethod::backend)) ||
+          (names_integrators && nothing_runs(&GuidedMethod::integrator)))
         sentences.push_back(sentence_of(guide, method));
     }
   return sentences;

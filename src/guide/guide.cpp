@@ -54,9 +54,7 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
                       .backends = request.backends,
                       .execution = request.execution,
                       .at_start = guide.at_start,
-                      .on_the_way = guide.on_the_way,
-                      .seconds = 0,
-                      .stop = {}};
+                      .on_the_way = guide.on_the_way};
   const double end = clock.end_of_part(share_of_limits, 1 - until_limits);
   Ending given_up;  // why there is no backend left
   for (std::size_t i = 0; i < request.integrators.size(); ++i) {
@@ -172,13 +170,13 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
 void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
                     const GuideClock& clock) {
   for (const GuidedMethod& method : guide.methods) {
-    SizeCurve curve{.integrator = method.integrator, .backend = method.backend, .samples = {}, .status = {}};
-    curve.dt_s = step_for_sizes(guide, method);
-    curve.keeps_error = cost_at_error(method, request.wish.error).has_value();
-    if (curve.dt_s == 0)
-      curve.status =
-          method.ending.status().empty() ? "no step that was measured is stable" : method.ending.status();
-    guide.sizes.push_back(curve);
+    SizeCurve& curve = guide.sizes.emplace_back(
+        SizeCurve{.integrator = method.integrator,
+                  .backend = method.backend,
+                  .dt_s = step_for_sizes(guide, method),
+                  .keeps_error = cost_at_error(method, request.wish.error).has_value()});
+    if (curve.dt_s == 0) curve.status = method.ending.status();
+    if (curve.dt_s == 0 && curve.status.empty()) curve.status = "no step that was measured is stable";
   }
   const double end = clock.end_of_part(share_of_sizes, 0);
   measure_sizes(guide.sizes, request.make_cloth, request.execution, [&](const std::string& activity) {

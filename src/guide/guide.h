@@ -34,8 +34,8 @@ struct SizeCurve {
     std::uint64_t nodes = 0;
     double seconds_a_step = 0;
   };
-  std::vector<Sample> samples;  ///< by nodes
-  std::string status;           ///< why there are no samples, or no larger ones; or empty
+  std::vector<Sample> samples = {};  ///< by nodes
+  std::string status = {};           ///< why there are no samples, or no larger ones; or empty
 
   /// The largest cloth for a frame rate.
   struct Largest {

@@ -176,7 +176,7 @@ struct LimitRequest {
   ExecutionOptions execution;
   Spectrum at_start, on_the_way;
   double seconds = 0;  ///< approximate wall time per integrator; more only until a step is stable
-  std::function<bool()> stop;
+  std::function<bool()> stop = [] { return false; };
 };
 
 /// Simulated time of a run that decides whether a step is stable, if there is time for it.

@@ -210,8 +210,7 @@ TEST(WorkCurve, HasNoTimesThatMeanNothing) {
   WorkCurve(system, trusted, limit, one, {.threads = 1}, 1e-6).time_step();
   EXPECT_EQ(one.ending.status(), "not timed: too crowded");
   EXPECT_EQ(one.step_seconds, 0);
-  std::vector<SizeCurve> sizes{
-      {.integrator = limit.integrator, .backend = &crowded, .dt_s = 1e-4, .samples = {}, .status = {}}};
+  std::vector<SizeCurve> sizes{{.integrator = limit.integrator, .backend = &crowded, .dt_s = 1e-4}};
   measure_sizes(
       sizes, [](std::uint32_t side) { return FamilyCloth{cloth_system(side, side)}; }, {.threads = 1},
       [](const std::string&) { return true; });
@@ -547,8 +546,7 @@ StepLimit found_limit(std::string_view integrator, const System& system, const B
                              .execution = {},
                              .at_start = spectrum,
                              .on_the_way = spectrum,
-                             .seconds = 1000,
-                             .stop = [] { return false; }};
+                             .seconds = 1000};
   return find_step_limit(*find_integrator(integrator), request);
 }
 
