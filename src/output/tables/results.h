@@ -27,29 +27,6 @@ using RowPointers = std::span<const ResultRow* const>;
 /// The addresses of the rows, which must outlive them.
 std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows);
 
-/// A column of a table of rows: its heading and the function that makes its cells.
-struct RowColumn {
-  Column head;
-  std::function<Cell(const ResultRow&)> value;
-  const ResultColumn* source = nullptr;  ///< the column of timings.csv, if it is one
-
-  /// A column of timings.csv, optionally under another name. Throws std::invalid_argument if there is no such
-  /// column.
-  RowColumn(const char* name) : RowColumn(name, name) {}
-  RowColumn(const char* name, std::string_view column);
-  RowColumn(const ResultColumn& column);
-  RowColumn(Column column, std::function<Cell(const ResultRow&)> cell)
-      : head(std::move(column)), value(std::move(cell)) {}
-};
-
-/// The headings of these columns.
-std::vector<Column> heads_of(const std::vector<RowColumn>& columns);
-/// The cells of the row in these columns.
-std::vector<Cell> cells_of(const ResultRow& row, const std::vector<RowColumn>& columns);
-
-/// A line for each row; without rows, no columns.
-Table table_of(RowPointers rows, const std::vector<RowColumn>& columns);
-
 /// The columns of timings.csv and a line for each row; missing values are empty.
 Table timings_table(std::span<const ResultRow> rows);
 

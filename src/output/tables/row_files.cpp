@@ -55,11 +55,19 @@ struct Place {
   }
 };
 
-const ResultColumn& column_named(std::string_view name) {
-  const ResultColumn* found = found_in(result_columns, name, &ResultColumn::name);
-  if (found == nullptr) throw std::invalid_argument("timings.csv has no column " + std::string(name));
-  return *found;
-}
+/// A column of timings.csv, under its name or another one.
+struct RowColumn {
+  std::string_view name;
+  const ResultColumn* source;
+
+  RowColumn(const ResultColumn& column) : name(column.name), source(&column) {}
+  /// Throws std::invalid_argument if there is no such column.
+  RowColumn(const char* column) : RowColumn(column, column) {}
+  RowColumn(const char* name_, std::string_view column)
+      : name(name_), source(found_in(result_columns, column, &ResultColumn::name)) {
+    if (source == nullptr) throw std::invalid_argument("timings.csv has no column " + std::string(column));
+  }
+};
 
 /// The type of a column's values in JSON, and their bounds.
 ordered_json type_of(const ResultColumn& column) {
@@ -83,8 +91,8 @@ std::string rows_schema(std::string_view title, std::string_view description,
   ordered_json names = ordered_json::array(), properties = ordered_json::object();
   for (const RowColumn& column : columns) {
     const ResultColumn& source = *column.source;
-    names.push_back(column.head.name);
-    ordered_json& property = properties[column.head.name];
+    names.push_back(column.name);
+    ordered_json& property = properties[std::string(column.name)];
     property = {
         {"description", fmt::format("{}{}{}", source.meaning, source.unit.empty() ? "" : "; ", source.unit)}};
     property.update(type_of(source));
@@ -119,6 +127,16 @@ const std::vector<RowColumn>& printed_columns() {
                                               "verified",
                                               "status"};
   return columns;
+}
+
+/// A line for each row.
+Table table_of(RowPointers rows, const std::vector<RowColumn>& columns) {
+  Table table;
+  for (const RowColumn& column : columns) table.columns.push_back({std::string(column.name)});
+  for (const ResultRow* row : rows)
+    table.rows.push_back(
+        mapped<Cell>(columns, [&](const RowColumn& column) { return cell_of(*row, *column.source); }));
+  return table;
 }
 
 /// Files of older programs, which end after this number of columns or more, are read too.
@@ -185,38 +203,9 @@ std::vector<Aggregate> aggregates_of(std::span<const double> samples_ms) {
 
 }  // namespace
 
-RowColumn::RowColumn(const ResultColumn& column)
-    : head{std::string(column.name)},
-      value([&column](const ResultRow& row) { return cell_of(row, column); }),
-      source(&column) {}
+Table timings_table(std::span<const ResultRow> rows) { return table_of(pointers_to(rows), all_columns()); }
 
-RowColumn::RowColumn(const char* name, std::string_view column) : RowColumn(column_named(column)) {
-  head.name = name;
-}
-
-std::vector<Column> heads_of(const std::vector<RowColumn>& columns) {
-  return mapped<Column>(columns, &RowColumn::head);
-}
-
-std::vector<Cell> cells_of(const ResultRow& row, const std::vector<RowColumn>& columns) {
-  return mapped<Cell>(columns, [&](const RowColumn& column) { return column.value(row); });
-}
-
-Table table_of(RowPointers rows, const std::vector<RowColumn>& columns) {
-  if (rows.empty()) return {};
-  Table table{heads_of(columns), {}};
-  for (const ResultRow* row : rows) table.rows.push_back(cells_of(*row, columns));
-  return table;
-}
-
-Table timings_table(std::span<const ResultRow> rows) {
-  const std::vector<RowColumn> columns = all_columns();
-  Table table{heads_of(columns), {}};
-  for (const ResultRow& row : rows) table.rows.push_back(cells_of(row, columns));
-  return table;
-}
-
-Table printed_table(RowPointers rows) { return table_of(rows, printed_columns()); }
+Table printed_table(RowPointers rows) { return rows.empty() ? Table() : table_of(rows, printed_columns()); }
 
 std::string timings_schema() {
   return rows_schema("Rows of mssim bench",

@@ -7,15 +7,16 @@
 namespace mssim {
 namespace {
 
-/// Adds a table with a heading for each run of rows of one scene and integrator.
-void add_blocks(Document& page, RowPointers rows, const std::vector<RowColumn>& columns) {
+/// Adds the lines, one for each row, as a table with a heading for each run of rows of one scene and
+/// integrator.
+void add_blocks(Document& page, RowPointers rows, const Table& lines) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ResultRow& row = *rows[i];
     if (i == 0 || rows[i - 1]->scene != row.scene || rows[i - 1]->integrator != row.integrator)
       page.insert(page.end(), {Heading{2, row.scene + ", " + row.integrator + ": " + grouped(row.nodes) +
                                               " nodes, " + grouped(row.springs_unique) + " springs"},
-                               Table{heads_of(columns), {}}});
-    std::get<Table>(page.back()).rows.push_back(cells_of(row, columns));
+                               Table{lines.columns, {}}});
+    std::get<Table>(page.back()).rows.push_back(lines.rows[i]);
   }
 }
 
@@ -27,49 +28,56 @@ constexpr std::string_view how_to_read_races =
     "their 95 % interval; *ratio* is how many times as fast as `serial` a method is, the median of paired "
     "samples. *Same bits*: whether a repeated run gives bitwise identical numbers.";
 
-/// A cell from the legend of the row's method, which must exist.
-auto of_legend(const std::vector<RaceLegend>& legend, std::string RaceLegend::*what) {
-  return [&legend, what](const ResultRow& row) -> Cell {
-    return (*std::ranges::find(legend, row.backend, &RaceLegend::method)).*what;
-  };
+/// The legend of the row's method, which must exist.
+const RaceLegend& legend_of(const ResultRow& row, const std::vector<RaceLegend>& legend) {
+  return *std::ranges::find(legend, row.backend, &RaceLegend::method);
 }
 
 Table data_of(RowPointers rows, const std::vector<RaceLegend>& legend) {
-  return table_of(rows, {"scene",
-                         "nodes",
-                         "springs_unique",
-                         "integrator",
-                         {"method", "backend"},
-                         "threads",
-                         "ms_per_step",
-                         "ms_per_step_low",
-                         "ms_per_step_high",
-                         "speedup_vs_serial",
-                         {{"extra_memory"}, of_legend(legend, &RaceLegend::extra_memory)},
-                         {{"springs_computed"}, of_legend(legend, &RaceLegend::springs_computed)},
-                         {{"same_bits"}, of_legend(legend, &RaceLegend::repeatable)},
-                         {{"status"}, status_of}});
+  Table table;
+  for (const ResultRow* row : rows) {
+    const RaceLegend& method = legend_of(*row, legend);
+    table.add({{"scene", row->scene},
+               {"nodes", row->nodes},
+               {"springs_unique", row->springs_unique},
+               {"integrator", row->integrator},
+               {"method", row->backend},
+               {"threads", row->threads},
+               {"ms_per_step", row->ms_per_step},
+               {"ms_per_step_low", row->ms_per_step_low},
+               {"ms_per_step_high", row->ms_per_step_high},
+               {"speedup_vs_serial", row->speedup_vs_serial},
+               {"extra_memory", method.extra_memory},
+               {"springs_computed", method.springs_computed},
+               {"same_bits", method.repeatable},
+               {"status", status_of(*row)}});
+  }
+  return table;
 }
 
 Document page_of(RowPointers rows, const std::vector<RaceLegend>& legend, const Provenance& provenance) {
-  const std::vector<RowColumn> columns{
-      {{"method"}, [&](const ResultRow& row) { return backend_label(rows, row.backend, provenance); }},
-      {{"ms per step", Align::right},
-       [](const ResultRow& row) { return measured_cell(&row, counted_ms(row)); }},
-      {{"interval", Align::right}, interval_cell},
-      {{"ratio", Align::right, "×"},
-       [&](const ResultRow& row) {
-         if (!counted_ms(row) || !row.speedup_vs_serial) return Cell();
-         Cell ratio = *row.speedup_vs_serial;
-         ratio.suffix = mark_of_speedup(rows, row);
-         return ratio;
-       }},
-      {{"extra memory", Align::left}, of_legend(legend, &RaceLegend::extra_memory)},
-      {{"springs computed", Align::left}, of_legend(legend, &RaceLegend::springs_computed)},
-      {{"same bits", Align::left}, of_legend(legend, &RaceLegend::repeatable)}};
+  Table lines{{{"method"},
+               {"ms per step", Align::right},
+               {"interval", Align::right},
+               {"ratio", Align::right, "×"},
+               {"extra memory", Align::left},
+               {"springs computed", Align::left},
+               {"same bits", Align::left}},
+              {}};
+  for (const ResultRow* row : rows) {
+    const RaceLegend& method = legend_of(*row, legend);
+    Cell ratio;
+    if (counted_ms(*row) && row->speedup_vs_serial) {
+      ratio = *row->speedup_vs_serial;
+      ratio.suffix = mark_of_speedup(rows, *row);
+    }
+    lines.rows.push_back({backend_label(rows, row->backend, provenance), measured_cell(row, counted_ms(*row)),
+                          interval_cell(*row), ratio, method.extra_memory, method.springs_computed,
+                          method.repeatable});
+  }
   Document page{Heading{1, "Methods to avoid the data race of the springs"}, measured_on(rows, provenance),
                 Paragraph{std::string(how_to_read_races)}};
-  add_blocks(page, rows, columns);
+  add_blocks(page, rows, lines);
   BulletList descriptions;
   for (const RaceLegend& method : legend)
     if (std::ranges::find(rows, method.method, &ResultRow::backend) != rows.end())
@@ -90,20 +98,20 @@ std::optional<double> growth(RowPointers rows, const ResultRow& row, const std::
 }
 
 Table data_of(RowPointers rows, const std::string& base) {
-  const auto per_node = [](std::optional<double> ResultRow::*ms) {
-    return [ms](const ResultRow& row) { return ns_per_node(row, row.*ms); };
-  };
-  return table_of(rows,
-                  {"integrator",
-                   "backend",
-                   "scene",
-                   "nodes",
-                   "ms_per_step",
-                   {{"ns_per_node"}, per_node(&ResultRow::ms_per_step)},
-                   {{"ns_per_node_low"}, per_node(&ResultRow::ms_per_step_low)},
-                   {{"ns_per_node_high"}, per_node(&ResultRow::ms_per_step_high)},
-                   {{"ratio_to_" + base}, [&](const ResultRow& row) { return growth(rows, row, base); }},
-                   {{"status"}, status_of}});
+  const std::string ratio_to_base = "ratio_to_" + base;
+  Table table;
+  for (const ResultRow* row : rows)
+    table.add({{"integrator", row->integrator},
+               {"backend", row->backend},
+               {"scene", row->scene},
+               {"nodes", row->nodes},
+               {"ms_per_step", row->ms_per_step},
+               {"ns_per_node", ns_per_node(*row, row->ms_per_step)},
+               {"ns_per_node_low", ns_per_node(*row, row->ms_per_step_low)},
+               {"ns_per_node_high", ns_per_node(*row, row->ms_per_step_high)},
+               {ratio_to_base, growth(rows, *row, base)},
+               {"status", status_of(*row)}});
+  return table;
 }
 
 /// The ratio is that of the two times shown, so that they always agree.
@@ -168,25 +176,27 @@ Cell part_of(const std::optional<RatioInterval>& ratio, double RatioInterval::*p
 }
 
 Table data_of(RowPointers rows) {
-  const auto times = [rows](double RatioInterval::*part) {
-    return [rows, part](const ResultRow& row) { return part_of(times_yardstick(rows, row), part); };
-  };
-  return table_of(rows, {"scene",
-                         "nodes",
-                         "integrator",
-                         {"peer", "backend"},
-                         "threads",
-                         "processors_used",
-                         "ms_per_step",
-                         "ms_per_step_low",
-                         "ms_per_step_high",
-                         {{"times_openmp"}, times(&RatioInterval::ratio)},
-                         {{"times_openmp_low"}, times(&RatioInterval::low)},
-                         {{"times_openmp_high"}, times(&RatioInterval::high)},
-                         "position_error",
-                         "verified",
-                         {{"status"}, status_of},
-                         "note"});
+  Table table;
+  for (const ResultRow* row : rows) {
+    const std::optional<RatioInterval> times = times_yardstick(rows, *row);
+    table.add({{"scene", row->scene},
+               {"nodes", row->nodes},
+               {"integrator", row->integrator},
+               {"peer", row->backend},
+               {"threads", row->threads},
+               {"processors_used", row->processors_used},
+               {"ms_per_step", row->ms_per_step},
+               {"ms_per_step_low", row->ms_per_step_low},
+               {"ms_per_step_high", row->ms_per_step_high},
+               {"times_openmp", part_of(times, &RatioInterval::ratio)},
+               {"times_openmp_low", part_of(times, &RatioInterval::low)},
+               {"times_openmp_high", part_of(times, &RatioInterval::high)},
+               {"position_error", row->position_error},
+               {"verified", row->verified},
+               {"status", status_of(*row)},
+               {"note", row->note}});
+  }
+  return table;
 }
 
 /// Number of processors that the steps kept busy.
@@ -194,28 +204,31 @@ Cell busy_processors(const ResultRow& row) {
   return counted_ms(row) && row.processors_used ? Cell(fmt::format("{:.2f}", *row.processors_used)) : Cell();
 }
 
-/// The columns of the page; they have no numbers of rows that do not count.
-std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenance) {
-  return {{{"peer"},
-           [=, &provenance](const ResultRow& row) { return backend_label(rows, row.backend, provenance); }},
-          {{"threads", Align::right},
-           [&](const ResultRow& row) {
-             Cell threads = counted_ms(row) ? Cell(row.threads) : Cell();
-             if (counted_ms(row)) threads.suffix = mark_of_excess(row, provenance);
-             return threads;
-           }},
-          {{"processors", Align::right}, busy_processors},
-          {{"ms per step", Align::right},
-           [](const ResultRow& row) { return measured_cell(&row, counted_ms(row)); }},
-          {{"times `openmp`", Align::right, "×"},
-           [=](const ResultRow& row) {
-             return ratio_cell(times_yardstick(rows, row), &row,
-                               find_row(rows, row.scene, yardstick, row.integrator));
-           }},
-          {{"interval", Align::right},
-           [=](const ResultRow& row) { return ratio_interval_cell(times_yardstick(rows, row)); }},
-          {{"error", Align::right},
-           [](const ResultRow& row) { return counted_ms(row) ? Cell(row.position_error) : Cell(); }}};
+/// The cells of rows that do not count have no numbers.
+Table lines_of_peers(RowPointers rows, const Provenance& provenance) {
+  Table lines{{{"peer"},
+               {"threads", Align::right},
+               {"processors", Align::right},
+               {"ms per step", Align::right},
+               {"times `openmp`", Align::right, "×"},
+               {"interval", Align::right},
+               {"error", Align::right}},
+              {}};
+  for (const ResultRow* row : rows) {
+    const std::optional<double> ms = counted_ms(*row);
+    const std::optional<RatioInterval> times = times_yardstick(rows, *row);
+    Cell threads, error;
+    if (ms) {
+      threads = row->threads;
+      threads.suffix = mark_of_excess(*row, provenance);
+      error = row->position_error;
+    }
+    lines.rows.push_back({backend_label(rows, row->backend, provenance), threads, busy_processors(*row),
+                          measured_cell(row, ms),
+                          ratio_cell(times, row, find_row(rows, row->scene, yardstick, row->integrator)),
+                          ratio_interval_cell(times), error});
+  }
+  return lines;
 }
 
 /// Notes of the backends, each once.
@@ -229,7 +242,7 @@ BulletList notes_of(RowPointers rows) {
 Document page_of(RowPointers rows, const Provenance& provenance) {
   Document page{Heading{1, "Peers, side by side"}, measured_on(rows, provenance),
                 Paragraph{std::string(how_to_read_peers)}};
-  add_blocks(page, rows, peer_columns(rows, provenance));
+  add_blocks(page, rows, lines_of_peers(rows, provenance));
   add_sentence(page, legend_of_ratios(page));
   add_sentence(page, legend_of_excess(rows, provenance));
   if (BulletList notes = notes_of(rows); !notes.items.empty())
@@ -246,49 +259,42 @@ constexpr std::string_view how_to_read_threads =
     "number of CPUs that the steps kept busy.";
 
 ResultTable table_of_threads(const std::vector<ThreadRow>& rows, const Provenance& provenance) {
-  const auto all = mapped<const ResultRow*>(rows, &ThreadRow::row);
-  const auto of = [&](const ResultRow& row) { return *std::ranges::find(rows, &row, &ThreadRow::row); };
-  const auto threads = [&](const ResultRow& row) { return Cell(of(row).threads); };
-  const auto speedup = [&](double RatioInterval::*part) {
-    return [=](const ResultRow& row) { return part_of(of(row).speedup(), part); };
-  };
-  const auto efficiency = [&](const ResultRow& row) {
-    const ThreadRow its = of(row);
+  Table data, lines{{{"backend"},
+                     {"threads", Align::right},
+                     {"ms per step", Align::right},
+                     {"times as fast", Align::right, "×"},
+                     {"interval", Align::right},
+                     {"efficiency", Align::right},
+                     {"processors", Align::right}},
+                    {}};
+  for (const ThreadRow& its : rows) {
+    const ResultRow& row = *its.row;
     const std::optional<RatioInterval> times = its.speedup();
-    return times ? Cell(times->ratio * its.fewest_threads / its.threads) : Cell();
-  };
-  Table data = table_of(all, {"scene",
-                              "nodes",
-                              "integrator",
-                              {{"backend"}, [&](const ResultRow& row) { return Cell(of(row).backend); }},
-                              {{"threads"}, threads},
-                              "processors_used",
-                              "ms_per_step",
-                              "ms_per_step_low",
-                              "ms_per_step_high",
-                              {{"speedup"}, speedup(&RatioInterval::ratio)},
-                              {{"speedup_low"}, speedup(&RatioInterval::low)},
-                              {{"speedup_high"}, speedup(&RatioInterval::high)},
-                              {{"efficiency"}, efficiency},
-                              {{"status"}, status_of}});
-  const std::vector<RowColumn> columns{
-      {{"backend"}, [&](const ResultRow& row) { return fmt::format("`{}`", of(row).backend); }},
-      {{"threads", Align::right}, threads},
-      {{"ms per step", Align::right},
-       [&](const ResultRow& row) {
-         Cell ms = measured_cell(&row, counted_ms(row));
-         if (counted_ms(row)) ms.suffix = mark_of_excess(row, provenance);
-         return ms;
-       }},
-      {{"times as fast", Align::right, "×"},
-       [&](const ResultRow& row) { return ratio_cell(of(row).speedup(), of(row).fewest, &row); }},
-      {{"interval", Align::right},
-       [&](const ResultRow& row) { return ratio_interval_cell(of(row).speedup()); }},
-      {{"efficiency", Align::right}, efficiency},
-      {{"processors", Align::right}, busy_processors}};
+    const Cell efficiency = times ? Cell(times->ratio * its.fewest_threads / its.threads) : Cell();
+    data.add({{"scene", row.scene},
+              {"nodes", row.nodes},
+              {"integrator", row.integrator},
+              {"backend", its.backend},
+              {"threads", its.threads},
+              {"processors_used", row.processors_used},
+              {"ms_per_step", row.ms_per_step},
+              {"ms_per_step_low", row.ms_per_step_low},
+              {"ms_per_step_high", row.ms_per_step_high},
+              {"speedup", part_of(times, &RatioInterval::ratio)},
+              {"speedup_low", part_of(times, &RatioInterval::low)},
+              {"speedup_high", part_of(times, &RatioInterval::high)},
+              {"efficiency", efficiency},
+              {"status", status_of(row)}});
+    Cell ms = measured_cell(&row, counted_ms(row));
+    if (counted_ms(row)) ms.suffix = mark_of_excess(row, provenance);
+    lines.rows.push_back({fmt::format("`{}`", its.backend), its.threads, ms,
+                          ratio_cell(times, its.fewest, &row), ratio_interval_cell(times), efficiency,
+                          busy_processors(row)});
+  }
+  const auto all = mapped<const ResultRow*>(rows, &ThreadRow::row);
   Document page{Heading{1, "Scaling with threads"}, measured_on(all, provenance),
                 Paragraph{std::string(how_to_read_threads)}};
-  add_blocks(page, all, columns);
+  add_blocks(page, all, lines);
   add_sentence(page, legend_of_ratios(page));
   add_sentence(page, legend_of_excess(all, provenance));
   add_rows_without_a_time(page, all);
