@@ -139,17 +139,17 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
   return findings;
 }
 
-std::vector<std::string> noise_seen(const Provenance& provenance) {
-  return mapped<std::string>(
-      provenance.noise, [](const std::string& sentence) { return sentence.substr(0, sentence.find(": ")); });
+std::string noise_of(const ReportFolder& folder) {
+  if (!folder.provenance || folder.provenance->noise.empty()) return {};
+  const auto sources = mapped<std::string>(folder.provenance->noise, [](const std::string& sentence) {
+    return sentence.substr(0, sentence.find(": "));
+  });
+  return fmt::format("{}: {}.", is_from_page(folder) ? "During the run" : "When the run started",
+                     join(sources, "; "));
 }
 
 bool is_from_page(const ReportFolder& folder) {
   return std::ranges::any_of(folder.rows, is_browser_backend, &ResultRow::backend);
-}
-
-std::string_view when_noisy(const ReportFolder& folder) {
-  return is_from_page(folder) ? "During the run" : "When the run started";
 }
 
 std::string range_of(const ReportFolder& folder, int ResultRow::*count) {

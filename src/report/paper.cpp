@@ -123,8 +123,7 @@ std::string machine_of(const ReportFolder& folder) {
                   latex_text(provenance.build.compiler), latex_text(provenance.machine.operating_system));
   for (const Finding& finding : row_findings(folder.rows, provenance))
     text += '\n' + latex_prose(finding.sentence);
-  if (const std::vector<std::string> noise = noise_seen(provenance); !noise.empty())
-    text += fmt::format("\n{}: {}.", when_noisy(folder), latex_text(join(noise, "; ")));
+  if (const std::string noise = noise_of(folder); !noise.empty()) text += '\n' + latex_text(noise);
   return text;
 }
 

@@ -65,8 +65,9 @@ bool is_for_gpus(std::string_view backend, const PaperLegend& legend);
 /// The families of the backends, which fix their looks in charts (Chart::families).
 std::vector<std::string> families_of_backends(const PaperLegend& legend);
 
-/// The sources of noise that mssim found when it started to measure, without the remedies.
-std::vector<std::string> noise_seen(const Provenance& provenance);
+/// A sentence with the sources of noise that mssim found, without the remedies; empty if it found none. It
+/// looks for them before it measures, the page of mssim web while it does.
+std::string noise_of(const ReportFolder& folder);
 
 /// The range of a count in the folder's rows, such as rounds: "15" or "7 to 15". Zeros do not count.
 std::string range_of(const ReportFolder& folder, int ResultRow::*count);
@@ -76,9 +77,6 @@ std::filesystem::path short_name(const ReportFolder& folder);
 
 /// Whether the page of mssim web measured the rows.
 bool is_from_page(const ReportFolder& folder);
-
-/// When noise_seen() was: mssim looks for it before it measures, the page while it does.
-std::string_view when_noisy(const ReportFolder& folder);
 
 /// The table of times: one line per row. Times are the second column, so that a narrow screen shows them.
 Table times_of(RowPointers rows, const ReportFolder& folder);

@@ -41,10 +41,14 @@ int level_in(const ReportInput& input) { return input.folders.size() < 2 ? 3 : 4
 
 /// A warning above the times; empty if mssim found no noise.
 std::string noise_note(const ReportFolder& folder) {
-  const std::vector<std::string> noise = noise_seen(folder.where_from());
-  return noise.empty() ? ""
-                       : paragraph(fmt::format("{}: {}.", when_noisy(folder), html_text(join(noise, "; "))),
-                                   of_problems);
+  return paragraph(html_text(noise_of(folder)), of_problems);
+}
+
+/// HTML that is shown on a click on the summary; empty if `html` is.
+std::string folded(const std::string& summary, const std::string& html) {
+  return html.empty()
+             ? html
+             : fmt::format("<details><summary>{}</summary>\n{}</details>\n", html_text(summary), html);
 }
 
 // Machine and provenance
@@ -215,10 +219,7 @@ std::string verdict_section(const ReportInput& input) {
       "ratio that the claim needs. It is <strong>not held</strong> if the whole interval of one is below. "
       "Rows that are not verified do not count. OpenCL on the CPU decides nothing about a GPU.</p>\n{}",
       paper_device,
-      input.folders.size() < 2
-          ? ratios
-          : outcomes_of(input) + "<details><summary>The ratios of each folder</summary>\n" + ratios +
-                "</details>\n");
+      input.folders.size() < 2 ? ratios : outcomes_of(input) + folded("The ratios of each folder", ratios));
 }
 
 /// Whether the row counts but has no samples, so that it cannot be compared.
@@ -294,9 +295,9 @@ std::string headline_section(const ReportInput& input) {
     Document below;
     add_sentence(below, legend_of_ratios({all}));
     add_rows_without_a_time(below, rows);
-    return fmt::format("{}{}<details><summary>All {}</summary>\n{}</details>\n{}", noise_note(folder),
-                       headlines.rows.empty() ? paragraph("No row has a verified time.") : html_of(headlines),
-                       pluralize(rows.size(), "row"), html_of(all), html_of(below, level_in(input)));
+    return noise_note(folder) +
+           (headlines.rows.empty() ? paragraph("No row has a verified time.") : html_of(headlines)) +
+           folded("All " + pluralize(rows.size(), "row"), html_of(all)) + html_of(below, level_in(input));
   };
   return paragraph("Rows of the largest scene of each kind. " + html_prose(how_to_read_times)) +
          of_each_folder(input, times);
@@ -471,21 +472,16 @@ bool is_about(const Document& part, const std::string& scene) {
   return heading_of(part) == scene || heading_of(part).starts_with(scene + ":");
 }
 
-std::string to_unfold(const std::string& summary, const Document& blocks, int level) {
-  return blocks.empty() ? ""
-                        : "<details><summary>" + html_text(summary) + "</summary>\n" +
-                              html_of(blocks, level) + "</details>\n";
-}
-
 /// The sentences of the page about a scene, the charts, and the page's tables, folded.
 std::string guide_of_scene(const Document& scene, const std::vector<Chart>& charts, int level) {
   const std::vector<Document> parts = parts_of(scene, 3);
   Document words, methods;
   for (const auto& block : parts.front())
     (std::holds_alternative<Table>(block) ? methods : words).push_back(block);
-  std::string text = html_of(words, level) + figures_of(charts) + to_unfold("Methods", methods, level + 1);
+  std::string text =
+      html_of(words, level) + figures_of(charts) + folded("Methods", html_of(methods, level + 1));
   for (std::size_t i = 1; i < parts.size(); ++i)
-    text += to_unfold(heading_of(parts[i]), Document(parts[i].begin() + 1, parts[i].end()), level + 1);
+    text += folded(heading_of(parts[i]), html_of(Document(parts[i].begin() + 1, parts[i].end()), level + 1));
   return text;
 }
 
