@@ -39,7 +39,7 @@ struct Series {
 
 /// An axis: its label and scale.
 struct Axis {
-  std::string label;  ///< with the unit: "time per step (ms)"
+  std::string label{};  ///< with the unit: "time per step (ms)"
   bool logarithmic = false;
   /// For a horizontal axis: its ticks are exactly the values along it, which are whole numbers.
   bool ticks_at_values = false;
@@ -52,12 +52,12 @@ enum class ChartForm { lines, points };
 /// have a gap there. If only an end of an interval is invalid, only the interval is left out.
 /// DrawnChart::notes lists what was left out.
 struct Chart {
-  std::string id;  ///< unique in the page: letters, digits and hyphens, a letter first
-  std::string title;
+  std::string id{};  ///< unique in the page: letters, digits and hyphens, a letter first
+  std::string title{};
   std::string subtitle{};  ///< below the title, such as where it was measured
   ChartForm form = ChartForm::lines;
-  Axis x, y;
-  std::vector<Series> series;  ///< in the order of the legend
+  Axis x{}, y{};
+  std::vector<Series> series{};  ///< in the order of the legend
   /// Families that look the same in every chart that names them in the same order; others come after them.
   std::vector<std::string> families{};
   /// Remarks below the chart, sentences without full stop.

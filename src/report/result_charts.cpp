@@ -43,18 +43,6 @@ void add_ratio(Series& series, double x, const RatioInterval& ratio) {
   series.high.push_back(ratio.covers ? ratio.high : ratio.ratio);
 }
 
-Chart chart_of(const std::string& id, const std::string& title, const std::string& subtitle, Axis x, Axis y,
-               ChartForm form = ChartForm::lines) {
-  Chart chart;
-  chart.id = id;
-  chart.title = title;
-  chart.subtitle = subtitle;
-  chart.form = form;
-  chart.x = std::move(x);
-  chart.y = std::move(y);
-  return chart;
-}
-
 constexpr const char* on_the_cpu = " on the CPU";
 
 constexpr std::array<std::string_view, 4> kind_names{"cloths", "bodies", "garments", "other scenes"};
@@ -154,9 +142,11 @@ void add_speedup_charts(std::vector<Chart>& charts, const ReportFolder& folder, 
   const std::vector<const ResultRow*> all = pointers_to(folder.rows);
   for (const PaperLegend::Integrator& integrator : legend.integrators) {
     if (integrator.name != integrator.paper_name) continue;
-    Chart chart =
-        chart_of(id + "-speed-up-" + integrator.name, integrator.name + ": speed-up over one thread",
-                 where_measured(folder.where_from()), nodes_axis(), {"times as fast as one thread", true});
+    Chart chart{.id = id + "-speed-up-" + integrator.name,
+                .title = integrator.name + ": speed-up over one thread",
+                .subtitle = where_measured(folder.where_from()),
+                .x = nodes_axis(),
+                .y = {"times as fast as one thread", true}};
     bool is_measured = false;
     for (const PaperConfiguration& configuration : paper_configurations) {
       if (configuration.name == one_thread_configuration) continue;
@@ -184,9 +174,11 @@ void add_speedup_charts(std::vector<Chart>& charts, const ReportFolder& folder, 
 
 /// Figure 6 of Vassilev: milliseconds per iteration against vertices, of garments.
 std::optional<Chart> figure6_chart(const ReportFolder& folder, const std::string& id) {
-  Chart chart =
-      chart_of(id + "-figure6", "Figure 6: one iteration of garments", where_measured(folder.where_from()),
-               {"vertices", false}, {"time per iteration (ms)", false});
+  Chart chart{.id = id + "-figure6",
+              .title = "Figure 6: one iteration of garments",
+              .subtitle = where_measured(folder.where_from()),
+              .x = {"vertices"},
+              .y = {"time per iteration (ms)"}};
   for (const ResultRow& row : folder.rows) {
     if (!row.dressing || !counts(row)) continue;
     const BackendLook look = look_of(folder, row.backend);
@@ -211,12 +203,13 @@ std::vector<Chart> thread_charts(const ReportFolder& folder, const std::string& 
     const std::optional<RatioInterval> speedup = of.speedup();
     if (!speedup || of.row->integrator != folder.rows.front().integrator) continue;
     if (!last || last->scene != of.row->scene) {
-      charts.push_back(chart_of(
-          fmt::format("{}-threads-{}", id, charts.size()),
-          of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
-          where_measured(provenance, false),
-          {.label = "threads", .logarithmic = true, .ticks_at_values = true}, {"times as fast", true}));
-      charts.back().series.push_back({.name = "linear speed-up", .origin = Origin::reference});
+      charts.push_back(
+          {.id = fmt::format("{}-threads-{}", id, charts.size()),
+           .title = of.row->scene + ", " + of.row->integrator + ": speed-up over the fewest threads",
+           .subtitle = where_measured(provenance, false),
+           .x = {.label = "threads", .logarithmic = true, .ticks_at_values = true},
+           .y = {"times as fast", true},
+           .series = {{.name = "linear speed-up", .origin = Origin::reference}}});
     }
     last = of.row;
     std::vector<Series>& all = charts.back().series;
@@ -274,9 +267,11 @@ std::vector<Chart> history_charts(const MachineHistory& machine, const std::stri
     const std::string title = row.scene + ", " + row.integrator + ": time per step by commit";
     auto chart = std::ranges::find(charts, title, &Chart::title);
     if (chart == charts.end()) {
-      charts.push_back(chart_of(
-          fmt::format("{}-{}", id, charts.size() + 1), title, "Measured on " + machine.name,
-          {.label = "commit, counted from 1", .ticks_at_values = true}, {"time per step (ms)", true}));
+      charts.push_back({.id = fmt::format("{}-{}", id, charts.size() + 1),
+                        .title = title,
+                        .subtitle = "Measured on " + machine.name,
+                        .x = {.label = "commit, counted from 1", .ticks_at_values = true},
+                        .y = {"time per step (ms)", true}});
       chart = charts.end() - 1;
     }
     const auto number = [&](std::size_t time) { return static_cast<double>(row.at[time] + 1); };
@@ -314,9 +309,11 @@ std::vector<Chart> scaling_charts(const ReportFolder& folder, const ReportInput&
   if (folder.rows.empty()) return charts;
   const std::string integrator = folder.rows.front().integrator;
   for (std::size_t kind = 0; kind < kind_names.size(); ++kind) {
-    Chart chart = chart_of(fmt::format("{}-scaling-{}", id, kind),
-                           fmt::format("{}: time per step of {}", integrator, kind_names[kind]),
-                           where_measured(folder.where_from()), nodes_axis(), {"time per step (ms)", true});
+    Chart chart{.id = fmt::format("{}-scaling-{}", id, kind),
+                .title = fmt::format("{}: time per step of {}", integrator, kind_names[kind]),
+                .subtitle = where_measured(folder.where_from()),
+                .x = nodes_axis(),
+                .y = {"time per step (ms)", true}};
     std::vector<std::string> shown;
     for (const std::string& backend : distinct<std::string>(folder.rows, &ResultRow::backend)) {
       SizeLines lines = size_lines(folder, input, static_cast<ContentKind>(kind), backend, integrator);
@@ -355,9 +352,12 @@ std::optional<Chart> roofline_chart(const ReportFolder& folder, const std::strin
   for (const ResultRow& row : folder.rows)
     if (row.roofline_fraction && dot_of(row) && (!largest || row.nodes > largest->nodes)) largest = &row;
   if (!largest) return std::nullopt;
-  Chart chart = chart_of(id + "-roofline", "Roofline: " + largest->scene + ", " + largest->integrator,
-                         where_measured(folder.where_from()), {"operations per byte", true},
-                         {"operations per second (10⁹)", true}, ChartForm::points);
+  Chart chart{.id = id + "-roofline",
+              .title = "Roofline: " + largest->scene + ", " + largest->integrator,
+              .subtitle = where_measured(folder.where_from()),
+              .form = ChartForm::points,
+              .x = {"operations per byte", true},
+              .y = {"operations per second (10⁹)", true}};
   std::map<int, std::vector<RoofDot>> under_roof;  // by threads
   for (const ResultRow& row : folder.rows) {
     if (row.scene != largest->scene || row.integrator != largest->integrator) continue;
@@ -394,9 +394,8 @@ Table values_of(const Chart& chart) {
 Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> references, const std::string& id) {
   // More points would hide the reference.
   constexpr std::size_t most_points = 40;
-  Chart chart =
-      chart_of(id, "Total energy: " + curve.name, "", {"time (s)", false}, {"total energy (J)", false});
-  Series& points = chart.series.emplace_back(Series{.name = curve.name, .family = ""});
+  Chart chart{.id = id, .title = "Total energy: " + curve.name, .x = {"time (s)"}, .y = {"total energy (J)"}};
+  Series& points = chart.series.emplace_back(Series{.name = curve.name});
   const std::size_t count = curve.time_s.size(), shown = std::min(count, most_points);
   for (std::size_t i = 0; i < shown; ++i) {
     const std::size_t at = shown == count ? i : i * (count - 1) / (most_points - 1);  // from first to last
