@@ -72,15 +72,6 @@ Rgb srgb(const Lch& colour) {
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }
 
-/// The map with the colour `colour_at(share)` at each share.
-template <class ColourAt>
-ColourMap map_of(const ColourAt& colour_at) {
-  ColourMap map{};
-  for (std::size_t i = 0; i < map.colours.size(); ++i)
-    map.colours[i] = srgb(colour_at(static_cast<double>(i) / static_cast<double>(map.colours.size() - 1)));
-  return map;
-}
-
 /// Sizes of a legend, in pixels.
 struct LegendSizes {
   Letters letters;
@@ -111,12 +102,6 @@ PixelBox draw_panel(Picture& picture, int content_width, int content_height) {
   return {left + margin, top + margin, content_width, content_height};
 }
 
-/// Distance of `value` from the low end of a bar of `length` pixels, in pixels.
-int place_of(double value, const ColourBar& bar, int length) {
-  if (bar.low == bar.high) return length / 2;
-  return static_cast<int>(std::lround((value - bar.low) / (bar.high - bar.low) * (length - 1)));
-}
-
 }  // namespace
 
 std::vector<Tick> ticks_between(double low, double high, int most) {
@@ -143,18 +128,20 @@ std::vector<Tick> ticks_between(double low, double high, int most) {
     }
 }
 
-Rgb ColourMap::at(double share) const {
+Rgb diverging_colour(double share) {
+  // An odd number, so that one is in the middle.
+  static const auto colours = [] {
+    std::array<Rgb, 257> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double at = static_cast<double>(i) / static_cast<double>(all.size() - 1);
+      const double distance = std::abs(2 * at - 1);
+      all[i] = srgb({94 - 58 * distance, 0.155 * distance, at < 0.5 ? 258.0 : 30.0});
+    }
+    return all;
+  }();
   if (std::isnan(share)) return {128, 128, 128};
   const auto last = static_cast<double>(colours.size() - 1);
   return colours[static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * last))];
-}
-
-const ColourMap& diverging_map() {
-  static const ColourMap map = map_of([](double share) {
-    const double distance = std::abs(2 * share - 1);
-    return Lch{94 - 58 * distance, 0.155 * distance, share < 0.5 ? 258.0 : 30.0};
-  });
-  return map;
 }
 
 const std::array<Rgb, 8>& category_colours() {
@@ -197,30 +184,33 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
   }
 }
 
-void draw_colour_bar(Picture& picture, const ColourBar& bar) {
+void draw_colour_bar(Picture& picture, double low, double high, const std::string& title) {
   const LegendSizes sizes(picture);
   const Letters& letters = sizes.letters;
-  const std::string title = shortened(bar.title, sizes.most_width, letters);
-  const std::vector<Tick> ticks = ticks_between(bar.low, bar.high, 6);
+  const std::string head = shortened(title, sizes.most_width, letters);
+  const std::vector<Tick> ticks = ticks_between(low, high, 6);
   const int capital = letters.capital_height();
   const int thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
   // Width of the line next to a number, and of the space after it.
   const int dash = static_cast<int>(std::lround(0.3 * letters.size_px)), labels_from = thickness + 2 * dash;
-  int width = text_width(title, letters);
+  int width = text_width(head, letters);
   for (const Tick& tick : ticks) width = std::max(width, labels_from + text_width(tick.label, letters));
-  const int title_height = title.empty() ? 0 : letters.line_distance();
+  const int title_height = head.empty() ? 0 : letters.line_distance();
   const int free = sizes.most_height - title_height - capital;
   const int length = std::max(8, std::min(free, static_cast<int>(std::lround(11 * letters.size_px))));
   // A number at an end extends half its height beyond the bar.
   const int bar_from = title_height + capital / 2;
   const PixelBox content = draw_panel(picture, width, bar_from + length + capital / 2);
-  draw_text(picture, title, content.left, content.top + capital, letters);
+  draw_text(picture, head, content.left, content.top + capital, letters);
   const int low_end = content.top + bar_from + length - 1;
   for (int i = 0; i < length; ++i)
     fill(picture, {content.left, low_end - i, thickness, 1},
-         bar.map.at(static_cast<double>(i) / (length - 1)));
+         diverging_colour(static_cast<double>(i) / (length - 1)));
   for (const Tick& tick : ticks) {
-    const int y = low_end - place_of(tick.value, bar, length);
+    const int above_low =
+        low == high ? length / 2
+                    : static_cast<int>(std::lround((tick.value - low) / (high - low) * (length - 1)));
+    const int y = low_end - above_low;
     fill(picture, {content.left + thickness, y, dash, 1}, letters.colour);
     draw_text(picture, tick.label, content.left + labels_from, y + (capital + 1) / 2, letters);
   }

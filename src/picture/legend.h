@@ -21,19 +21,10 @@ struct Tick {
 /// std::invalid_argument unless `low` <= `high` and both and their distance are finite.
 std::vector<Tick> ticks_between(double low, double high, int most);
 
-/// Colours for a range of numbers.
-struct ColourMap {
-  /// Evenly spaced, from the lower end; an odd number, so that one is in the middle.
-  std::array<Rgb, 257> colours;
-
-  /// The colour at `share` of the way from the lower end to the upper. Beyond an end it is that end's colour,
-  /// for NaN grey.
-  Rgb at(double share) const;
-};
-
-/// For deviations from a middle value, such as compression and stretch: from blue over light grey to red.
-/// Lightness falls evenly from the middle to both ends.
-const ColourMap& diverging_map();
+/// For deviations from a middle value, such as compression and stretch: the colour at `share` of the way from
+/// blue over light grey to red. Lightness falls evenly from the middle to both ends. Beyond an end it is that
+/// end's colour, for NaN grey.
+Rgb diverging_colour(double share);
 
 /// For names. All differ in lightness, so that they can be told apart with any colour vision and, less
 /// easily, in black and white. The first ones differ most.
@@ -49,18 +40,10 @@ struct LegendEntry {
 /// shortened; a long list ends with the number of entries left out. Draws nothing for an empty list.
 void draw_legend(Picture& picture, std::span<const LegendEntry> entries);
 
-/// A range of numbers and its colours.
-struct ColourBar {
-  const ColourMap& map;
-  /// The numbers at the ends of the map.
-  double low, high;
-  /// Quantity and unit, as in "strain in %"; may be empty.
-  std::string title;
-};
-
-/// Draws an upright colour bar with its title and some numbers on a panel at the upper right. A long title is
-/// shortened. Throws std::invalid_argument unless `low` and `high` are finite and in order; if they are
+/// Draws an upright bar of the diverging colours from `low` to `high`, with its title and some numbers, on a
+/// panel at the upper right. `title`: quantity and unit, as in "strain in %"; may be empty, and is shortened
+/// if it is long. Throws std::invalid_argument unless `low` and `high` are finite and in order; if they are
 /// equal, the only number is in the middle.
-void draw_colour_bar(Picture& picture, const ColourBar& bar);
+void draw_colour_bar(Picture& picture, double low, double high, const std::string& title);
 
 }  // namespace mssim

@@ -149,8 +149,7 @@ void Painter::write_legend(Picture& picture) const {
   if (!has_legend()) return;
   constexpr double percent = 100;
   if (options_.colour == ColourBy::strain) {
-    draw_colour_bar(picture,
-                    {diverging_map(), -percent * most_strain_, percent * most_strain_, "strain in %"});
+    draw_colour_bar(picture, -percent * most_strain_, percent * most_strain_, "strain in %");
     return;
   }
   std::vector<LegendEntry> entries;
@@ -182,7 +181,7 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions, bool with_legen
   if (options_.colour == ColourBy::strain) {
     const std::vector<double> strain = node_strain(content_, positions);
     for (const std::uint32_t node : skin_.node)
-      subject.front.push_back(light_of(diverging_map().at(0.5 + 0.5 * strain[node] / most_strain_)));
+      subject.front.push_back(light_of(diverging_colour(0.5 + 0.5 * strain[node] / most_strain_)));
     subject.back = subject.front;
   } else {
     const auto colour = mapped<Light>(colour_, light_of);  // by part: a skin has many more points
