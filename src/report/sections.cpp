@@ -116,9 +116,9 @@ std::string provenance_of(const ReportFolder& folder) {
   line("compiler flags", provenance.build.flags);
   line("caches", or_nothing(join(mapped<std::string>(machine.caches, words_of), ", ")));
   line("frequency", three_digits(machine.cpu_mhz / 1000) + " GHz");
-  line("governor", machine.governor ? Cell(*machine.governor) : Cell());
-  line("turbo", machine.turbo ? Cell(*machine.turbo) : Cell());
-  line("several logical CPUs per core (SMT)", machine.smt ? Cell(*machine.smt) : Cell());
+  line("governor", machine.governor);
+  line("turbo", machine.turbo);
+  line("several logical CPUs per core (SMT)", machine.smt);
   line("NUMA nodes", machine.numa_nodes > 0 ? Cell(machine.numa_nodes) : Cell());
   line("kernel", machine.kernel);
   line("load average", or_nothing(join(load, ", ")));
@@ -176,34 +176,34 @@ std::string table_of(const std::vector<JudgedClaim>& claims) {
 /// for each folder.
 std::string outcomes_of(const ReportInput& input) {
   Table table{{{"what the paper says"}, {"where"}}, {}};
-  std::map<const Claim*, std::vector<Cell>> outcomes;
-  std::set<const Claim*> untested;
+  std::vector<std::vector<JudgedClaim>> by_folder;
   for (const ReportFolder& folder : input.folders) {
-    for (const JudgedClaim& judged : judge(folder, input)) {
-      if (judged.outcome == ClaimOutcome::not_testable) {
-        untested.insert(judged.claim);
-        continue;
-      }
-      std::vector<Cell>& cells = outcomes[judged.claim];
-      cells.resize(table.columns.size() - 2);
-      Cell& cell = cells.emplace_back(std::string(name_of(judged.outcome)));
-      cell.strong = judged.outcome != ClaimOutcome::undecided;
-    }
     table.columns.push_back({short_name(folder).string()});
+    by_folder.push_back(judge(folder, input));
   }
+  std::size_t untested = 0;
   for (const Claim& claim : input.claims) {
-    const auto found = outcomes.find(&claim);
-    if (found == outcomes.end()) continue;
-    untested.erase(&claim);
-    std::vector<Cell>& line = table.rows.emplace_back();
-    line = {claim.says, claim.paper + ": " + claim.place};
-    std::ranges::move(found->second, std::back_inserter(line));
-    line.resize(table.columns.size());
+    std::vector<Cell> line{claim.says, claim.paper + ": " + claim.place};
+    bool is_judged = false, is_tested = false;
+    for (const std::vector<JudgedClaim>& all : by_folder) {
+      Cell& cell = line.emplace_back();
+      const JudgedClaim* judged = found_in(all, &claim, &JudgedClaim::claim);
+      if (!judged) continue;
+      is_judged = true;
+      if (judged->outcome == ClaimOutcome::not_testable) continue;
+      is_tested = true;
+      cell = name_of(judged->outcome);
+      cell.strong = judged->outcome != ClaimOutcome::undecided;
+    }
+    if (is_tested)
+      table.rows.push_back(std::move(line));
+    else if (is_judged)
+      ++untested;
   }
   std::string text =
       table.rows.empty() ? "" : html_of(table) + paragraph("A dash means: not testable with that folder.");
-  if (!untested.empty())
-    text += paragraph(pluralize(untested.size(), table.rows.empty() ? "claim" : "further claim") +
+  if (untested > 0)
+    text += paragraph(pluralize(untested, table.rows.empty() ? "claim" : "further claim") +
                       " cannot be tested with any of the folders.");
   return text;
 }
@@ -485,8 +485,10 @@ std::string guide_of_scene(const Document& scene, const std::vector<Chart>& char
   return text;
 }
 
-std::string guide_of(const FoundGuide& guide, const Provenance& provenance, const PaperLegend& legend,
-                     const std::string& id, int level) {
+/// The guide of a folder, scene by scene.
+std::string guide_of(const ReportFolder& folder, const ReportInput& input, const std::string& id) {
+  const FoundGuide& guide = *folder.guide;
+  const int level = level_in(input);
   std::vector<Document> parts = parts_of(guide.page, 2);
   // The section has its own title.
   std::erase_if(parts.front(), [](const auto& block) { return std::holds_alternative<Heading>(block); });
@@ -502,20 +504,19 @@ std::string guide_of(const FoundGuide& guide, const Provenance& provenance, cons
     std::vector<Chart> charts;
     if (scene != scenes.end())
       charts =
-          with_looks_of_backends(guide_charts(guide, legend, provenance, *scene,
+          with_looks_of_backends(guide_charts(guide, input.legend, folder.where_from(), *scene,
                                               fmt::format("{}-guide-{}", id, scene - scenes.begin() + 1)),
-                                 legend);
+                                 input.legend);
     text += guide_of_scene(parts[i], charts, level);
   }
   return text;
 }
 
-/// The folders of guides, scene by scene. Empty if there are none.
+/// The folders of guides. Empty if there are none.
 std::string guide_section(const ReportInput& input) {
   return of_each_folder(input, [&](const ReportFolder& folder, const std::string& id) {
     if (!folder.guide) return std::string();
-    return (folder.rows.empty() ? noise_note(folder) : "") +
-           guide_of(*folder.guide, folder.where_from(), input.legend, id, level_in(input));
+    return (folder.rows.empty() ? noise_note(folder) : "") + guide_of(folder, input, id);
   });
 }
 
