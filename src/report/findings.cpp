@@ -162,10 +162,10 @@ std::string range_of(const ReportFolder& folder, int ResultRow::*count) {
   return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
-std::filesystem::path short_name(const ReportFolder& folder) {
+std::string short_name(const ReportFolder& folder) {
   std::filesystem::path name = std::filesystem::path(folder.name).lexically_normal();
   if (!name.has_filename()) name = name.parent_path();  // it ended with a slash
-  return name.parent_path().filename() / name.filename();
+  return (name.parent_path().filename() / name.filename()).string();
 }
 
 Table times_of(RowPointers rows, const ReportFolder& folder) {

@@ -391,13 +391,12 @@ std::vector<FolderFile> paper_files(const ReportInput& input) {
     const std::vector<TablePage> pages = table_pages(folder, input);
     std::string prefix;
     if (input.folders.size() > 1)
-      prefix =
-          fmt::format("{}-{}-", &folder - input.folders.data() + 1, plain_name(short_name(folder).string()));
+      prefix = fmt::format("{}-{}-", &folder - input.folders.data() + 1, plain_name(short_name(folder)));
     const auto add = [&](FolderFile file, std::string& part) {
       part += "\\input{" + file.name.substr(0, file.name.rfind('.')) + "}\n";
       files.push_back(std::move(file));
     };
-    const std::string name = code(short_name(folder).string());
+    const std::string name = code(short_name(folder));
     body += "\\section{Methods: " + name + "}\n";
     add(methods_of(folder, input, prefix), body);
     body += "\\section{Results: " + name + "}\n";

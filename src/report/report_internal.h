@@ -73,7 +73,7 @@ std::string noise_of(const ReportFolder& folder);
 std::string range_of(const ReportFolder& folder, int ResultRow::*count);
 
 /// The last two names of the folder's path: folders of several suites may have the same last name.
-std::filesystem::path short_name(const ReportFolder& folder);
+std::string short_name(const ReportFolder& folder);
 
 /// Whether the page of mssim web measured the rows.
 bool is_from_page(const ReportFolder& folder);

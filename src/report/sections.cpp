@@ -178,7 +178,7 @@ std::string outcomes_of(const ReportInput& input) {
   Table table{{{"what the paper says"}, {"where"}}, {}};
   std::vector<std::vector<JudgedClaim>> by_folder;
   for (const ReportFolder& folder : input.folders) {
-    table.columns.push_back({short_name(folder).string()});
+    table.columns.push_back({short_name(folder)});
     by_folder.push_back(judge(folder, input));
   }
   std::size_t untested = 0;

@@ -99,18 +99,6 @@ void write_connectivity(hid_t file, const std::string& particles, const System& 
   if (shape.in_panels) write_joints(file, particles, std::get<Garment>(system.topology));
 }
 
-/// Writes everything but frames: /h5md, /parameters, the group of particles (for example /particles/cloth)
-/// with its box and masses, and /connectivity. Throws Hdf5Error.
-void write_h5md_head(hid_t file, const std::string& particles, const System& system, const NodeShape& shape,
-                     const TraceHeader& header) {
-  write_metadata(file, header);
-  write_parameters(file, system, shape, header);
-  create_particles(file, particles);
-  write_numbers(file, particles + "/mass", system.node_mass);
-  write_connectivity(file, particles, system, shape);
-  write_springs(file, system);
-}
-
 /// Writes the body, unless it is empty; HDF5 rounds its points to single precision. Throws Hdf5Error.
 void write_static_body(hid_t file, const Surface& body) {
   if (body.triangles.empty()) return;
@@ -205,10 +193,16 @@ void H5mdTrace::create(const System& system, const NodeShape& shape, const Trace
   // The default, oldest format: newer ones leave a file that only h5clear can open after a crash.
   file_ = Hdf5File(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                    "creating " + temporary);
-  write_h5md_head(file_.get(), particles(), system, shape, header);
-  write_static_body(file_.get(), body);
+  const hid_t file = file_.get();
+  write_metadata(file, header);
+  write_parameters(file, system, shape, header);
+  create_particles(file, particles());
+  write_numbers(file, particles() + "/mass", system.node_mass);
+  write_connectivity(file, particles(), system, shape);
+  write_springs(file, system);
+  write_static_body(file, body);
   create_all_series(system);
-  checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing the head of the trace");
+  checked(H5Fflush(file, H5F_SCOPE_GLOBAL), "writing the head of the trace");
 }
 
 void H5mdTrace::create_all_series(const System& system) {
