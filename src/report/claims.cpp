@@ -64,11 +64,6 @@ void visit_claims(FieldVisitor& fields, std::vector<Claim>& claims) {
               "A claim.", [&](FieldVisitor& claim) { visit_claim(claim, claims.emplace_back()); });
 }
 
-std::string configuration_of(const PaperLegend& legend, std::string_view backend) {
-  const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name);
-  return found ? found->configuration : "";
-}
-
 /// Whether the paper's configuration of this backend has several threads.
 bool has_threads(const PaperLegend& legend, std::string_view backend) {
   const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name);
@@ -120,7 +115,7 @@ std::string range_of(double least, double most) {
 }
 
 std::string published_ratios(const ClaimTest& test, const PaperLegend& legend, const PublishedTable& table) {
-  const std::string fast = configuration_of(legend, test.fast), slow = configuration_of(legend, test.slow);
+  const std::string fast = legend.configuration_of(test.fast), slow = legend.configuration_of(test.slow);
   const auto speedup = [&](const PaperScene& scene, const std::string& of_fast,
                            const std::string& of_slow) -> std::optional<double> {
     if (fast == slow && of_fast == of_slow) return std::nullopt;  // the same time

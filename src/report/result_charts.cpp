@@ -69,8 +69,7 @@ SizeLines size_lines(const ReportFolder& folder, const ReportInput& input, Conte
     if (kind_of(row) == kind && row.backend == backend && row.integrator == integrator && counts(row))
       lines.rows.push_back(&row);
   std::ranges::stable_sort(lines.rows, {}, [](const ResultRow* row) { return row->nodes; });
-  if (const auto* found = found_in(input.legend.backends, backend, &PaperLegend::Backend::name))
-    lines.configuration = found->configuration;
+  lines.configuration = input.legend.configuration_of(backend);
   const auto* method = found_in(input.legend.integrators, integrator, &PaperLegend::Integrator::name);
   lines.measured = measured_series(look_of(folder, backend));
   lines.published = published_series(lines.configuration, input.legend);
@@ -235,8 +234,7 @@ BackendLook look_on(std::string_view device, std::string_view backend, const Pro
 }
 
 bool is_for_gpus(std::string_view backend, const PaperLegend& legend) {
-  const auto* found = found_in(legend.backends, backend, &PaperLegend::Backend::name);
-  return found && found->configuration.find("gpu") != std::string::npos;
+  return legend.configuration_of(backend).find("gpu") != std::string::npos;
 }
 
 std::vector<std::string> families_of_backends(const PaperLegend& legend) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "text/text.h"
-
 namespace mssim {
 namespace {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "output/tables/results.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -125,6 +126,12 @@ struct PaperLegend {
   };
   std::vector<Backend> backends;
   std::vector<Integrator> integrators;
+
+  /// The configuration of the backend; empty if there is none.
+  std::string configuration_of(std::string_view backend) const {
+    const Backend* found = found_in(backends, backend, &Backend::name);
+    return found ? found->configuration : "";
+  }
 };
 
 /// For every published table with any of the rows, makes the table with our measurements, laid out as
