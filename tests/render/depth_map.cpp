@@ -24,7 +24,7 @@ namespace {
 Surface last_surface(const TraceReader& trace) {
   const TraceContent& content = trace.content();
   const std::vector<Vec3d> position = trace.positions(trace.frames() - 1);
-  const Skin skin = skin_of(content.shape, trace.positions(0));
+  const NodeSurface skin = skin_of(content.shape, trace.positions(0));
   Surface surface{{}, skin.triangles};
   for (const std::uint32_t node : skin.node) surface.points.push_back(position[node]);
   const auto first = static_cast<std::uint32_t>(surface.points.size());

@@ -49,7 +49,7 @@ DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::v
 }
 
 /// Makes one point for each smooth side of a node.
-void divide_at_creases(Skin& skin, const std::vector<Vec3d>& start) {
+void divide_at_creases(NodeSurface& skin, const std::vector<Vec3d>& start) {
   const auto position = mapped<Vec3d>(skin.node, [&](std::uint32_t node) { return start[node]; });
   DisjointSets corners = smooth_corners(skin.triangles, position);
   std::vector<std::uint32_t> node, part, point(3 * skin.triangles.size());
@@ -74,7 +74,7 @@ Light inside_of(const Light& colour) {
   return kept * colour + (1 - kept) * Light{0.55F, 0.55F, 0.55F};
 }
 
-std::vector<Rgb> part_colours(const NodeShape& shape, const Skin& skin, ColourBy colour) {
+std::vector<Rgb> part_colours(const NodeShape& shape, const NodeSurface& skin, ColourBy colour) {
   const bool by_layer = shape.in_panels && colour != ColourBy::panel;
   const auto& categories = category_colours();
   std::vector<Rgb> colours;
@@ -97,8 +97,8 @@ double usual_most(std::vector<double> strain) {
 
 }  // namespace
 
-Skin skin_of(const NodeShape& shape, const std::vector<Vec3d>& start) {
-  Skin skin = surface_of(shape, start.size());
+NodeSurface skin_of(const NodeShape& shape, const std::vector<Vec3d>& start) {
+  NodeSurface skin = surface_of(shape, start.size());
   if (!shape.tetrahedra.empty()) divide_at_creases(skin, start);
   return skin;
 }

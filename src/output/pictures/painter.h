@@ -16,12 +16,9 @@
 
 namespace mssim {
 
-/// The surface in a picture; at a crease, several points belong to the same node.
-using Skin = NodeSurface;
-
-/// The skin of nodes of that shape with rest positions `start`. Points are duplicated where a surface of
-/// bodies bends by more than 40 degrees, so that edges are drawn sharp.
-Skin skin_of(const NodeShape& shape, const std::vector<Vec3d>& start);
+/// The surface in a picture of nodes of that shape with rest positions `start`. Where a surface of bodies
+/// bends by more than 40 degrees, several points belong to the same node, so that edges are drawn sharp.
+NodeSurface skin_of(const NodeShape& shape, const std::vector<Vec3d>& start);
 
 /// Meaning of the colours of a picture.
 enum class ColourBy : std::uint8_t {
@@ -66,7 +63,7 @@ class Painter {
   const TraceContent& content_;
   PictureOptions options_;
   Camera camera_;
-  Skin skin_;
+  NodeSurface skin_;
   std::vector<Rgb> colour_;  ///< [parts] unless strain is shown
   std::optional<double> floor_;
   std::optional<Box<double>> seen_, world_;

@@ -204,7 +204,7 @@ TEST_F(PicturesOfARun, NeedAFolderOfTheirOwn) {
   EXPECT_THROW(pictures_in(folder() / "pictures"), WriteError);
 }
 
-Surface surface_of(const Skin& skin, const std::vector<Vec3d>& position) {
+Surface surface_of(const NodeSurface& skin, const std::vector<Vec3d>& position) {
   Surface surface{{}, skin.triangles};
   for (const std::uint32_t node : skin.node) surface.points.push_back(position[node]);
   return surface;
@@ -212,7 +212,7 @@ Surface surface_of(const Skin& skin, const std::vector<Vec3d>& position) {
 
 TEST(Skin, OfBodiesClosesAroundThem) {
   const System system = solid_block(3, 4, 5);
-  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
+  const NodeSurface skin = skin_of(shape_of(system.topology), system.start.position);
   double volume = 0;
   const auto& nodes = system.start.position;
   for (const auto& [a, b, c, d] : std::get<TetrahedralMesh>(system.topology).tetrahedra)
@@ -230,7 +230,7 @@ TEST(Skin, OfBodiesClosesAroundThem) {
 
 TEST(Skin, HasAPointForEachSideOfASharpEdge) {
   const System system = solid_block(2, 2, 2);
-  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
+  const NodeSurface skin = skin_of(shape_of(system.topology), system.start.position);
   std::map<std::uint32_t, std::size_t> points;
   for (const std::uint32_t node : skin.node) ++points[node];
   std::map<std::size_t, std::size_t> nodes_with;
