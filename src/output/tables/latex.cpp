@@ -113,30 +113,35 @@ std::string ungrouped(std::string_view number) {
   return digits;
 }
 
+/// The unit of at least `shortest` bytes that a text begins with; null if there is none.
+const Replacement* unit_at(std::string_view text, std::size_t shortest) {
+  const auto unit = std::ranges::find_if(units, [&](const Replacement& candidate) {
+    return candidate.text.size() >= shortest && text.starts_with(candidate.text) &&
+           ends_before(text.substr(candidate.text.size()));
+  });
+  return unit == units.end() ? nullptr : &*unit;
+}
+
 /// The number, range or unit that a text begins with, for siunitx, and its length; nothing if it begins with
 /// a word.
 std::pair<std::string, std::size_t> quantity_at(std::string_view text) {
   const std::string_view number = number_at(text);
-  std::string_view rest = text.substr(number.size());
+  if (number.empty()) {
+    const Replacement* unit = unit_at(text, 2);
+    if (!unit) return {};
+    return {fmt::format("\\unit{{{}}}", unit->latex), unit->text.size()};
+  }
+  const std::string_view rest = text.substr(number.size());
   constexpr std::string_view to = " to ";
-  if (!number.empty() && rest.starts_with(to))
+  if (rest.starts_with(to))
     if (const std::string_view upper = number_at(rest.substr(to.size())); !upper.empty())
       return {fmt::format("\\numrange{{{}}}{{{}}}", ungrouped(number), ungrouped(upper)),
               number.size() + to.size() + upper.size()};
-  const bool is_alone = number.empty();
-  if (!is_alone && rest.starts_with(' ')) rest.remove_prefix(1);
-  const auto unit = std::ranges::find_if(units, [&](const Replacement& candidate) {
-    return rest.starts_with(candidate.text) && ends_before(rest.substr(candidate.text.size())) &&
-           (!is_alone || candidate.text.size() > 1) &&
-           (is_alone || rest.data() != text.data() + number.size());
-  });
-  if (unit != units.end()) {
-    const auto length = static_cast<std::size_t>(rest.data() - text.data()) + unit->text.size();
-    return {is_alone ? fmt::format("\\unit{{{}}}", unit->latex)
-                     : fmt::format("\\qty{{{}}}{{{}}}", ungrouped(number), unit->latex),
-            length};
-  }
-  return {is_alone ? std::string() : fmt::format("\\num{{{}}}", ungrouped(number)), number.size()};
+  if (rest.starts_with(' '))
+    if (const Replacement* unit = unit_at(rest.substr(1), 1))
+      return {fmt::format("\\qty{{{}}}{{{}}}", ungrouped(number), unit->latex),
+              number.size() + 1 + unit->text.size()};
+  return {fmt::format("\\num{{{}}}", ungrouped(number)), number.size()};
 }
 
 std::string cell_words(std::string_view text) {
