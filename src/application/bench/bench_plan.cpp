@@ -13,7 +13,7 @@
 #include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
 #include "integrators/stability.h"
-#include "output/traces/energy_curve.h"
+#include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "scene/builders.h"

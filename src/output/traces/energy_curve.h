@@ -2,8 +2,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <string_view>
 
 #include "model/system.h"
@@ -42,11 +40,5 @@ class EnergyCurve {
   std::size_t samples_ = 0;
   double last_time_s_ = 0;
 };
-
-/// The error in a trace's file name, with the remedy; none if it is valid. It must be NAME.h5 with
-/// characters that an XDMF file can name. XDMF readers take the text after ':' as a dataset's path, '|' as
-/// the end of a name, and '\' as a '/' or an escape. Control characters and text that is not UTF-8 are not
-/// valid XML. The folder does not matter.
-std::optional<std::string> trace_name_problem(const std::filesystem::path& trace);
 
 }  // namespace mssim

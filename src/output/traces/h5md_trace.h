@@ -87,6 +87,12 @@ void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames);
 /// Upper bound of the space that the virtual dataset of one part in one frame takes (measured: 1000 bytes).
 inline constexpr std::size_t xdmf_bytes_per_part_and_frame = 2048;
 
+/// The error in a trace's file name, with the remedy; none if it is valid. It must be NAME.h5 with
+/// characters that an XDMF file can name. XDMF readers take the text after ':' as a dataset's path, '|' as
+/// the end of a name, and '\' as a '/' or an escape. Control characters and text that is not UTF-8 are not
+/// valid XML. The folder does not matter.
+std::optional<std::string> trace_name_problem(const std::filesystem::path& trace);
+
 /// FILE.h5 -> FILE.xdmf, in the same folder.
 std::filesystem::path xdmf_of(const std::filesystem::path& trace);
 

@@ -2,7 +2,6 @@
 
 #include <csignal>
 
-#include "output/traces/energy_curve.h"
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "tests/support/systems.h"
