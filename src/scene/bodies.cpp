@@ -214,11 +214,9 @@ std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& own) {
 
 /// Throws SceneError if the shape of another scene cannot be used.
 OwnShape shape_of(const SceneSpec& spec, std::size_t body) {
-  try {
+  return refusing<SceneError>(spec.file, pointer_to(body), "has no mesh", [&] {
     return own_shape(bodies_of(spec).list[body].shape, spec.file.parent_path());
-  } catch (const SceneError& error) {
-    refuse(spec.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
-  }
+  });
 }
 
 void require_lengths(const MeshedShape& shape, const SceneSpec& spec) {
@@ -231,11 +229,8 @@ void require_lengths(const MeshedShape& shape, const SceneSpec& spec) {
 }
 
 void mesh(MeshedShape& shape, const SceneSpec& spec) {
-  try {
-    shape.mesh = mesh_of(shape.own);
-  } catch (const InputError& error) {
-    refuse(spec.file, pointer_to(shape.first_body), "has no mesh: " + printable(error.what(), 1500));
-  }
+  shape.mesh = refusing<InputError>(spec.file, pointer_to(shape.first_body), "has no mesh",
+                                    [&] { return mesh_of(shape.own); });
   Vec3d centre;
   for (const Vec3d& node : shape.mesh.nodes) centre += node;
   centre = 1 / static_cast<double>(shape.mesh.nodes.size()) * centre;

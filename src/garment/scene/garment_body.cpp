@@ -67,21 +67,16 @@ void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
 
 FileSurface body_from_file(const SceneSpec& spec, const BodyFile& body) {
   const std::string section = "/garment/surface_file";
-  FileSurface read;
+  FileSurface read = refusing<InputError>(spec.file, section + "/file", "is not a usable body", [&] {
+    FileSurface found = read_surface(spec.file.parent_path() / body.file);
+    require_joined(found.surface);
+    found.surface = stood_up(std::move(found.surface), body.stance);
+    return found;
+  });
   Surface& surface = read.surface;
-  try {
-    read = read_surface(spec.file.parent_path() / body.file);
-    require_joined(surface);
-    surface = stood_up(std::move(surface), body.stance);
-  } catch (const InputError& error) {
-    refuse(spec.file, section + "/file", "is not a usable body: " + printable(error.what(), 1500));
-  }
   if (body.close_holes_m) {
-    try {
-      close_openings(surface, *body.close_holes_m);
-    } catch (const InputError& error) {
-      refuse(spec.file, section + "/close_holes_m", "closes too little: " + printable(error.what(), 1500));
-    }
+    refusing<InputError>(spec.file, section + "/close_holes_m", "closes too little",
+                         [&] { close_openings(surface, *body.close_holes_m); });
   } else if (const std::vector<Opening> openings = openings_of(surface); !openings.empty()) {
     const Opening& largest = openings.front();
     refuse(
@@ -111,11 +106,9 @@ FileSurface body_of_garment(const SceneSpec& spec) {
   const GarmentSpec& garment = garment_of(spec);
   if (const auto* file = std::get_if<BodyFile>(&garment.body)) return body_from_file(spec, *file);
   const auto& form = std::get<MannequinBody>(garment.body);
-  try {
-    return {mannequin(form.measures, form.cells_around), {}};
-  } catch (const InputError& error) {
-    refuse(spec.file, "/garment/body", "is not a usable body: " + printable(error.what(), 1500));
-  }
+  return {refusing<InputError>(spec.file, "/garment/body", "is not a usable body",
+                               [&] { return mannequin(form.measures, form.cells_around); }),
+          {}};
 }
 
 }  // namespace
@@ -141,16 +134,13 @@ void check_body(const SceneSpec& spec) {
 }
 
 MeasuredBody measured_body(const SceneSpec& spec) {
-  auto [surface, note] = body_of_garment(spec);
-  try {
-    BodyProfile profile(surface);
-    const GarmentSpec& garment = garment_of(spec);
-    if (const auto* file = std::get_if<BodyFile>(&garment.body); file && garment.jeans)
-      require_person(spec, *file, profile);
-    return {std::move(surface), std::move(note), std::move(profile)};
-  } catch (const InputError& error) {
-    refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
-  }
+  FileSurface read = body_of_garment(spec);
+  auto profile = refusing<InputError>(spec.file, "/garment/body", "cannot be measured",
+                                      [&] { return BodyProfile(read.surface); });
+  const GarmentSpec& garment = garment_of(spec);
+  if (const auto* file = std::get_if<BodyFile>(&garment.body); file && garment.jeans)
+    require_person(spec, *file, profile);
+  return {std::move(read.surface), std::move(read.note), std::move(profile)};
 }
 
 }  // namespace mssim

@@ -138,14 +138,14 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern
   } catch (const PatternError& error) {
     const bool is_panel = error.part == PatternError::Part::panel;
     const std::size_t of_jeans = is_panel ? jeans.panels.size() : jeans.seams.size();
-    if (error.index < of_jeans)
-      refuse(spec.file, jeans_pointer(garment),
-             error.folded ? uncut_jeans(garment.jeans->measures, body.profile)
-                          : "does not fit: " + printable(error.what(), 1500));
+    const bool is_of_jeans = error.index < of_jeans;
+    if (is_of_jeans && error.folded)
+      refuse(spec.file, jeans_pointer(garment), uncut_jeans(garment.jeans->measures, body.profile));
     refuse(spec.file,
-           fmt::format("{}/{}/{}", pieces_pointer(garment), is_panel ? "panels" : "seams",
-                       error.index - of_jeans),
-           "does not fit: " + printable(error.what(), 1500));
+           is_of_jeans ? jeans_pointer(garment)
+                       : fmt::format("{}/{}/{}", pieces_pointer(garment), is_panel ? "panels" : "seams",
+                                     error.index - of_jeans),
+           "does not fit", error);
   }
 }
 
@@ -166,11 +166,10 @@ void require_seams_within_layers(const SceneSpec& spec, const Garment& cut, cons
 FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, double body_offset) {
   const GarmentSpec& garment = garment_of(spec);
   GarmentPattern jeans;
-  if (garment.jeans) require_body_there(spec, body.profile);
-  try {
-    if (garment.jeans) jeans = jeans_for(garment, body, body_offset);
-  } catch (const InputError& error) {
-    refuse(spec.file, jeans_pointer(garment), "does not fit: " + printable(error.what(), 1500));
+  if (garment.jeans) {
+    require_body_there(spec, body.profile);
+    jeans = refusing<InputError>(spec.file, jeans_pointer(garment), "does not fit",
+                                 [&] { return jeans_for(garment, body, body_offset); });
   }
   GarmentPattern pattern = jeans;
   if (garment.pieces) append_pieces(*garment.pieces, garment.cloth, pattern);
@@ -275,14 +274,11 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
   if (garment.touching)
     for (const GarmentPanel& panel : garment.panels) outermost = std::max(outermost, panel.layer);
   std::vector<std::shared_ptr<const BodyMaps>> maps;
-  try {
-    for (std::uint32_t layer = 0; layer <= outermost; ++layer) {
-      const double beneath = layer > 0 ? layer * garment.touching->thickness : 0;
-      maps.push_back(std::make_shared<BodyMaps>(
-          body, BodyMapSettings{.pixel = garment_of(spec).pixel_m, .offset = offset + beneath}));
-    }
-  } catch (const std::exception& error) {
-    refuse(spec.file, "/garment/pixel_m", "gives no maps of the body: " + printable(error.what(), 1500));
+  for (std::uint32_t layer = 0; layer <= outermost; ++layer) {
+    const double beneath = layer > 0 ? layer * garment.touching->thickness : 0;
+    const BodyMapSettings settings{.pixel = garment_of(spec).pixel_m, .offset = offset + beneath};
+    maps.push_back(refusing<std::exception>(spec.file, "/garment/pixel_m", "gives no maps of the body",
+                                            [&] { return std::make_shared<BodyMaps>(body, settings); }));
   }
   return maps;
 }

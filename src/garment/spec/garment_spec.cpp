@@ -138,14 +138,9 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
     const PieceSpec& piece = pieces.panels[i];
     const std::string place = fmt::format("{}/panels/{}", pointer, i);
     if (piece.name.empty()) refuse(file, place + "/name", "is empty: give the panel a name");
-    for (std::size_t edge = 0; edge < piece.boundaries.size(); ++edge) {
-      try {
-        curve_of(piece.boundaries[edge]);
-      } catch (const InputError& error) {
-        refuse(file, fmt::format("{}/{}", place, panel_edge_names[edge]),
-               "is not a valid boundary: " + printable(error.what(), 1500));
-      }
-    }
+    for (std::size_t edge = 0; edge < piece.boundaries.size(); ++edge)
+      refusing<InputError>(file, fmt::format("{}/{}", place, panel_edge_names[edge]),
+                           "is not a valid boundary", [&] { curve_of(piece.boundaries[edge]); });
     nodes += std::uint64_t{piece.grid.rows} * piece.grid.columns;
   }
   if (nodes > most_nodes)

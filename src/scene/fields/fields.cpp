@@ -12,6 +12,11 @@ void refuse(const std::filesystem::path& file, std::string_view pointer, const s
   throw SceneError("{}: {} {}", printable(file.string(), 1000), printable(pointer, 200), problem);
 }
 
+void refuse(const std::filesystem::path& file, std::string_view pointer, std::string_view problem,
+            const std::exception& error) {
+  refuse(file, pointer, fmt::format("{}: {}", problem, printable(error.what(), 1500)));
+}
+
 std::string shown_number(double number) {
   // Integers in full (general notation would turn a million into 1e+06), others in the fewest digits.
   const bool whole = std::abs(number) < 1e15 && number == std::trunc(number);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -144,6 +145,21 @@ struct SceneError : ErrorWith<exit_bad_input> {
 /// Throws SceneError: "FILE: POINTER PROBLEM".
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view pointer,
                          const std::string& problem);
+
+/// Throws SceneError: "FILE: POINTER PROBLEM: " and the error's sentence.
+[[noreturn]] void refuse(const std::filesystem::path& file, std::string_view pointer,
+                         std::string_view problem, const std::exception& error);
+
+/// What `act` returns; if it throws a Failure, refuses the place in the file with that error.
+template <class Failure, class Act>
+auto refusing(const std::filesystem::path& file, std::string_view pointer, std::string_view problem,
+              const Act& act) {
+  try {
+    return act();
+  } catch (const Failure& error) {
+    refuse(file, pointer, problem, error);
+  }
+}
 
 /// A number for an error message, in the fewest digits that read back as the same number.
 std::string shown_number(double number);
