@@ -28,7 +28,7 @@ garment/pattern       text geometry garment garment/body model
 garment/layers        text geometry garment
 
 scene/fields          text geometry model
-garment/spec          text geometry garment mesh garment/body garment/pattern scene/fields
+garment/spec          geometry garment mesh garment/body garment/pattern
 scene/spec            geometry model mesh garment/body garment/spec
 garment/scene         text geometry garment/contact model mesh garment/body garment/pattern scene/fields scene/spec
 scene                 text platform geometry model mesh scene/fields scene/spec

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "garment/body/stance.h"
+#include "garment/scene/garment_fields.h"
 #include "garment/scene/garment_scene.h"
 #include "geometry/geometry.h"
 #include "geometry/surface.h"

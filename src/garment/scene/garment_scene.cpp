@@ -15,6 +15,7 @@
 
 #include "garment/contact/body_maps.h"
 #include "garment/pattern/jeans.h"
+#include "garment/scene/garment_fields.h"
 #include "geometry/geometry.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -30,10 +31,7 @@ constexpr double least_curvature_radius_m = 0.04;
 /// are not drawn across the other leg.
 constexpr double beside_the_leg_m = 0.01;
 
-/// JSON pointers to a garment's pieces and jeans in its scene file.
-std::string pieces_pointer(const GarmentSpec& garment) {
-  return garment.jeans ? "/garment/outfit" : "/garment/pieces";
-}
+/// The JSON pointer to a garment's jeans in its scene file.
 std::string jeans_pointer(const GarmentSpec& garment) {
   return garment.pieces ? "/garment/outfit/jeans" : "/garment/jeans";
 }
@@ -172,7 +170,7 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, d
                                  [&] { return jeans_for(garment, body, body_offset); });
   }
   GarmentPattern pattern = jeans;
-  if (garment.pieces) append_pieces(*garment.pieces, garment.cloth, pattern);
+  append_pieces(garment, pattern);
   GarmentBuild build = cut_and_placed(spec, pattern, body, jeans);
   require_seams_within_layers(spec, build.garment, jeans);
   const double cell = widest_mean_cell(pattern, build);
@@ -180,11 +178,9 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, d
   return {std::move(build), garment.skin_m + cell * cell / (8 * least_curvature_radius_m)};
 }
 
-constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
-
 void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
-  fields.integer({"nodes", "Approximate number of nodes of all panels."}, jeans.nodes, fewest_nodes,
-                 most_nodes);
+  fields.integer({"nodes", "Approximate number of nodes of all panels."}, jeans.nodes, 300,
+                 most_garment_nodes);
   visit_length(fields, {"waist_height_m", "Height at which the upper edge is worn at the side, m."},
                jeans.measures.waist_height);
   visit_length(fields, {"hip_height_m", "Height at which the body's girth is largest, m."},
@@ -380,20 +376,19 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
             layers.push_speed, from(0, 1000));
         section.integer({"sweeps", "Sweeps over all contacts per step."}, layers.sweeps, 1, 1000);
       });
-  fields.object(
-      {"expected", "Size of the cut pattern, for listings."}, Presence::optional,
-      [&](FieldVisitor& expected) {
-        MeshSize& size = garment.expected.emplace();
-        expected.integer({"nodes", "Nodes of all panels."}, size.nodes, 4, most_nodes);
-        expected.integer({"springs", "Unique springs of all panels."}, size.springs, 6, 6 * most_nodes);
-      });
+  fields.object({"expected", "Size of the cut pattern, for listings."}, Presence::optional,
+                [&](FieldVisitor& expected) {
+                  MeshSize& size = garment.expected.emplace();
+                  expected.integer({"nodes", "Nodes of all panels."}, size.nodes, 4, most_garment_nodes);
+                  expected.integer({"springs", "Unique springs of all panels."}, size.springs, 6,
+                                   6 * most_garment_nodes);
+                });
 }
 
 /// Checks the body's axes, and that the pieces have names, curves and not too many nodes.
 void check(const SceneSpec& spec) {
   check_body(spec);
-  const GarmentSpec& garment = garment_of(spec);
-  if (garment.pieces) check_pieces(spec.file, pieces_pointer(garment), *garment.pieces, most_nodes);
+  check_pieces(spec);
 }
 
 /// Measures the body and cuts the garment for it. Throws SceneError if the body cannot be measured or the

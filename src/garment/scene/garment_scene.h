@@ -1,26 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <string>
-#include <variant>
-
 #include "garment/body/body_profile.h"
 #include "garment/pattern/garment_build.h"
-#include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-/// The content of a garment scene.
-inline const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
-
-// The body of a garment scene. All functions but visit_body_fields need a spec whose content is a garment.
-
-/// Names the fields of the body, with their targets in garment.body.
-void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment);
-
-/// Checks that a body from a file looks along a horizontal axis. Throws SceneError.
-void check_body(const SceneSpec& spec);
+// All functions need a spec whose content is a garment.
 
 /// The body that wears the garment, upright in y and facing +z, with openings closed as the scene specifies.
 /// Throws SceneError if it cannot be read or measured, and for jeans if its height is not a person's.

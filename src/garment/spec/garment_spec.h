@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -15,7 +14,6 @@
 #include "garment/pattern/jeans.h"
 #include "geometry/vec3.h"
 #include "mesh/meshing.h"
-#include "scene/fields/fields.h"
 
 namespace mssim {
 
@@ -72,20 +70,5 @@ struct GarmentSpec {
   std::optional<ClothClothSettings> layers;  ///< none: they pass through each other
   std::optional<MeshSize> expected;
 };
-
-/// Names the fields of pieces.
-void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces);
-
-/// Names the fields of a panel's cloth.
-void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth);
-
-/// Throws SceneError, which names the place under `pointer`, for a panel without a name, for invalid boundary
-/// curves, and for more than `most_nodes` nodes. build_garment refuses errors that appear only in cutting and
-/// sewing.
-void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,
-                  std::uint64_t most_nodes);
-
-/// Appends pieces that check_pieces accepts to a pattern. Those without their own cloth get `cloth`.
-void append_pieces(const PiecesSpec& pieces, const PanelMaterial& cloth, GarmentPattern& pattern);
 
 }  // namespace mssim

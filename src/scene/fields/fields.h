@@ -108,14 +108,6 @@ void visit_choice(FieldVisitor& fields, const Field& field, Presence presence,
   target = static_cast<Value>(number);
 }
 
-/// Largest length of a garment or its body, m.
-inline constexpr double largest_length_m = 10;
-
-/// A length of a garment or its body.
-inline void visit_length(FieldVisitor& fields, const Field& field, double& target) {
-  fields.number(field, target, above(0, largest_length_m));
-}
-
 inline constexpr double largest_stiffness = spring_constants.front().most;  ///< N/m
 
 /// Names the field of a constant of springs, with its target in `material`.

@@ -1,5 +1,7 @@
-#include "garment/spec/garment_spec.h"
+#include <array>
+#include <utility>
 
+#include "garment/scene/garment_fields.h"
 #include "text/error.h"
 #include "text/text.h"
 
@@ -131,26 +133,34 @@ void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces) {
       });
 }
 
-void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,
-                  std::uint64_t most_nodes) {
+std::string pieces_pointer(const GarmentSpec& garment) {
+  return garment.jeans ? "/garment/outfit" : "/garment/pieces";
+}
+
+void check_pieces(const SceneSpec& spec) {
+  const GarmentSpec& garment = garment_of(spec);
+  if (!garment.pieces) return;
+  const std::string pointer = pieces_pointer(garment);
   std::uint64_t nodes = 0;
-  for (std::size_t i = 0; i < pieces.panels.size(); ++i) {
-    const PieceSpec& piece = pieces.panels[i];
+  for (std::size_t i = 0; i < garment.pieces->panels.size(); ++i) {
+    const PieceSpec& piece = garment.pieces->panels[i];
     const std::string place = fmt::format("{}/panels/{}", pointer, i);
-    if (piece.name.empty()) refuse(file, place + "/name", "is empty: give the panel a name");
+    if (piece.name.empty()) refuse(spec.file, place + "/name", "is empty: give the panel a name");
     for (std::size_t edge = 0; edge < piece.boundaries.size(); ++edge)
-      refusing<InputError>(file, fmt::format("{}/{}", place, panel_edge_names[edge]),
+      refusing<InputError>(spec.file, fmt::format("{}/{}", place, panel_edge_names[edge]),
                            "is not a valid boundary", [&] { curve_of(piece.boundaries[edge]); });
     nodes += std::uint64_t{piece.grid.rows} * piece.grid.columns;
   }
-  if (nodes > most_nodes)
-    refuse(file, pointer + "/panels",
-           fmt::format("have {} nodes in all: give panels with at most {}", nodes, most_nodes));
+  if (nodes > most_garment_nodes)
+    refuse(spec.file, pointer + "/panels",
+           fmt::format("have {} nodes in all: give panels with at most {}", nodes, most_garment_nodes));
 }
 
-void append_pieces(const PiecesSpec& pieces, const PanelMaterial& cloth, GarmentPattern& pattern) {
-  for (const PieceSpec& piece : pieces.panels) pattern.panels.push_back(panel_of(piece, cloth));
-  pattern.seams.insert(pattern.seams.end(), pieces.seams.begin(), pieces.seams.end());
+void append_pieces(const GarmentSpec& garment, GarmentPattern& pattern) {
+  if (!garment.pieces) return;
+  for (const PieceSpec& piece : garment.pieces->panels)
+    pattern.panels.push_back(panel_of(piece, garment.cloth));
+  for (const Seam& seam : garment.pieces->seams) pattern.seams.push_back(seam);
 }
 
 }  // namespace mssim
