@@ -44,7 +44,7 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
   scene.system = std::move(built.system);
   scene.body = std::move(built.body);
   scene.files = parts.files;
-  scene.counts = counts_of(scene.spec, scene.system);
+  scene.counts = parts.counts;
   scene.note = std::move(built.note);
   const bool is_garment = scene.body != nullptr;
   scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s

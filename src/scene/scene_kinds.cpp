@@ -45,10 +45,6 @@ SceneParts read_parts(const SceneSpec& spec) {
 
 SceneCounts counts_of(const SceneSpec& spec) { return read_parts(spec).counts; }
 
-SceneCounts counts_of(const SceneSpec& spec, const System& system) {
-  return with_published(spec, {system.nodes(), system.springs.size()});
-}
-
 void require_memory(const SceneSpec& spec, const SceneCounts& counts) {
   require_memory(spec, counts, memory_needed(counts), "make the scene smaller");
 }

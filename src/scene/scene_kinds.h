@@ -26,9 +26,6 @@ SceneParts read_parts(const SceneSpec& spec);
 /// Nodes and springs of the scene. Reads its parts, and throws like read_parts.
 SceneCounts counts_of(const SceneSpec& spec);
 
-/// Nodes and springs of the scene's System.
-SceneCounts counts_of(const SceneSpec& spec, const System& system);
-
 /// Throws SceneError, naming both amounts, if any run of the scene, which has these counts, needs more memory
 /// than is available (memory_needed).
 void require_memory(const SceneSpec& spec, const SceneCounts& counts);
