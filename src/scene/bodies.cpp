@@ -388,11 +388,8 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
   const BodiesSpec& bodies = bodies_of(spec);
   System system;
+  set_laws(system, spec);
   system.materials = {bodies.springs};
-  system.gravity = spec.gravity_m_per_s2;
-  system.viscous_damping = spec.viscous_damping_per_s;
-  system.floor = spec.floor;
-  system.solver = spec.solver;
   TetrahedralMesh mesh;
   for (std::size_t i = 0; i < bodies.list.size(); ++i) {
     const std::size_t first = system.nodes(), first_spring = system.springs.size();

@@ -146,12 +146,9 @@ void check(const SceneSpec& spec) {
 System outline_of_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   System system;
+  set_laws(system, spec);
   system.topology = GridPatch{cloth.rows, cloth.columns, cloth.spacing_m};
   system.materials.assign(cloth.springs.begin(), cloth.springs.end());
-  system.gravity = spec.gravity_m_per_s2;
-  system.viscous_damping = spec.viscous_damping_per_s;
-  system.floor = spec.floor;
-  system.solver = spec.solver;
   return system;
 }
 

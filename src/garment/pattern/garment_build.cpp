@@ -340,9 +340,9 @@ std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> pan
   return joints;
 }
 
-GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body) {
-  GarmentBuild build;
-  Garment& garment = build.garment;
+System build_garment(const GarmentPattern& pattern, const BodyDepth& body) {
+  System system;
+  auto& garment = system.topology.emplace<Garment>();
   std::vector<PanelMesh> meshes;  // [panels]
   std::vector<double> strengths;  // [nodes] factors of the seams' force
   add_each(pattern.panels, PatternError::Part::panel, [&](const PatternPanel& panel) {
@@ -356,9 +356,9 @@ GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body)
     strengths.resize(garment.flat.size() + first_of_band(mesh, panel.cloth), 1);
     append(garment.flat, mesh.nodes);
     strengths.resize(garment.flat.size(), panel.cloth.waistband.seam_factor);
-    append(build.placed, place_panel(name, mesh, panel.placement, body));
-    append(build.node_mass, node_masses(mesh, panel.cloth));
-    append_springs(garment.panels.back(), mesh, panel.cloth, build.springs, build.materials);
+    append(system.start.position, place_panel(name, mesh, panel.placement, body));
+    append(system.node_mass, node_masses(mesh, panel.cloth));
+    append_springs(garment.panels.back(), mesh, panel.cloth, system.springs, system.materials);
   });
   add_each(pattern.seams, PatternError::Part::seam, [&](const Seam& seam) {
     std::vector<Joint> joints =
@@ -369,7 +369,8 @@ GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body)
   });
   garment.close = close_cloth(pattern.close, garment);
   garment.crotch = where_seams_meet(pattern.crotch, garment);
-  return build;
+  system.start.velocity.resize(system.nodes());
+  return system;
 }
 
 }  // namespace mssim

@@ -224,15 +224,6 @@ struct GarmentPattern {
   std::vector<std::uint32_t> crotch = {};  ///< indices of the seams of jeans that meet at the crotch
 };
 
-/// A garment built for simulation. Vectors over nodes are in the order of panels.
-struct GarmentBuild {
-  Garment garment;
-  std::vector<Vec3d> placed;      ///< m, start positions of the nodes
-  std::vector<double> node_mass;  ///< kg
-  std::vector<Spring> springs;    ///< panel by panel; kind is an index into materials
-  std::vector<SpringMaterial> materials;
-};
-
 /// Thrown for an unusable panel or seam of a pattern. what() starts with its name.
 struct PatternError : InputError {
   enum class Part { panel, seam };
@@ -247,8 +238,10 @@ struct PatternError : InputError {
   bool folded;        ///< the error was a FoldedPiece
 };
 
-/// Cuts, sews and places a pattern. Throws PatternError for the errors of mesh_panel, require_cloth,
-/// join_seam and place_panel, and for two panels of one name.
-GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body);
+/// Cuts, sews and places a pattern: a system at rest, its nodes and springs panel by panel, whose topology is
+/// a Garment. The body, the settings of the dressing and all laws but those of springs are the scene's to
+/// add. Throws PatternError for the errors of mesh_panel, require_cloth, join_seam and place_panel, and for
+/// two panels of one name.
+System build_garment(const GarmentPattern& pattern, const BodyDepth& body);
 
 }  // namespace mssim

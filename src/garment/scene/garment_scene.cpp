@@ -37,14 +37,14 @@ std::string jeans_pointer(const GarmentSpec& garment) {
 }
 
 /// The largest over the layers of the width of a square cell of average area, m.
-double widest_mean_cell(const GarmentPattern& pattern, const GarmentBuild& build) {
+double widest_mean_cell(const GarmentPattern& pattern, const System& cut) {
   struct Extent {
     double area = 0, nodes = 0;
   };
   std::map<std::uint32_t, Extent> layers;
   for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
-    const GarmentPanel& panel = build.garment.panels[p];
-    const auto first = build.node_mass.begin() + panel.first_node;
+    const GarmentPanel& panel = std::get<Garment>(cut.topology).panels[p];
+    const auto first = cut.node_mass.begin() + panel.first_node;
     Extent& layer = layers[panel.layer];
     layer.area += std::accumulate(first, first + panel.nodes(), 0.0) / pattern.panels[p].cloth.area_density;
     layer.nodes += panel.nodes();
@@ -128,8 +128,8 @@ GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, 
 }
 
 /// Throws SceneError, which names a panel or seam that cannot be made.
-GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern, const AskedMeasures& body,
-                            const GarmentPattern& jeans) {
+System cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern, const AskedMeasures& body,
+                      const GarmentPattern& jeans) {
   const GarmentSpec& garment = garment_of(spec);
   try {
     return build_garment(pattern, body.depth);
@@ -171,11 +171,11 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, d
   }
   GarmentPattern pattern = jeans;
   append_pieces(garment, pattern);
-  GarmentBuild build = cut_and_placed(spec, pattern, body, jeans);
-  require_seams_within_layers(spec, build.garment, jeans);
-  const double cell = widest_mean_cell(pattern, build);
+  System system = cut_and_placed(spec, pattern, body, jeans);
+  require_seams_within_layers(spec, std::get<Garment>(system.topology), jeans);
+  const double cell = widest_mean_cell(pattern, system);
   // Distance of the maps from the body: skin, and the sagitta of a face as wide as a cell.
-  return {std::move(build), garment.skin_m + cell * cell / (8 * least_curvature_radius_m)};
+  return {std::move(system), garment.skin_m + cell * cell / (8 * least_curvature_radius_m)};
 }
 
 void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
@@ -281,29 +281,20 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
 
 BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body, const FittedGarment& cut) {
   const GarmentSpec& garment = garment_of(spec);
-  const GarmentBuild& build = cut.build;
-  const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
+  System system = cut.system;
+  set_laws(system, spec);
+  const double lowest_start = std::ranges::min(system.start.position, {}, &Vec3d::y).y;
   if (lowest_start < spec.floor.height)
     refuse(spec.file, "/floor/height_m",
            "is " + shown_number(spec.floor.height) + ", but the garment would start down to " +
                shown_number(lowest_start) + ": lower the floor or place the garment higher");
-  System system;
-  system.springs = build.springs;
-  system.materials = build.materials;
-  system.node_mass = build.node_mass;
-  system.gravity = spec.gravity_m_per_s2;
-  system.viscous_damping = spec.viscous_damping_per_s;
-  system.floor = spec.floor;
-  system.start.position = build.placed;
-  system.start.velocity.resize(system.start.position.size());
 
-  Garment dressed = build.garment;
+  auto& dressed = std::get<Garment>(system.topology);
   dressed.dressing = garment.dressing;
   const auto [inner, outer] = std::ranges::minmax_element(dressed.panels, {}, &GarmentPanel::layer);
   if (inner->layer < outer->layer) dressed.touching = garment.layers;
   const TrunkAndLegs& met = body->profile.trunk_and_legs();
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
-  system.topology = std::move(dressed);
   std::string note;
   const std::size_t nodes = system.nodes(), springs = system.springs.size();
   if (const auto& stated = garment.expected; stated && (stated->nodes != nodes || stated->springs != springs))
@@ -400,7 +391,7 @@ void check(const SceneSpec& spec) {
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
-  SceneParts parts{{cut->build.placed.size(), cut->build.springs.size()},
+  SceneParts parts{{cut->system.nodes(), cut->system.springs.size()},
                    [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
   if (const auto* scan = std::get_if<BodyFile>(&garment_of(spec).body)) {
     const Surface& surface = body->surface;

@@ -12,9 +12,9 @@ namespace mssim {
 /// Throws SceneError if it cannot be read or measured, and for jeans if its height is not a person's.
 MeasuredBody measured_body(const SceneSpec& spec);
 
-/// A garment, and the distance of its maps from the body, m.
+/// A garment (build_garment), and the distance of its maps from the body, m.
 struct FittedGarment {
-  GarmentBuild build;
+  System system;
   double body_offset = 0;
 };
 

@@ -104,6 +104,14 @@ struct SceneSpec {
   std::filesystem::path file;  ///< path for messages
 };
 
+/// Gives a system the scene's gravity, damping, floor and solver settings.
+inline void set_laws(System& system, const SceneSpec& spec) {
+  system.gravity = spec.gravity_m_per_s2;
+  system.viscous_damping = spec.viscous_damping_per_s;
+  system.floor = spec.floor;
+  system.solver = spec.solver;
+}
+
 /// The size of a scene as shown in tables.
 struct SceneCounts {
   std::uint64_t nodes = 0;

@@ -47,7 +47,7 @@ TEST_F(DressedPerson, IsCutJeansForWhateverHeightsTheSceneGives) {
             jeans.knee_height = knee;
             jeans.hem_height = hem;
             const FittedGarment cut = cut_and_placed(spec, profile);
-            for (const Vec3d& node : cut.build.placed) {
+            for (const Vec3d& node : cut.system.start.position) {
               ASSERT_LT(std::abs(node.z), 0.25) << "drawn to where the hands are";
               ASSERT_LT(std::abs(node.x), 0.40);
             }
