@@ -78,6 +78,22 @@ inline constexpr std::string_view coordinate_wanted = "give a number from -1e9 t
 /// Is it a number of at most farthest_coordinate?
 inline bool is_coordinate(double x) { return std::abs(x) <= farthest_coordinate; }
 
+/// An interval around the place where a condition ends to hold.
+struct Bracket {
+  double holds, fails;
+};
+
+/// Halves the interval between a number for which a condition holds and one for which it does not. Which of
+/// the two is larger does not matter.
+template <class Condition>
+Bracket bisected(Bracket between, int halvings, const Condition& condition) {
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (between.holds + between.fails);
+    (condition(middle) ? between.holds : between.fails) = middle;
+  }
+  return between;
+}
+
 /// A computed number for messages, without the last digits, which are rounding errors.
 std::string shown(double computed);
 

@@ -219,13 +219,7 @@ std::vector<Thickness> thin_places(Surface surface, const std::vector<double>& a
       return tree.distance(at + size / 2 * inwards, least) >= least;
     };
     if (has_room(limit)) continue;
-    double fits = 0, too_large = limit;
-    constexpr int halvings = 20;
-    for (int k = 0; k < halvings; ++k) {
-      const double size = (fits + too_large) / 2;
-      (has_room(size) ? fits : too_large) = size;
-    }
-    thin.push_back({too_large, origin + at});
+    thin.push_back({bisected({0, limit}, 20, has_room).fails, origin + at});
   }
   std::ranges::sort(thin, {}, &Thickness::size);
   return thin;

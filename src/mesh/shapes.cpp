@@ -207,13 +207,9 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
 
   // The spacing of an infinite lattice, if all of the volume could be used.
   const double endless = std::cbrt(space.volume / parameters.count);
-  double enough = 0.25 * endless;
-  double too_wide = 1.5 * endless;
-  constexpr int halvings = 30;
-  for (int i = 0; i < halvings; ++i) {
-    const double spacing = (enough + too_wide) / 2;
-    (points_at(spacing).size() >= parameters.count ? enough : too_wide) = spacing;
-  }
+  const double enough = bisected({0.25 * endless, 1.5 * endless}, 30, [&](double spacing) {
+                          return points_at(spacing).size() >= parameters.count;
+                        }).holds;
   std::vector<LatticePoint> chosen = points_at(enough);
   if (chosen.size() < parameters.count)
     throw InputError(

@@ -52,7 +52,6 @@ void check(const BodyMapSettings& settings) {
 /// The surface's extent with margins for offset and dilation, and a border of pixels that stay empty.
 PixelGrid grid_of(const Surface& surface, const BodyMapSettings& settings) {
   check(settings);
-  if (surface.points.empty()) return {0, 0, settings.pixel, 1, 1};
   const auto [left, right] = std::ranges::minmax(surface.points, {}, &Vec3d::x);
   const auto [bottom, top] = std::ranges::minmax(surface.points, {}, &Vec3d::y);
   const double margin = std::abs(settings.offset) + (dilation + 1) * settings.pixel;

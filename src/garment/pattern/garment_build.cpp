@@ -198,7 +198,6 @@ std::vector<std::uint32_t> where_seams_meet(const std::vector<std::uint32_t>& se
     if (std::ranges::find(seams, joint.seam) == seams.end()) continue;
     seams_at[joint.node].insert(joint.seam);
     if (joint.edge_share == 0) seams_at[joint.edge_first].insert(joint.seam);
-    if (joint.edge_share == 1) seams_at[joint.edge_second].insert(joint.seam);
   }
   std::vector<std::uint32_t> nodes;
   for (const auto& [node, meeting] : seams_at)

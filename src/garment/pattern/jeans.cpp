@@ -256,18 +256,15 @@ JeansDraft draft_with(const JeansMeasures& measures, double fork_factor) {
   const Drafting front(measures, front_half, fork_factor), back(measures, back_half, fork_factor);
   const JeansOutline front_outline = front.outline(0);
   const double inseam = front_outline.inseam.length();
-  double least = -0.03, most = 0.08;  // m: the back's inseam shrinks over this range
+  constexpr double least = -0.03, most = 0.08;  // m: the back's inseam shrinks over this range
   const auto back_inseam = [&](double drop) { return back.outline(drop).inseam.length(); };
   if (!(back_inseam(least) > inseam && back_inseam(most) < inseam))
     throw InputError(
         "jeans: no crotch point makes the back's inseam as long as the front's of " + shown(inseam) +
         " m; change the heights (hip_height_m, waist_height_m, knee_height_m, hem_height_m) or the "
         "circumferences (knee_m, hem_m) towards the body's");
-  for (int halving = 0; halving < 30; ++halving) {
-    const double middle = 0.5 * (least + most);
-    (back_inseam(middle) > inseam ? least : most) = middle;
-  }
-  return {front_outline, back.outline(most)};
+  const auto is_long = [&](double drop) { return back_inseam(drop) > inseam; };
+  return {front_outline, back.outline(bisected({least, most}, 30, is_long).fails)};
 }
 
 /// The factor of the forks' length for which the centre seams are as long as the body there plus some ease: a
@@ -276,12 +273,10 @@ double fork_factor(const JeansMeasures& measures) {
   if (!measures.crotch_length) return 1;
   constexpr double ease = 0.05;  // m, including that of the crotch and the raised back
   const double wanted = measures.crotch_length(measures.waist_height) + ease;
-  double least = 0.7, most = 1.6;
-  for (int halving = 0; halving < 12; ++halving) {
-    const double middle = 0.5 * (least + most);
-    const JeansDraft draft = draft_with(measures, middle);
-    (draft.front.centre.length() + draft.back.centre.length() < wanted ? least : most) = middle;
-  }
+  const auto [least, most] = bisected({0.7, 1.6}, 12, [&](double factor) {
+    const JeansDraft draft = draft_with(measures, factor);
+    return draft.front.centre.length() + draft.back.centre.length() < wanted;
+  });
   return 0.5 * (least + most);
 }
 
@@ -312,12 +307,8 @@ double area_of(const JeansOutline& outline) {
 double facing_fraction(const JeansOutline& outline) {
   constexpr double lower = 0.06;  // m
   const double height = outline.inseam.last().y - lower;
-  double least = 0, most = 1;
-  for (int halving = 0; halving < 40; ++halving) {
-    const double middle = 0.5 * (least + most);
-    (outline.outer.at(middle).y < height ? least : most) = middle;
-  }
-  return rounded({most, 0, 0}).x;
+  const auto is_lower = [&](double fraction) { return outline.outer.at(fraction).y < height; };
+  return rounded({bisected({0, 1}, 40, is_lower).fails, 0, 0}).x;
 }
 
 double crotch_fraction(const JeansOutline& outline) {
