@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -75,6 +76,13 @@ struct GarmentPanel {
   }
   std::uint32_t row_of(std::uint32_t node) const { return (node - first_node) / columns; }
   std::uint32_t column_of(std::uint32_t node) const { return (node - first_node) % columns; }
+  /// The nodes of one of the two triangles of a cell: for half 0, (low left, low right, high right), and for
+  /// half 1, (low left, high right, high left).
+  std::array<std::uint32_t, 3> triangle(std::uint32_t row, std::uint32_t column, std::uint32_t half) const {
+    const std::uint32_t low_left = node(row, column), high_right = low_left + columns + 1;
+    if (half == 0) return {low_left, low_left + 1, high_right};
+    return {low_left, high_right, high_right - 1};
+  }
 };
 
 /// An element of a seam: a node, and the point of another panel's boundary to which it is sewn. That point is

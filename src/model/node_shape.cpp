@@ -16,17 +16,15 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 /// Two triangles per cell.
 void add_sheet(NodeSurface& surface, const GarmentPanel& sheet) {
-  const std::uint32_t rows = sheet.rows, columns = sheet.columns;
   const auto first = static_cast<std::uint32_t>(surface.node.size());
-  for (std::uint32_t i = 0; i < rows * columns; ++i) surface.node.push_back(sheet.first_node + i);
+  for (std::uint32_t i = 0; i < sheet.nodes(); ++i) surface.node.push_back(sheet.first_node + i);
   surface.part.resize(surface.node.size(), static_cast<std::uint32_t>(surface.parts.size()));
   surface.parts.push_back(sheet.name);
-  for (std::uint32_t row = 0; row + 1 < rows; ++row)
-    for (std::uint32_t column = 0; column + 1 < columns; ++column) {
-      const std::uint32_t a = first + row * columns + column, b = a + 1, c = a + columns, d = c + 1;
-      surface.triangles.push_back({a, b, d});
-      surface.triangles.push_back({a, d, c});
-    }
+  for (std::uint32_t row = 0; row + 1 < sheet.rows; ++row)
+    for (std::uint32_t column = 0; column + 1 < sheet.columns; ++column)
+      for (const std::uint32_t half : {0U, 1U})
+        for (std::uint32_t& corner : surface.triangles.emplace_back(sheet.triangle(row, column, half)))
+          corner = first + (corner - sheet.first_node);
 }
 
 /// The faces that belong to one tetrahedron only, facing outwards.

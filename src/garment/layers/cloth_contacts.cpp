@@ -60,7 +60,7 @@ std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t 
                                        float outward, const Coordinates& position) {
   const std::uint32_t cell = nearest / 2, row_length = panel.columns - 1;
   ClothContact contact{.node = node,
-                       .triangle = cell_triangle(panel, cell / row_length, cell % row_length, nearest % 2)};
+                       .triangle = panel.triangle(cell / row_length, cell % row_length, nearest % 2)};
   const NearestPoint point = nearest_on(contact.triangle, point_of(position, node), position);
   contact.weight = point.weight;
   const Vec3<float> first = point_of(position, contact.triangle[0]);
@@ -246,7 +246,7 @@ void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t no
         for (std::uint32_t c = cells.column_begin; c < cells.column_end; ++c) {
           if (too_far(of_triangles.cell_box(r, c))) continue;
           for (const std::uint32_t half : {0U, 1U}) {
-            const NearestPoint on_half = nearest_on(cell_triangle(other, r, c, half), point, position);
+            const NearestPoint on_half = nearest_on(other.triangle(r, c, half), point, position);
             if (on_half.distance_squared() < best.distance_squared)
               best = {on_half.distance_squared(), 2 * (r * (other.columns - 1) + c) + half};
           }

@@ -25,16 +25,6 @@ struct PanelPair {
 /// All pairs of panels of different layers, in ascending order; `inner` is of the lower layer.
 std::vector<PanelPair> layer_pairs(const Garment& garment);
 
-/// The nodes of one of the two triangles of a cell: for half 0, (low left, low right, high right), and for
-/// half 1, (low left, high right, high left).
-inline std::array<std::uint32_t, 3> cell_triangle(const GarmentPanel& panel, std::uint32_t row,
-                                                  std::uint32_t column, std::uint32_t half) {
-  const std::uint32_t low_left = panel.node(row, column);
-  const std::uint32_t high_right = low_left + panel.columns + 1;
-  if (half == 0) return {low_left, low_left + 1, high_right};
-  return {low_left, high_right, high_right - 1};
-}
-
 /// The coordinates of all nodes: x, y, z, each [nodes] m.
 using Coordinates = std::array<std::span<const float>, 3>;
 

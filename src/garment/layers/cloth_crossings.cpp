@@ -35,7 +35,7 @@ std::vector<Triangle> triangles_of(const GarmentPanel& panel) {
   std::vector<Triangle> triangles;
   for (std::uint32_t row = 0; row + 1 < panel.rows; ++row)
     for (std::uint32_t column = 0; column + 1 < panel.columns; ++column)
-      for (const std::uint32_t half : {0U, 1U}) triangles.push_back(cell_triangle(panel, row, column, half));
+      for (const std::uint32_t half : {0U, 1U}) triangles.push_back(panel.triangle(row, column, half));
   return triangles;
 }
 
