@@ -162,14 +162,14 @@ void append(std::vector<T>& all, const std::vector<T>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
-/// Calls `add` with each part. Throws PatternError with the index of a part that `add` refuses.
+/// Calls `add` with each panel or seam. Throws PatternError with the place of one that `add` refuses.
 template <class Parts, class Add>
-void add_each(const Parts& parts, PatternError::Part kind, const Add& add) {
-  for (std::size_t i = 0; i < parts.size(); ++i) {
+void add_each(const Parts& parts, const Add& add) {
+  for (const auto& part : parts) {
     try {
-      add(parts[i]);
+      add(part);
     } catch (const InputError& error) {
-      throw PatternError(error, kind, i);
+      throw PatternError(error, part.where);
     }
   }
 }
@@ -344,7 +344,7 @@ System build_garment(const GarmentPattern& pattern, const BodyDepth& body) {
   auto& garment = system.topology.emplace<Garment>();
   std::vector<PanelMesh> meshes;  // [panels]
   std::vector<double> strengths;  // [nodes] factors of the seams' force
-  add_each(pattern.panels, PatternError::Part::panel, [&](const PatternPanel& panel) {
+  add_each(pattern.panels, [&](const PatternPanel& panel) {
     const std::string& name = panel.piece.name;
     if (found_in(garment.panels, name, &GarmentPanel::name))
       throw InputError(name + ": two panels have this name; rename one of them");
@@ -359,7 +359,7 @@ System build_garment(const GarmentPattern& pattern, const BodyDepth& body) {
     append(system.node_mass, node_masses(mesh, panel.cloth));
     append_springs(garment.panels.back(), mesh, panel.cloth, system.springs, system.materials);
   });
-  add_each(pattern.seams, PatternError::Part::seam, [&](const Seam& seam) {
+  add_each(pattern.seams, [&](const Seam& seam) {
     std::vector<Joint> joints =
         join_seam(seam, garment.panels, meshes, static_cast<std::uint32_t>(garment.seams.size()));
     for (Joint& joint : joints) joint.strength = strengths[joint.node];

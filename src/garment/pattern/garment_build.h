@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "garment/garment.h"
@@ -194,6 +195,7 @@ struct Seam {
   SeamStretch first, second;
   /// Largest difference of their lengths, as a fraction of the longer one, which is eased in.
   double tolerance = 0.03;
+  std::string where{};  ///< its place in a scene file, a JSON pointer; empty if no user drew it
 };
 
 /// The joints of a seam (Vassilev, "Cloth simulation"). They join each node of the stretch with more nodes
@@ -214,6 +216,7 @@ struct PatternPanel {
   PanelMaterial cloth{};
   PanelPlacement placement{};
   std::uint32_t layer = 0;
+  std::string where{};  ///< as Seam::where
 };
 
 /// The pattern of a garment.
@@ -226,15 +229,12 @@ struct GarmentPattern {
 
 /// Thrown for an unusable panel or seam of a pattern. what() starts with its name.
 struct PatternError : InputError {
-  enum class Part { panel, seam };
-  PatternError(const InputError& error, Part part_, std::size_t index_)
+  PatternError(const InputError& error, std::string where_)
       : InputError(error),
-        part(part_),
-        index(index_),
+        where(std::move(where_)),
         folded(dynamic_cast<const FoldedPiece*>(&error) != nullptr) {}
 
-  Part part;
-  std::size_t index;  ///< into the pattern's panels or seams
+  std::string where;  ///< of the panel or seam
   bool folded;        ///< the error was a FoldedPiece
 };
 

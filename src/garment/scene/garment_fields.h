@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <variant>
 
 #include "garment/pattern/garment_build.h"
@@ -37,9 +36,6 @@ void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth);
 
 /// Names the fields of pieces.
 void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces);
-
-/// The JSON pointer to a garment's pieces in its scene file.
-std::string pieces_pointer(const GarmentSpec& garment);
 
 /// Throws SceneError, which names the place, for a panel without a name, for invalid boundary curves, and for
 /// more than most_garment_nodes nodes. build_garment refuses errors that appear only in cutting and sewing.

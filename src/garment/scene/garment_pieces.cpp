@@ -77,13 +77,19 @@ Curve curve_of(const BoundarySpec& boundary) {
   return boundary.is_bezier ? Curve::bezier(boundary.points) : Curve(boundary.points);
 }
 
-PatternPanel panel_of(const PieceSpec& piece, const PanelMaterial& cloth) {
+/// The JSON pointer to a garment's pieces in its scene file.
+std::string pieces_pointer(const GarmentSpec& garment) {
+  return garment.jeans ? "/garment/outfit" : "/garment/pieces";
+}
+
+PatternPanel panel_of(const PieceSpec& piece, const PanelMaterial& cloth, std::string where) {
   const auto& [bottom, top, left, right] = piece.boundaries;  // by PanelEdge
   return {{piece.name, curve_of(bottom), curve_of(top), curve_of(left), curve_of(right)},
           piece.grid,
           piece.cloth.value_or(cloth),
           piece.placement,
-          piece.layer};
+          piece.layer,
+          std::move(where)};
 }
 
 }  // namespace
@@ -133,10 +139,6 @@ void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces) {
       });
 }
 
-std::string pieces_pointer(const GarmentSpec& garment) {
-  return garment.jeans ? "/garment/outfit" : "/garment/pieces";
-}
-
 void check_pieces(const SceneSpec& spec) {
   const GarmentSpec& garment = garment_of(spec);
   if (!garment.pieces) return;
@@ -158,9 +160,12 @@ void check_pieces(const SceneSpec& spec) {
 
 void append_pieces(const GarmentSpec& garment, GarmentPattern& pattern) {
   if (!garment.pieces) return;
-  for (const PieceSpec& piece : garment.pieces->panels)
-    pattern.panels.push_back(panel_of(piece, garment.cloth));
-  for (const Seam& seam : garment.pieces->seams) pattern.seams.push_back(seam);
+  const auto& [panels, seams] = *garment.pieces;
+  const std::string pointer = pieces_pointer(garment);
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    pattern.panels.push_back(panel_of(panels[i], garment.cloth, fmt::format("{}/panels/{}", pointer, i)));
+  for (std::size_t i = 0; i < seams.size(); ++i)
+    pattern.seams.emplace_back(seams[i]).where = fmt::format("{}/seams/{}", pointer, i);
 }
 
 }  // namespace mssim

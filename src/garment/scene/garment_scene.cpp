@@ -128,33 +128,25 @@ GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, 
 }
 
 /// Throws SceneError, which names a panel or seam that cannot be made.
-System cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern, const AskedMeasures& body,
-                      const GarmentPattern& jeans) {
-  const GarmentSpec& garment = garment_of(spec);
+System cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern, const AskedMeasures& body) {
   try {
     return build_garment(pattern, body.depth);
   } catch (const PatternError& error) {
-    const bool is_panel = error.part == PatternError::Part::panel;
-    const std::size_t of_jeans = is_panel ? jeans.panels.size() : jeans.seams.size();
-    const bool is_of_jeans = error.index < of_jeans;
-    if (is_of_jeans && error.folded)
+    if (!error.where.empty()) refuse(spec.file, error.where, "does not fit", error);
+    const GarmentSpec& garment = garment_of(spec);
+    if (error.folded)
       refuse(spec.file, jeans_pointer(garment), uncut_jeans(garment.jeans->measures, body.profile));
-    refuse(spec.file,
-           is_of_jeans ? jeans_pointer(garment)
-                       : fmt::format("{}/{}/{}", pieces_pointer(garment), is_panel ? "panels" : "seams",
-                                     error.index - of_jeans),
-           "does not fit", error);
+    refuse(spec.file, jeans_pointer(garment), "does not fit", error);
   }
 }
 
 /// Throws SceneError for a seam between layers that collide: they would keep its ends apart.
-void require_seams_within_layers(const SceneSpec& spec, const Garment& cut, const GarmentPattern& jeans) {
-  const GarmentSpec& garment = garment_of(spec);
-  if (!garment.layers) return;
+void require_seams_within_layers(const SceneSpec& spec, const GarmentPattern& pattern, const Garment& cut) {
+  if (!garment_of(spec).layers) return;
   for (const Joint& joint : cut.joints) {
     const GarmentPanel &one = cut.panel_of(joint.node), &other = cut.panel_of(joint.edge_first);
     if (one.layer == other.layer) continue;
-    refuse(spec.file, fmt::format("{}/seams/{}", pieces_pointer(garment), joint.seam - jeans.seams.size()),
+    refuse(spec.file, pattern.seams[joint.seam].where,
            fmt::format("sews {} in layer {} to {} in layer {}, which collide: give both panels one layer, or "
                        "leave out \"layers\"",
                        printable(one.name), one.layer, printable(other.name), other.layer));
@@ -163,16 +155,15 @@ void require_seams_within_layers(const SceneSpec& spec, const Garment& cut, cons
 
 FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, double body_offset) {
   const GarmentSpec& garment = garment_of(spec);
-  GarmentPattern jeans;
+  GarmentPattern pattern;
   if (garment.jeans) {
     require_body_there(spec, body.profile);
-    jeans = refusing<InputError>(spec.file, jeans_pointer(garment), "does not fit",
-                                 [&] { return jeans_for(garment, body, body_offset); });
+    pattern = refusing<InputError>(spec.file, jeans_pointer(garment), "does not fit",
+                                   [&] { return jeans_for(garment, body, body_offset); });
   }
-  GarmentPattern pattern = jeans;
   append_pieces(garment, pattern);
-  System system = cut_and_placed(spec, pattern, body, jeans);
-  require_seams_within_layers(spec, std::get<Garment>(system.topology), jeans);
+  System system = cut_and_placed(spec, pattern, body);
+  require_seams_within_layers(spec, pattern, std::get<Garment>(system.topology));
   const double cell = widest_mean_cell(pattern, system);
   // Distance of the maps from the body: skin, and the sagitta of a face as wide as a cell.
   return {std::move(system), garment.skin_m + cell * cell / (8 * least_curvature_radius_m)};
