@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,13 @@ Box<Real> united(const Box<Real>& a, const Box<Real>& b) {
 template <class Real>
 void extend(Box<Real>& box, const Vec3<Real>& point) {
   box = united(box, {point, point});
+}
+
+/// The smallest box that contains the points; without points it is inside out.
+inline Box<double> box_of(std::span<const Vec3d> points) {
+  Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  for (const Vec3d& point : points) extend(box, point);
+  return box;
 }
 
 /// Is the distance of two boxes along each axis less than `reach` (m)?

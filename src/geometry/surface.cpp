@@ -398,9 +398,7 @@ std::vector<Opening> openings_of(const Surface& surface) {
 }
 
 std::size_t join_corners(Surface& surface) {
-  Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
-  for (const Vec3d& point : surface.points) extend(box, point);
-  const Vec3d size = box.size();
+  const Vec3d size = box_of(surface.points).size();
   const double extent = std::max({size.x, size.y, size.z});
   std::size_t merged = 0;
   // On a thin sheet, matching corners are found before the distance reaches the other side.

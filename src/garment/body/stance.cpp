@@ -20,13 +20,6 @@ double misfit(double height) { return std::max({1.0, shortest_person / height, h
 
 constexpr std::array<Vec3d, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// The bounding box of a surface.
-Box<double> box_of(const Surface& surface) {
-  Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
-  for (const Vec3d& point : surface.points) extend(box, point);
-  return box;
-}
-
 /// The body in one possible stance.
 struct Candidate {
   BodyStance stance;
@@ -57,7 +50,7 @@ std::vector<UpAxis> possible_axes(const Surface& body, const GivenStance& given)
   if (given.facing && !is_level(*given.facing, UpAxis::z)) return {UpAxis::y};
   // The span of arms held sideways is about a person's height.
   constexpr double least_share = 0.75;
-  const Vec3d size = box_of(body).size();
+  const Vec3d size = box_of(body.points).size();
   const double least = least_share * std::max({size.x, size.y, size.z});
   std::vector<UpAxis> possible;
   for (const UpAxis up : {UpAxis::y, UpAxis::z})
@@ -88,7 +81,7 @@ std::vector<Candidate> candidates(const Surface& body, const GivenStance& given)
 /// How much farther the feet reach forwards than backwards from the shins, over their length; positive if the
 /// body faces +z.
 double toes_ahead(const Surface& body) {
-  const Box<double> box = box_of(body);
+  const Box<double> box = box_of(body.points);
   const double height = box.size().y;
   constexpr double foot = 0.05, shin_low = 0.08, shin_high = 0.2;  // of the height, above the floor
   double foot_low = HUGE_VAL, foot_high = -HUGE_VAL, shin_back = HUGE_VAL, shin_front = -HUGE_VAL;
@@ -224,7 +217,7 @@ StanceGuess guess_stance(const Surface& body, const GivenStance& given) {
     doubts.emplace_back(
         "up and facing: it has no two legs side by side to find them by; give them with --up and --facing");
   find_facing(*best, body, given, doubts);
-  const Box<double> box = box_of(best->body);
+  const Box<double> box = box_of(best->body.points);
   BodyStance stance = best->stance;
   stance.unit_m = unit_of(box.size().y, given, doubts);
   const double middle = best->gaps.empty() ? box.middle().x : between_legs(best->gaps);
