@@ -19,6 +19,26 @@ inline FitBody nobody(std::optional<Vec3d> axis = {}) {
           }};
 }
 
+/// What dresses a system by the plain list of springs in single precision.
+inline std::unique_ptr<DressingBackend> serial_dressing(const System& system, double dt_s = dressing_dt_s) {
+  return make_serial_dressing(system, semi_euler, dt_s);
+}
+/// By threads and the best vectors.
+inline std::unique_ptr<DressingBackend> openmp_dressing(const System& system, int threads = 2,
+                                                        double dt_s = dressing_dt_s) {
+  return make_openmp_dressing(system, semi_euler, dt_s, {.threads = threads});
+}
+/// In double precision.
+inline std::unique_ptr<DressingBackend> reference_dressing(const System& system,
+                                                           double dt_s = dressing_dt_s) {
+  return make_reference_dressing(system, semi_euler, dt_s);
+}
+/// The two in single precision.
+inline std::array<std::unique_ptr<DressingBackend>, 2> serial_and_openmp(const System& system,
+                                                                         double dt_s = dressing_dt_s) {
+  return {serial_dressing(system, dt_s), openmp_dressing(system, 2, dt_s)};
+}
+
 /// Two squares of 10 x 10 nodes in one plane, 30 mm apart, sewn along the edges that face each other.
 inline System two_squares() {
   System system = garment_of({{10, 10, 0.01, {0, 0, 0}}, {10, 10, 0.01, {0.12, 0.004, 0.005}}});

@@ -177,11 +177,11 @@ struct Jeans {
   GarmentReference reference;
 
   Jeans() {
-    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, {.threads = 2});
+    const auto backend = openmp_dressing(system, 2, dt_s);
     const DressingResult result = dress(*backend, system, dt_s, {}, always);
     EXPECT_TRUE(result.settled);
     draped = result.state;
-    const auto exact = make_reference_dressing(system, semi_euler, dt_s);
+    const auto exact = reference_dressing(system, dt_s);
     reference = run_garment_reference(*exact, system, semi_euler, dt_s, draped);
   }
 };
@@ -192,8 +192,8 @@ const Jeans& jeans() {
 }
 
 Verification verify_stepping(const System& stepped) {
-  return verify_garment(*make_serial_dressing(stepped, semi_euler, jeans().dt_s), jeans().system,
-                        jeans().reference, jeans().dt_s);
+  return verify_garment(*serial_dressing(stepped, jeans().dt_s), jeans().system, jeans().reference,
+                        jeans().dt_s);
 }
 
 TEST(GarmentVerification, ComparesAPublishedAlgorithmWithItself) {
@@ -220,8 +220,7 @@ TEST(GarmentVerification, PassesTheBackendsThatDress) {
   ASSERT_FALSE(scene.reference.failure);
   ASSERT_EQ(scene.reference.seaming.size(), 20U);
   ASSERT_EQ(scene.reference.draped.size(), 20U);
-  for (const auto& backend : {make_serial_dressing(scene.system, semi_euler, scene.dt_s),
-                              make_openmp_dressing(scene.system, semi_euler, scene.dt_s, {.threads = 2})}) {
+  for (const auto& backend : serial_and_openmp(scene.system, scene.dt_s)) {
     const Verification found = verify_garment(*backend, scene.system, scene.reference, scene.dt_s);
     EXPECT_FALSE(found.failure) << *found.failure;
     EXPECT_GT(found.position_error, 0) << "single precision cannot be exact";
@@ -244,7 +243,7 @@ TEST(GarmentVerification, AllowsWhatFiveStepsRoundAndOneNodeWhatContactMoves) {
 class GivesOtherStates final : public PassesOn {
  public:
   explicit GivesOtherStates(std::function<void(std::vector<Vec3d>&)> move)
-      : PassesOn(make_serial_dressing(jeans().system, semi_euler, jeans().dt_s)), move_(std::move(move)) {}
+      : PassesOn(serial_dressing(jeans().system, jeans().dt_s)), move_(std::move(move)) {}
   State state() const override {
     State state = PassesOn::state();
     if (state.draped) move_(state.position);
@@ -341,10 +340,10 @@ TEST(GarmentVerification, FindsOneNodeThatIsFartherOffThanContactMovesIt) {
 
 TEST(GarmentVerification, SaysWhereASimulationBlowsUp) {
   const Jeans& scene = jeans();
-  const auto backend = make_serial_dressing(scene.system, semi_euler, 40 * scene.dt_s);
+  const auto backend = serial_dressing(scene.system, 40 * scene.dt_s);
   const Verification found = verify_garment(*backend, scene.system, scene.reference, 40 * scene.dt_s);
   ASSERT_TRUE(found.failure);
-  const auto exact = make_reference_dressing(scene.system, semi_euler, 1e6 * scene.dt_s);
+  const auto exact = reference_dressing(scene.system, 1e6 * scene.dt_s);
   const GarmentReference blown_up =
       run_garment_reference(*exact, scene.system, semi_euler, 1e6 * scene.dt_s, scene.draped);
   ASSERT_TRUE(blown_up.failure);

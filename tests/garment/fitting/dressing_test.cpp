@@ -126,9 +126,9 @@ System hung_squares() {
 
 std::vector<std::unique_ptr<DressingBackend>> backends(const System& system, int threads) {
   std::vector<std::unique_ptr<DressingBackend>> made;
-  made.push_back(make_serial_dressing(system, semi_euler, dressing_dt_s));
-  made.push_back(make_reference_dressing(system, semi_euler, dressing_dt_s));
-  made.push_back(make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = threads}));
+  made.push_back(serial_dressing(system));
+  made.push_back(reference_dressing(system));
+  made.push_back(openmp_dressing(system, threads));
   return made;
 }
 
@@ -137,8 +137,7 @@ void expect_same(const State& one, const State& other) { EXPECT_TRUE(same_state(
 TEST(DressingFrames, StepsGiveTheSameBitsHoweverTheyAreCut) {
   const System system = hung_squares();
   for (const auto& backend : backends(system, 2)) {
-    backend->step(500);
-    const State whole = backend->state();
+    const State whole = state_after(*backend, 500);
     EXPECT_TRUE(backend->progress().draping) << "both halves of Algorithm 1 are to be cut";
     const std::int64_t seamed_at = backend->progress().seamed_at;
     EXPECT_GT(seamed_at, 100);
@@ -176,8 +175,8 @@ TEST(DressingFrames, ChangeNothing) {
 
 TEST(DressingFrames, AreTheStartThoseOfTheGridAndTheEnd) {
   const System system = hung_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
-  const auto reference = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto backend = serial_dressing(system);
+  const auto reference = serial_dressing(system);
   // 0.003 s are windows of 20 steps; it does not settle in three of them.
   const SettlingRule rule{.window_s = 0.003, .longest_s = 0.009};
   const auto steps_at = [&](double steps_per_frame) {
@@ -205,7 +204,7 @@ TEST(DressingFrames, AreTheStartThoseOfTheGridAndTheEnd) {
 
 TEST(Dressing, EndsWhenTheLongestTimeIsOverAndNoWindowThatIsCutShortCountsAsRest) {
   const System system = hung_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto backend = serial_dressing(system);
   // A metre is more than any node moves: whatever counts as a window is one of rest.
   const auto dressed_for = [&](double longest_s) {
     return dress(*backend, system, dressing_dt_s, {.window_s = 0.003, .distance = 1, .longest_s = longest_s},
@@ -260,7 +259,7 @@ TEST(Dressing, TakesMoreStepsInAWindowThanAnIntHolds) {
 
 TEST(DressingFrames, EndWhereTheDressingIsEnded) {
   const System system = hung_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto backend = serial_dressing(system);
   std::vector<std::int64_t> steps;
   const DressingResult result =
       dress(*backend, system, dressing_dt_s, {.window_s = 0.003},

@@ -35,7 +35,7 @@ TEST(Dresses, SaysWhichBackendsTakeAGarment) {
 
 TEST(Dressing, ClosesTheSeamOfTwoSquaresInFreeSpace) {
   const System system = two_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto backend = serial_dressing(system);
   EXPECT_EQ(backend->progress().open_joints, 10U);
   const DressingResult result = dress(*backend, system, dressing_dt_s, {}, always);
   ASSERT_TRUE(result.seamed_at);
@@ -56,9 +56,7 @@ TEST(Dressing, ClosesTheSeamOfTwoSquaresInFreeSpace) {
 TEST(Dressing, PullsAJointWithItsShareOfTheSeamsForceAndNotWithGravity) {
   System system = two_squares();
   system.gravity = 9.81;
-  const auto backend = make_reference_dressing(system, semi_euler, dressing_dt_s);
-  backend->step(1);
-  const State state = backend->state();
+  const State state = state_after(*reference_dressing(system), 1);
   const Garment& garment = garment_in(system);
   // At rest, nothing but the joints pulls: v = dt F / m, F = 4 N/m * 0.01 m of seam.
   const double mass = 0.4 * 1e-4;
@@ -70,11 +68,6 @@ TEST(Dressing, PullsAJointWithItsShareOfTheSeamsForceAndNotWithGravity) {
     EXPECT_LT(length(state.velocity[joint.edge_first] + expected), 1e-3 * length(expected));
   }
   EXPECT_LT(length(state.velocity[garment.panels[0].node(3, 3)]), 1e-4);
-}
-
-std::array<std::unique_ptr<DressingBackend>, 2> serial_and_openmp(const System& system) {
-  return {make_serial_dressing(system, semi_euler, dressing_dt_s),
-          make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2})};
 }
 
 TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
@@ -90,8 +83,7 @@ TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
       // Semi-implicit Euler falls dt^2 g n (n + 1) / 2.
       EXPECT_NEAR(backend->state().position[0].y,
                   -fraction * 9.81 * dressing_dt_s * dressing_dt_s * 100 * 101 / 2, 1e-6);
-      backend->step(1000);
-      const State state = backend->state();
+      const State state = state_after(*backend, 1000);
       const auto lowest = std::ranges::min(state.position, {}, &Vec3d::y).y;
       // Free, a half of gravity would take them 67 mm down by now.
       EXPECT_GE(lowest, fraction > 0 ? -0.02 : -1e-5);
@@ -140,7 +132,7 @@ TEST(Dressing, SewsAJointToAPointOfAnEdge) {
     garment.joints.push_back(
         {column, garment.panels[1].node(0, 0), garment.panels[1].node(0, 1), column * 0.5, 0.02 / 3, 1, 0});
   system.viscous_damping = 16;
-  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto backend = serial_dressing(system);
   const DressingResult result = dress(*backend, system, dressing_dt_s, {}, always);
   EXPECT_LT(fit_of(system, result.state.position, nobody()).largest_gap, 1e-4);
 }
@@ -162,7 +154,7 @@ System heavy_hem(VelocityCorrection correction) {
 double largest_elongation(VelocityCorrection correction) {
   const System system = heavy_hem(correction);
   const double step_s = 2e-4;
-  const auto backend = make_serial_dressing(system, semi_euler, step_s);
+  const auto backend = serial_dressing(system, step_s);
   const DressingResult result = dress(*backend, system, step_s, {}, always);
   EXPECT_TRUE(result.settled);
   return fit_of(system, result.state.position, nobody()).elongation_max;
@@ -196,14 +188,14 @@ TEST(Dressing, CorrectsAlongRowsColumnsAndDiagonals) {
 TEST(Dressing, IsTheReferenceButForRounding) {
   System system = two_squares();
   system.gravity = 9.81;
-  const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
+  const auto reference = reference_dressing(system);
   reference->step(400);
   const auto expect_near = [&](std::unique_ptr<DressingBackend> backend, std::string_view name) {
     backend->step(400);
     EXPECT_EQ(backend->progress().draping, reference->progress().draping) << name;
     EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-5) << name;
   };
-  expect_near(make_serial_dressing(system, semi_euler, dressing_dt_s), "serial");
+  expect_near(serial_dressing(system), "serial");
   for (const std::string_view instruction_set : openmp_instruction_sets())
     expect_near(make_openmp_dressing(system, semi_euler, dressing_dt_s,
                                      {.threads = 1, .instruction_set = std::string(instruction_set)}),
@@ -213,7 +205,7 @@ TEST(Dressing, IsTheReferenceButForRounding) {
 /// Steps a garment into its draping by one thread and by several, and returns where one thread has got.
 State state_of_any_number_of_threads(const System& system, double dt_s, int steps) {
   const auto run = [&](int threads) {
-    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, {.threads = threads});
+    const auto backend = openmp_dressing(system, threads, dt_s);
     backend->step(steps);
     EXPECT_TRUE(backend->progress().draping);
     return backend->state();
@@ -231,8 +223,8 @@ TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
 
 TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
   const System system = stretched_sheets();
-  const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 1});
-  const auto limited = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 3});
+  const auto one = openmp_dressing(system, 1);
+  const auto limited = openmp_dressing(system, 3);
   one->step(500);
   limited->step(250);
   const int levels = omp_get_max_active_levels();
@@ -249,7 +241,7 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
        {VelocityCorrection::none, VelocityCorrection::published, VelocityCorrection::bounded}) {
     System system = stretched_sheets();
     garment_in(system).dressing.correction = correction;
-    const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
+    const auto reference = reference_dressing(system);
     reference->step(1200);
     State stretched = reference->state();
     stretched.draped = false;
@@ -261,7 +253,7 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
     };
     const std::vector<Vec3d> exact = soon_after(*reference);
     EXPECT_GT(largest_distance(exact, stretched.position), 1e-3);
-    const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
+    const auto single = serial_dressing(system);
     const std::vector<Vec3d> expected = soon_after(*single);
     // A spring that rounding puts on the other side of the threshold is corrected a step earlier or later.
     EXPECT_LT(largest_distance(expected, exact), 2e-5) << static_cast<int>(correction);
@@ -296,7 +288,7 @@ System sheet_above_sphere(double offset) {
 }
 
 DressingResult dropped(const System& system) {
-  const auto backend = make_serial_dressing(system, semi_euler, sheet_dt_s);
+  const auto backend = serial_dressing(system, sheet_dt_s);
   return dress(*backend, system, sheet_dt_s, {}, always);
 }
 
@@ -329,7 +321,7 @@ struct EnergyBalance {
 
 /// Of steps after the seams have closed.
 EnergyBalance draped(const System& system, double dt_s, int steps) {
-  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  const auto backend = serial_dressing(system, dt_s);
   backend->set_state(system.start);
   while (!backend->progress().draping) backend->step(1);
   EnergyBalance balance;

@@ -6,6 +6,7 @@
 #include "garment/stepping/dressing_rules.h"
 #include "mesh/meshing.h"
 #include "tests/support/backend_checks.h"
+#include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/testing.h"
 
@@ -30,8 +31,7 @@ TEST(LayeredDressing, PanelsMeetTheBodyAsTheirLayerDoes) {
         std::make_shared<BodyMaps>(sphere, BodyMapSettings{.pixel = 0.001, .offset = offset}));
 
   const std::vector<double> wanted{0.002, 0.005, 0.005};  // the third layer has no maps of its own
-  for (const auto& backend : {make_serial_dressing(system, semi_euler, dressing_dt_s),
-                              make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2})}) {
+  for (const auto& backend : serial_and_openmp(system)) {
     backend->step(100);  // at 1 m/s far enough for 15 mm
     const std::vector<Vec3d> position = backend->state().position;
     for (const GarmentPanel& panel : garment.panels)
@@ -60,8 +60,7 @@ TEST(LayeredDressing, LeavesTheLastWordToTheBody) {
   garment.touching = ClothClothSettings{.thickness = 0.003};
   garment.body_maps = {std::make_shared<BodyMaps>(surface_of(SphereShape{radius, 48}),
                                                   BodyMapSettings{.pixel = 0.001, .offset = 0.002})};
-  for (const auto& backend : {make_serial_dressing(system, semi_euler, dressing_dt_s),
-                              make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2})}) {
+  for (const auto& backend : serial_and_openmp(system)) {
     double deepest = HUGE_VAL, nearest = HUGE_VAL;
     for (int step = 0; step < 60; ++step) {
       backend->step(1);
@@ -101,31 +100,26 @@ std::size_t crossings_after(const System& system, DressingBackend& backend, int 
 
 TEST(LayeredDressing, KeepsLayersApartThatWouldCross) {
   System system = flying_sheet(12);
-  for (const auto& backend : {make_serial_dressing(system, semi_euler, dressing_dt_s),
-                              make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2}),
-                              make_reference_dressing(system, semi_euler, dressing_dt_s)}) {
+  for (const auto& backend : {serial_dressing(system), openmp_dressing(system), reference_dressing(system)}) {
     EXPECT_EQ(crossings_after(system, *backend, 14), 0U);
     EXPECT_EQ(crossings_after(system, *backend, 386), 0U);  // 60 ms in all; they meet after 1 ms
   }
   // The inner one has taken some of the other's momentum.
-  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
-  backend->step(100);
-  EXPECT_LT(backend->state().position[12 * 6 + 6].z, -0.005);
+  const auto backend = serial_dressing(system);
+  EXPECT_LT(state_after(*backend, 100).position[12 * 6 + 6].z, -0.005);
   EXPECT_EQ(backend->state().position[3], system.start.position[3]) << "pins stay";
 
   garment_in(system).touching.reset();
   // 2.1 ms, when the fast part is through and the slow one is not
-  EXPECT_GT(crossings_after(system, *make_serial_dressing(system, semi_euler, dressing_dt_s), 14), 0U);
-  EXPECT_GT(
-      crossings_after(system, *make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2}), 14),
-      0U);
+  EXPECT_GT(crossings_after(system, *serial_dressing(system), 14), 0U);
+  EXPECT_GT(crossings_after(system, *openmp_dressing(system), 14), 0U);
 }
 
 TEST(LayeredDressing, AgreesAmongBackendsWhileLayersTouch) {
   const System system = flying_sheet(12);
-  const auto serial = make_serial_dressing(system, semi_euler, dressing_dt_s);
-  const auto openmp = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 2});
-  const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
+  const auto serial = serial_dressing(system);
+  const auto openmp = openmp_dressing(system);
+  const auto reference = reference_dressing(system);
   for (DressingBackend* backend : {serial.get(), openmp.get(), reference.get()}) backend->step(40);
   const std::vector<Vec3d> wanted = reference->state().position;
   // Roundings of 40 steps; two layers that touch or do not differ by 2 mm and more.
@@ -138,14 +132,11 @@ TEST(LayeredDressing, IsTheSameToTheLastBitForAnyNumberOfThreads) {
   for (const std::uint32_t side : {20U, 91U}) {
     const System system = flying_sheet(side);
     ASSERT_EQ(system.nodes() < least_shared_nodes, side == 20);
-    const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = 1});
-    one->step(30);
-    const State wanted = one->state();
+    const State wanted = state_after(*openmp_dressing(system, 1), 30);
     for (const int threads : {2, 3}) {
-      const auto many = make_openmp_dressing(system, semi_euler, dressing_dt_s, {.threads = threads});
+      const auto many = openmp_dressing(system, threads);
       many->step(12);  // no matter how steps are cut
-      many->step(18);
-      EXPECT_TRUE(same_state(many->state(), wanted)) << side << ", " << threads;
+      EXPECT_TRUE(same_state(state_after(*many, 18), wanted)) << side << ", " << threads;
     }
   }
 }

@@ -59,7 +59,7 @@ System soon_closed_sack() {
 TEST_P(OpenclDressingOf, SeamsAndDrapesAroundABallLikeTheReference) {
   const System system = soon_closed_sack();
   const auto device = make(system, GetParam());
-  const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
+  const auto reference = reference_dressing(system);
   const auto step = [&](int count) {
     device->step(count);
     reference->step(count);
@@ -80,9 +80,8 @@ TEST_P(OpenclDressingOf, SeamsAndDrapesAroundABallLikeTheReference) {
     garment_in(other).body_maps.clear();
     return other;
   }();
-  const auto without = make_reference_dressing(untouched, semi_euler, dressing_dt_s);
-  without->step(seaming_steps + 101);
-  EXPECT_GT(largest_distance(without->state().position, reference->state().position), 1e-3)
+  const State without = state_after(*reference_dressing(untouched), seaming_steps + 101);
+  EXPECT_GT(largest_distance(without.position, reference->state().position), 1e-3)
       << "the ball is not touched";
 }
 
@@ -126,7 +125,7 @@ TEST(OpenclDressing, CorrectsInEverySweepAsSerialDoes) {
     const auto soon_after = [&](Backend& backend) {
       return after(backend, stretched, {1}).velocity;  // in one step both judge the same lengths by the limit
     };
-    const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
+    const auto single = serial_dressing(system);
     const std::vector<Vec3d> expected = soon_after(*single);
     // m/s. Another order of corrections within a block makes more than 0.5, rounding some 1e-6.
     for (const DressingShape& shape : {DressingShape{1, 7}, shapes().back()}) {
@@ -151,7 +150,7 @@ TEST(OpenclDressing, HoldsUpperEdgesAsSerialDoes) {
   garment_in(system).dressing.seaming_gravity = 1;
   garment_in(system).dressing.edge_held = true;
   const auto device = make(system, shapes().back());
-  const auto serial = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto serial = serial_dressing(system);
   for (const int steps : {seaming_steps, 20}) {
     device->step(steps);
     serial->step(steps);
