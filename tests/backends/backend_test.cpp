@@ -77,9 +77,7 @@ TEST_P(EachOtherBackendAndIntegrator, StaysAsNearToTheReferenceAsTheSpringList) 
 TEST_P(EachBackendAndIntegrator, HoldsPinsExactlyWhereverTheyAre) {
   const System system = cloth_system(20, 23, 1, ClothPins{13, 5});
   ASSERT_GE(system.pins.size(), 5U);
-  const auto simulation = make(system);
-  simulation->step(50);
-  EXPECT_TRUE(pins_hold(system, simulation->state()));
+  EXPECT_TRUE(pins_hold(system, state_after(*make(system), 50)));
 }
 
 TEST_P(EachBackendAndIntegrator, TreatsTheFloorLikeTheReference) {
@@ -116,9 +114,7 @@ TEST_P(EachBackendAndIntegratorOnBodies, HoldsPinsExactlyEvenBelowTheFloor) {
   block.floor.height = 0.504;
   ASSERT_LT(block.start.position[0].y, block.floor.height);
   for (const System& system : {block, alike_bodies(block, 12)}) {  // in slices, and side by side in lanes
-    const auto simulation = make(system);
-    simulation->step(50);
-    const State state = simulation->state();
+    const State state = state_after(*make(system), 50);
     EXPECT_TRUE(pins_hold(system, state));
     EXPECT_NE(state.position[1], system.start.position[1]) << "the others move";
   }
@@ -160,16 +156,14 @@ System low_cloth(std::uint32_t rows, std::uint32_t columns) { return cloth_syste
 /// Expects the same bits after a bounce with any number of threads.
 void expect_same_bits(const System& system, const Integrator& integrator) {
   const double dt_s = backend_dt_of(integrator);
-  const auto alone = make_openmp(system, integrator, dt_s, {1, ""});
-  alone->step(steps_with_a_bounce(integrator));
-  const State expected = alone->state();
+  const auto bounced = [&](int threads) {
+    return state_after(*make_openmp(system, integrator, dt_s, {threads, ""}),
+                       steps_with_a_bounce(integrator));
+  };
+  const State expected = bounced(1);
   EXPECT_TRUE(has_met_floor(system, expected));
-  for (const int threads : {2, 3, 4, 7}) {
-    const auto simulation = make_openmp(system, integrator, dt_s, {threads, ""});
-    simulation->step(steps_with_a_bounce(integrator));
-    const State state = simulation->state();
-    EXPECT_TRUE(same_state(state, expected)) << threads << " threads";
-  }
+  for (const int threads : {2, 3, 4, 7})
+    EXPECT_TRUE(same_state(bounced(threads), expected)) << threads << " threads";
 }
 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
@@ -237,8 +231,7 @@ void expect_same_bits_in_any_cut(const StepKernel<Bands>& kernel, const Integrat
           for (const bool alone : {false, true}) {
             SCOPED_TRACE(testing::Message() << steps << " steps a pass, " << threads << " threads, " << halves
                                             << " halves" << (alone ? ", walked by one thread" : ""));
-            const State state = state_after(threads, steps, halves, alone);
-            EXPECT_TRUE(same_state(state, expected));
+            EXPECT_TRUE(same_state(state_after(threads, steps, halves, alone), expected));
           }
   }
 }
@@ -279,9 +272,7 @@ TEST_P(EachIntegratorOnOpenMp, IsAtTheReferenceInDoublePrecisionForAnyThreadsAnd
     systems.push_back(low_cloth(rows, columns));
   const double dt_s = backend_dt_of(integrator());
   for (const System& system : systems) {
-    const auto reference = make_reference(system, integrator(), dt_s);
-    reference->step(60);
-    const State expected = reference->state();
+    const State expected = state_after(*make_reference(system, integrator(), dt_s), 60);
     std::map<bool, State> by_rounding;  // whether multiply-adds are rounded once
     for (const StepKernel<BandGridOf<double>>& kernel : step_kernels<BandGridOf<double>>(integrator()))
       for (const int threads : {1, 3}) {
@@ -289,8 +280,7 @@ TEST_P(EachIntegratorOnOpenMp, IsAtTheReferenceInDoublePrecisionForAnyThreadsAnd
                                         << threads << " threads");
         const auto backend = make_openmp_in_double(
             system, integrator(), dt_s, {.threads = threads, .instruction_set = kernel.instruction_set});
-        backend->step(60);
-        const State state = backend->state();
+        const State state = state_after(*backend, 60);
         EXPECT_LT(largest_distance(state.position, expected.position), 1e-13);
         EXPECT_LT(largest_distance(state.velocity, expected.velocity), 1e-9);
         EXPECT_TRUE(same_state(state, by_rounding.try_emplace(kernel.fuses, state).first->second));
@@ -313,10 +303,8 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
       }
     });
   for (const int steps : {1, 200, 99}) {
-    alone->step(steps);
-    crowd->step(steps);
-    const State expected = alone->state(), state = crowd->state();
-    EXPECT_TRUE(same_state(state, expected));
+    const State expected = state_after(*alone, steps);
+    EXPECT_TRUE(same_state(state_after(*crowd, steps), expected));
   }
 }
 

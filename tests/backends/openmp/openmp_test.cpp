@@ -59,8 +59,7 @@ TEST_P(BodiesAbreast, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstructi
         kernel.step(bodies, 0);
         kernel.step(bodies, 31);  // an odd number: the pairs have changed places
         kernel.step(bodies, 29);
-        const State state = bodies.state();
-        EXPECT_TRUE(same_state(state, expected)) << kernel.instruction_set << ", " << threads;
+        EXPECT_TRUE(same_state(bodies.state(), expected)) << kernel.instruction_set << ", " << threads;
       }
     }
     EXPECT_EQ(found, 1U);
@@ -106,14 +105,11 @@ TEST(BodyLanes, AreCutIntoFairShares) {
 // Vectors also hold places that no node of a cloth has, and springs that do not exist reach them.
 void expect_openmp_near_serial(const System& system) {
   const Integrator& euler = *find_integrator("semi-euler");
-  const auto serial = make_serial(system, euler, backend_dt_s, {1, ""});
-  serial->step(50);
-  const State expected = serial->state();
+  const State expected = state_after(*make_serial(system, euler, backend_dt_s, {1, ""}), 50);
   for (const std::string_view set : openmp_instruction_sets()) {
     const auto openmp =
         make_openmp(system, euler, backend_dt_s, {.threads = 2, .instruction_set = std::string(set)});
-    openmp->step(50);
-    const State state = openmp->state();
+    const State state = state_after(*openmp, 50);
     for (std::size_t i = 0; i < state.position.size(); ++i)
       ASSERT_LT(length(state.position[i] - expected.position[i]), 1e-6) << set << ", node " << i;
   }

@@ -109,11 +109,9 @@ TEST(ProcessBackend, GoesOnAfterARest) {
   backend->step(4);
   backend->rest();
   backend->rest();
-  backend->step(6);
-  const State paused = backend->state();
+  const State paused = state_after(*backend, 6);
   backend->set_state(system.start);
-  backend->step(10);
-  EXPECT_EQ(largest_distance(paused.position, backend->state().position), 0);
+  EXPECT_EQ(largest_distance(paused.position, state_after(*backend, 10).position), 0);
 }
 
 TEST(ProcessBackend, CountsTheProcessorTimeOfTheProgram) {
