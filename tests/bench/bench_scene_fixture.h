@@ -27,6 +27,16 @@ std::unique_ptr<Backend> make_other(const System& system, const Integrator& inte
   return std::make_unique<Other>(find_backend("serial")->make(system, integrator, dt_s, options));
 }
 
+/// A row of a table of backends that makes it.
+template <class Other>
+constexpr BackendInfo row_of(std::string_view name, BackendRole role = BackendRole::as_published) {
+  BackendInfo row{};
+  row.name = name;
+  row.make = make_other<Other>;
+  row.role = role;
+  return row;
+}
+
 /// A right one behind which a program stands that fails at one of its calls, counted from 1. It takes note of
 /// whether it rests.
 class FailsAt final : public OtherSerial {
@@ -62,8 +72,7 @@ class FailsAt final : public OtherSerial {
     if (++calls == fails_at) throw BackendFailure("it stumbled", "oh dear");
   }
 };
-constexpr BackendInfo stumbling{
-    .name = "stumbling", .description = "fails when it is told to", .make = make_other<FailsAt>};
+constexpr BackendInfo stumbling = row_of<FailsAt>("stumbling");
 
 /// Takes its steps when it is asked for the state.
 class Postponing final : public OtherSerial {
@@ -89,8 +98,7 @@ class Postponing final : public OtherSerial {
  private:
   mutable int owed_ = 0;
 };
-constexpr BackendInfo postponing{
-    .name = "postponing", .description = "is late", .make = make_other<Postponing>};
+constexpr BackendInfo postponing = row_of<Postponing>("postponing");
 
 /// A small cloth, which is measured in short samples.
 class BenchScene : public testing::Test {
@@ -104,6 +112,11 @@ class BenchScene : public testing::Test {
     job_.execution.threads = 1;
     job_.rounds = 3;
     job_.sample_seconds = 1e-4;
+  }
+  /// Has only these measured, with semi-euler.
+  void take_only(std::vector<const BackendInfo*> backends) {
+    job_.backends = std::move(backends);
+    job_.integrators = {find_integrator("semi-euler")};
   }
   std::vector<ResultRow> run() {
     return bench_scene(job_,

@@ -29,8 +29,7 @@ class RightForAWhile final : public OtherSerial {
  private:
   int sets_ = 0;
 };
-constexpr BackendInfo flaky{
-    .name = "flaky", .description = "fails in the end", .make = make_other<RightForAWhile>};
+constexpr BackendInfo flaky = row_of<RightForAWhile>("flaky");
 
 /// What a row looks like that a verification has found wrong.
 void fail_row(ResultRow& row, const std::string& status) {
@@ -46,8 +45,7 @@ class OnTwoProcessors final : public OtherSerial {
 
   inline static int processors = 2;
 };
-constexpr BackendInfo undividable{
-    .name = "undividable", .description = "takes two", .make = make_other<OnTwoProcessors>};
+constexpr BackendInfo undividable = row_of<OnTwoProcessors>("undividable");
 
 /// A right one of several processes: it tells how many steps it has taken since it was asked last.
 class CountsSteps final : public OtherSerial {
@@ -66,7 +64,7 @@ class CountsSteps final : public OtherSerial {
  private:
   int steps_ = 0;
 };
-constexpr BackendInfo counting{.name = "counting", .description = "counts", .make = make_other<CountsSteps>};
+constexpr BackendInfo counting = row_of<CountsSteps>("counting");
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -82,8 +80,7 @@ class WatchedSerial final : public OtherSerial {
   inline static int first_steps = 0;
   inline static std::function<void()> on_first_step;
 };
-constexpr BackendInfo watched{
-    .name = "serial", .make = make_other<WatchedSerial>, .role = BackendRole::baseline};
+constexpr BackendInfo watched = row_of<WatchedSerial>("serial", BackendRole::baseline);
 
 TEST_F(BenchScene, GivesARowForEveryCombinationAndKeepsEveryRound) {
   const std::vector<ResultRow> rows = run();
@@ -135,8 +132,7 @@ TEST_F(BenchScene, SaysOfARowThatItTookMoreProcessorsThanWereAskedFor) {
 }
 
 TEST_F(BenchScene, ComparesNoRowWithPeaksOfMoreThreadsThanMakeSense) {
-  job_.backends = {&undividable};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({&undividable});
   const int processors = std::exchange(OnTwoProcessors::processors, 4096);
   const ResultRow row = run()[0];
   OnTwoProcessors::processors = processors;
@@ -147,8 +143,7 @@ TEST_F(BenchScene, ComparesNoRowWithPeaksOfMoreThreadsThanMakeSense) {
 }
 
 TEST_F(BenchScene, CountsTheCostsOfTheStepsThatItTimes) {
-  job_.backends = {&counting};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({&counting});
   const ResultRow row = run()[0];
   EXPECT_EQ(row.messages_per_step, row.sample_steps.front());
 }
@@ -288,8 +283,7 @@ TEST_F(BenchScene, DoesNotTakeOverWhatWasVerifiedOfAnotherSystemOrPlace) {
 }
 
 TEST_F(BenchScene, SaysWhatFailedInTheMidstOfTheRounds) {
-  job_.backends = {find_backend("serial"), &flaky};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial"), &flaky});
   job_.rounds = 40;
   const std::vector<ResultRow> rows = run();
   EXPECT_EQ(rows[0].status, "ok");
@@ -338,8 +332,7 @@ TEST_F(BenchScene, VerifiesAClothAtRest) {
 }
 
 TEST_F(BenchScene, TellsOfAProgramThatFailsAtAnyCall) {
-  job_.backends = {find_backend("serial"), &stumbling};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial"), &stumbling});
   FailsAt::fails_at = 0;
   const ResultRow right = run()[1];
   EXPECT_EQ(right.status, "ok");
@@ -362,8 +355,7 @@ TEST_F(BenchScene, TellsOfAProgramThatFailsAtAnyCall) {
 }
 
 TEST_F(BenchScene, TellsOfAProgramThatFailsInTheRounds) {
-  job_.backends = {find_backend("serial"), &stumbling};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial"), &stumbling});
   job_.rounds = 200;
   FailsAt::fails_at = 500;  // trials before the rounds are far fewer
   const std::vector<ResultRow> rows = run();

@@ -26,8 +26,7 @@ class SlowToBegin final : public OtherSerial {
  private:
   bool has_stepped_ = false;
 };
-constexpr BackendInfo slow_to_begin{
-    .name = "slow-to-begin", .description = "slow only at first", .make = make_other<SlowToBegin>};
+constexpr BackendInfo slow_to_begin = row_of<SlowToBegin>("slow-to-begin");
 
 /// Takes 20 ms for every tenth request of four steps, and little for the others.
 class Stuttering final : public OtherSerial {
@@ -40,8 +39,7 @@ class Stuttering final : public OtherSerial {
 
   inline static int frames = 0;
 };
-constexpr BackendInfo stuttering{
-    .name = "stuttering", .description = "slow now and then", .make = make_other<Stuttering>};
+constexpr BackendInfo stuttering = row_of<Stuttering>("stuttering");
 
 /// A right one for each of whose requests the processors use 3 J.
 class Hungry final : public OtherSerial {
@@ -55,11 +53,10 @@ class Hungry final : public OtherSerial {
   inline static std::filesystem::path counter;
   inline static std::int64_t used_uj = 0;
 };
-constexpr BackendInfo hungry{.name = "hungry", .description = "uses energy", .make = make_other<Hungry>};
+constexpr BackendInfo hungry = row_of<Hungry>("hungry");
 
 TEST_F(BenchScene, TellsWhatARowTookBeforeItsSamples) {
-  job_.backends = {find_backend("serial"), &slow_to_begin};
-  job_.integrators.resize(1);
+  take_only({find_backend("serial"), &slow_to_begin});
   const std::vector<ResultRow> rows = run();
   EXPECT_GT(rows[0].setup_s, 0);
   EXPECT_LT(rows[0].setup_s, rows[1].setup_s);
@@ -76,16 +73,14 @@ TEST_F(BenchScene, TellsWhatARowTookBeforeItsSamples) {
 TEST_F(BenchScene, TellsWhichPartOfTheSetupTheDriverCompiled) {
   if (!unavailable_reason(*find_backend("opencl"), job_.execution).empty())
     GTEST_SKIP() << unavailable_reason(*find_backend("opencl"), job_.execution);
-  job_.backends = {find_backend("opencl")};
-  job_.integrators.resize(1);
+  take_only({find_backend("opencl")});
   const ResultRow row = run().front();
   EXPECT_GT(row.compile_s, 0);
   EXPECT_LT(row.compile_s, row.setup_s);
 }
 
 TEST_F(BenchScene, TimesSingleFramesIfItIsToldHowMany) {
-  job_.backends = {find_backend("serial"), &stuttering};
-  job_.integrators.resize(1);
+  take_only({find_backend("serial"), &stuttering});
   EXPECT_EQ(run()[0].frame_steps, std::nullopt);
   job_.fps = 2500;  // 4 steps of 1e-4 s
   Stuttering::frames = 0;
@@ -122,8 +117,7 @@ TEST_F(BenchSceneWithEnergy, TellsWhatAStepTakes) {
   write_file_atomically(zone / "max_energy_range_uj", "262143328850\n");
   write_file_atomically(Hungry::counter = zone / "energy_uj", "0\n");
   job_.root = path();
-  job_.backends = {&hungry};
-  job_.integrators.resize(1);
+  take_only({&hungry});
   const ResultRow row = run().front();
   EXPECT_NEAR(row.joules_per_step.value() * row.sample_steps.front(), 3, 1e-9);
   job_.root = path() / "none";
@@ -139,16 +133,14 @@ class Spreading final : public OtherSerial {
     std::thread(touch_new_pages).join();
   }
 };
-constexpr BackendInfo spreading{
-    .name = "spreading", .description = "uses memory", .make = make_other<Spreading>};
+constexpr BackendInfo spreading = row_of<Spreading>("spreading");
 
 TEST_F(BenchScene, TellsWhatTheSystemCountedInAStep) {
   // What Linux counts itself, because this processor may have no counters; and what never happens.
   constexpr CountedEvent page_fault{PERF_TYPE_SOFTWARE, PERF_COUNT_SW_PAGE_FAULTS};
   job_.events = {page_fault, page_fault, {PERF_TYPE_SOFTWARE, PERF_COUNT_SW_DUMMY}};
   if (!EventCounters(job_.events).obstacle().empty()) GTEST_SKIP() << EventCounters(job_.events).obstacle();
-  job_.backends = {&spreading};
-  job_.integrators.resize(1);
+  take_only({&spreading});
   const ResultRow row = run().front();
   EXPECT_NEAR(row.cycles_per_step.value() * row.sample_steps.front(), new_pages, 0.1 * new_pages);
   EXPECT_NEAR(row.instructions_per_step.value() * row.sample_steps.front(), new_pages, 0.1 * new_pages);
@@ -156,8 +148,7 @@ TEST_F(BenchScene, TellsWhatTheSystemCountedInAStep) {
 }
 
 TEST_F(BenchScene, TellsBytesOfAStepASecond) {
-  job_.backends = {find_backend("serial")};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial")});
   const ResultRow row = run().front();
   // A step reads and writes positions and velocities: 4 vectors of 3 floats for each of 99 nodes, 4,752
   // bytes. A GB/s is 1e6 bytes a millisecond.
@@ -170,12 +161,10 @@ class NotInSingle final : public OtherSerial {
   using OtherSerial::OtherSerial;
   bool is_in_single() const override { return false; }
 };
-constexpr BackendInfo not_in_single{
-    .name = "double", .description = "larger numbers", .make = make_other<NotInSingle>};
+constexpr BackendInfo not_in_single = row_of<NotInSingle>("double");
 
 TEST_F(BenchScene, TellsNoBytesOfNumbersThatAreNotInSingle) {
-  job_.backends = {&not_in_single};
-  job_.integrators.resize(1);
+  take_only({&not_in_single});
   const ResultRow row = run().front();
   EXPECT_GT(row.ms_per_step, 0);
   EXPECT_EQ(row.gigabytes_per_second, std::nullopt);
@@ -183,8 +172,7 @@ TEST_F(BenchScene, TellsNoBytesOfNumbersThatAreNotInSingle) {
 }
 
 TEST_F(BenchScene, SaysHowManyProcessorsTheSamplesTook) {
-  job_.backends = {find_backend("serial"), &stumbling};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial"), &stumbling});
   FailsAt::fails_at = 0;
   const std::vector<ResultRow> rows = run();
   EXPECT_GT(rows[0].processors_used, 0);

@@ -94,8 +94,7 @@ TEST_F(BenchScene, FindsAProgramThatIsRightOnlyWhereItIsVerified) {
 
 TEST_F(BenchScene, FindsAProgramThatPostponesItsStepsHoweverFewSamplesThereAre) {
   system_ = solid_block(5, 4, 3);
-  job_.backends = {find_backend("serial"), &postponing};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial"), &postponing});
   job_.sample_seconds = 0.05;
   for (const int rounds : {1, 2, 4}) {
     job_.rounds = rounds;
@@ -108,8 +107,7 @@ TEST_F(BenchScene, FindsAProgramThatPostponesItsStepsHoweverFewSamplesThereAre) 
 
 TEST_F(BenchScene, ChecksSamplesThatAnEarlierRunLeftUnchecked) {
   system_ = solid_block(5, 4, 3);
-  job_.backends = {find_backend("serial"), &cheat, &postponing};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial"), &cheat, &postponing});
   job_.sample_seconds = 0.05;
   Cheating::cheat = Cheat::remembers;
   const std::vector<ResultRow> rows = run();
@@ -135,8 +133,7 @@ TEST_F(BenchScene, ChecksSamplesThatAnEarlierRunLeftUnchecked) {
 
 TEST_F(BenchScene, LetsAProgramBeSlowToGiveItsState) {
   Cheating::cheat = Cheat::nothing;
-  job_.backends = {find_backend("serial"), &cheat};
-  job_.integrators = {find_integrator("semi-euler")};
+  take_only({find_backend("serial"), &cheat});
   job_.rounds = 3;
   job_.sample_seconds = 1e-3;
   const std::vector<ResultRow> verified = run();

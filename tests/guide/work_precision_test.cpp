@@ -109,8 +109,7 @@ class Frozen : public OtherSerial {
     }
   }
 };
-constexpr BackendInfo frozen{
-    .name = "frozen", .description = "stays at its start", .make = make_other<Frozen>};
+constexpr BackendInfo frozen = row_of<Frozen>("frozen");
 
 /// Lower than its start by a distance.
 class Lowered final : public Frozen {
@@ -136,7 +135,7 @@ std::unique_ptr<Backend> make_creeping(const System& system, const Integrator& i
                                    1e-3 * per_mille * halvings * fall_m);
 }
 template <int per_mille>
-constexpr BackendInfo creeping{"creeping", "", "comes nearer", false, {}, make_creeping<per_mille>, {}, {}};
+constexpr BackendInfo creeping{.name = "creeping", .make = make_creeping<per_mille>};
 
 class Astray final : public Frozen {
  public:
@@ -147,15 +146,14 @@ class Astray final : public Frozen {
     return state;
   }
 };
-constexpr BackendInfo astray{.name = "astray", .description = "is not finite", .make = make_other<Astray>};
+constexpr BackendInfo astray = row_of<Astray>("astray");
 
 class Crowded final : public OtherSerial {
  public:
   using OtherSerial::OtherSerial;
   std::string reason_not_to_time() const override { return "too crowded"; }
 };
-constexpr BackendInfo crowded{
-    .name = "crowded", .description = "has too few processors", .make = make_other<Crowded>};
+constexpr BackendInfo crowded = row_of<Crowded>("crowded");
 
 /// semi-euler on the backend over 10 ms.
 GuidedMethod curve_on(const BackendInfo& backend, double stable_span_s,

@@ -2,7 +2,7 @@
 #include "charts/layout.h"
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
-#include "tests/support/result_fixture.h"
+#include "tests/support/report_fixture.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
@@ -11,31 +11,13 @@ namespace {
 /// Cloths of Table 1 with `serial`, `openmp` and `opencl`.
 std::vector<ResultRow> two_cloths() {
   std::vector<ResultRow> rows;
-  for (const auto& [nodes, springs, ms] : {std::tuple(2500, 29004, 1.0), std::tuple(10000, 118004, 8.0)})
+  for (const auto& [nodes, springs, ms] : {std::tuple(2500U, 29004U, 1.0), std::tuple(10000U, 118004U, 8.0)})
     for (const auto& [backend, ratio] :
          {std::pair("serial", 1.0), std::pair("openmp", 10.0), std::pair("opencl", 5.0)}) {
-      ResultRow& row = rows.emplace_back(in_six_rounds(measured_row(backend, ms / ratio, ratio)));
-      row.scene = "cloth" + std::to_string(nodes);
-      row.nodes = static_cast<std::uint64_t>(nodes);
-      row.springs_published = springs;
-      row.springs_unique = static_cast<std::uint64_t>(springs / 2);
+      rows.push_back(cloth_row(nodes, springs, backend, ms / ratio));
+      rows.back().speedup_vs_serial = ratio;
     }
   return rows;
-}
-
-ReportFolder folder_of(std::vector<ResultRow> rows, std::optional<Provenance> provenance = {}) {
-  ReportFolder folder;
-  folder.rows = std::move(rows);
-  folder.provenance = std::move(provenance);
-  return folder;
-}
-
-/// What a report has of the papers' tables.
-ReportInput of_papers() {
-  ReportInput input;
-  input.legend = legend;
-  input.published = published_tables();
-  return input;
 }
 
 const Series& series(const Chart& chart, const std::string& name) {

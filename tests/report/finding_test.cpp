@@ -1,34 +1,21 @@
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "scene/fields/fields.h"
-#include "tests/support/result_fixture.h"
+#include "tests/support/report_fixture.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
 
-/// A row of a published cloth.
-ResultRow cloth_row(std::uint64_t nodes, std::uint64_t springs_published, const std::string& backend,
-                    double ms, const std::string& integrator = "semi-euler") {
-  ResultRow row = in_six_rounds(measured_row(backend, ms, std::nullopt));
-  row.scene = "cloth" + std::to_string(nodes);
-  row.nodes = nodes;
-  row.springs_published = springs_published;
-  row.springs_unique = springs_published / 2;
-  row.integrator = integrator;
-  return row;
-}
 ResultRow small(const std::string& backend, double ms, const std::string& integrator = "semi-euler") {
   return cloth_row(2500, 29004, backend, ms, integrator);
 }
 ResultRow larger(const std::string& backend, double ms) { return cloth_row(4900, 57404, backend, ms); }
 
-/// What a report has of the papers.
-const ReportInput& of_papers() {
+/// With the papers' claims.
+const ReportInput& claims_of_papers() {
   static const ReportInput input = [] {
-    ReportInput all;
-    all.legend = legend;
-    all.published = published_tables();
+    ReportInput all = of_papers();
     all.claims = published_claims();
     return all;
   }();
@@ -37,10 +24,7 @@ const ReportInput& of_papers() {
 
 /// The claim of that name, judged by these rows.
 JudgedClaim judged(const std::string& name, const std::vector<ResultRow>& rows) {
-  ReportFolder folder;
-  folder.rows = rows;
-  folder.provenance = made_up_provenance();
-  for (const JudgedClaim& one : judge(folder, of_papers()))
+  for (const JudgedClaim& one : judge(folder_of(rows, made_up_provenance()), claims_of_papers()))
     if (one.claim->name == name) return one;
   ADD_FAILURE() << "there is no claim " << name;
   return {};
@@ -241,16 +225,13 @@ TEST(Claims, OfGarmentsAreDecidedByThePublishedAlgorithmOnEachGarment) {
   std::vector<ResultRow> rows{jeans("algorithm1", 1000, 1.5), jeans("algorithm1-simd", 1000, 1)};
   EXPECT_EQ(outcome_of("simd-is-faster", rows), ClaimOutcome::held);
   for (ResultRow& row : rows) row.scene_as_shipped = false;
-  ReportFolder folder;
-  folder.rows = rows;
-  EXPECT_TRUE(judge(folder, of_papers()).empty());
+  EXPECT_TRUE(judge(folder_of(rows), claims_of_papers()).empty());
 }
 
 TEST(Claims, AreNoneWithoutAPublishedSceneAndSayWhichRowsAreMissing) {
-  ReportFolder folder;
-  folder.rows = {small("serial", 1)};
-  folder.rows[0].nodes = 2501;
-  EXPECT_TRUE(judge(folder, of_papers()).empty());
+  ResultRow other = small("serial", 1);
+  other.nodes = 2501;
+  EXPECT_TRUE(judge(folder_of({other}), claims_of_papers()).empty());
   const JudgedClaim missing = judged("threads-before-cpu", {small("serial", 1)});
   EXPECT_EQ(missing.outcome, ClaimOutcome::not_testable);
   EXPECT_THAT(missing.measured, HasSubstr("`threads-mutex`"));
@@ -339,8 +320,7 @@ TEST(TimesAsFast, TakesTheIntervalsOfTimesWhereThereAreNoPairs) {
 }
 
 TEST(TimesOf, ShowsNoIntervalOfTooFewRounds) {
-  ReportFolder folder;
-  folder.rows = {small("serial", 1), small("openmp", 0.5)};
+  ReportFolder folder = folder_of({small("serial", 1), small("openmp", 0.5)});
   const auto text = [&] { return to_text(times_of(pointers_to(folder.rows), folder), ListingFormat::csv); };
   EXPECT_THAT(text(), HasSubstr("0.250 to 1.00,2.0,2.00 to 2.00,"));
   for (ResultRow& row : folder.rows) row = in_five_rounds(row);
@@ -348,8 +328,7 @@ TEST(TimesOf, ShowsNoIntervalOfTooFewRounds) {
 }
 
 TEST(TimesOf, MarksARatioThatItsTimesContradict) {
-  ReportFolder folder;
-  folder.rows = {small("serial", 1), small("openmp", 0.5)};
+  ReportFolder folder = folder_of({small("serial", 1), small("openmp", 0.5)});
   const auto text = [&] { return markdown({times_of(pointers_to(folder.rows), folder)}); };
   EXPECT_THAT(text(), HasSubstr("| 2.00× |"));
   folder.rows[1].ms_per_step = 1.01;

@@ -1,23 +1,12 @@
-#include "report/report.h"
-#include "tests/support/result_fixture.h"
+#include "tests/support/report_fixture.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
 namespace {
 
-ReportFolder folder_of(std::vector<ResultRow> rows) {
-  ReportFolder folder;
-  folder.name = "results/run";
-  folder.rows = std::move(rows);
-  folder.provenance = made_up_provenance();
-  return folder;
-}
-
 /// The text of one of the files of a paper about this folder.
 std::string text_in(const ReportFolder& folder, const std::string& name) {
-  ReportInput input;
-  input.legend = legend;
-  input.published = published_tables();
+  ReportInput input = of_papers();
   input.folders.push_back(folder);
   for (const FolderFile& file : paper_files(input))
     if (file.name == name) return file.text;
@@ -27,9 +16,10 @@ std::string text_in(const ReportFolder& folder, const std::string& name) {
 
 class PaperTest : public testing::Test {
  protected:
+  PaperTest() { folder.name = "results/run"; }
   std::string methods() const { return text_in(folder, "methods.tex"); }
 
-  ReportFolder folder = folder_of({measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)});
+  ReportFolder folder = folder_of(serial_and_openmp_rows(), made_up_provenance());
 };
 
 TEST_F(PaperTest, SaysWhatAComparisonAllowsAtMost) {

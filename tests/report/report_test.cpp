@@ -6,7 +6,7 @@
 #include "output/guide/guide_tables.h"
 #include "report/report_internal.h"
 #include "tests/support/files_fixture.h"
-#include "tests/support/result_fixture.h"
+#include "tests/support/report_fixture.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
@@ -22,7 +22,7 @@ class ReportFolderTest : public TemporaryFolderTest {
   }
   ReportFolder read() const { return read_report_folder(folder()); }
 
-  const std::vector<ResultRow> rows{measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
+  const std::vector<ResultRow> rows = serial_and_openmp_rows();
   const std::string timings = timings_csv(rows), samples = samples_csv(rows);
 };
 
@@ -37,9 +37,7 @@ TEST_F(ReportFolderTest, ReadsAWholeFolder) {
 
 TEST_F(ReportFolderTest, SaysWhatAnEmptyFolderLacks) {
   const ReportFolder found = read();
-  ASSERT_EQ(found.problems.size(), 2U);
-  EXPECT_THAT(found.problems[0], HasSubstr("timings.csv"));
-  EXPECT_THAT(found.problems[1], HasSubstr("provenance.json"));
+  EXPECT_THAT(found.problems, ElementsAre(HasSubstr("timings.csv"), HasSubstr("provenance.json")));
   EXPECT_THAT(read_report_folder(folder() / "none").problems, SizeIs(2));
 }
 
@@ -47,9 +45,8 @@ TEST_F(ReportFolderTest, ShowsTheLinesThatCanBeRead) {
   put_run(timings.substr(0, timings.size() - 80), samples);  // ends within the last row
   ReportFolder found = read();
   ASSERT_EQ(found.rows.size(), 1U);
-  ASSERT_EQ(found.problems.size(), 1U);
-  EXPECT_THAT(found.problems[0], HasSubstr("line 3: has "));
-  EXPECT_THAT(found.problems[0], HasSubstr("1 row left out, 1 shown"));
+  EXPECT_THAT(found.problems,
+              ElementsAre(AllOf(HasSubstr("line 3: has "), HasSubstr("1 row left out, 1 shown"))));
 
   std::string with_nan = timings;
   with_nan.replace(with_nan.rfind(",0.5,"), 5, ",nan,");
@@ -70,14 +67,12 @@ TEST_F(ReportFolderTest, GoesWithoutDamagedSamples) {
   ReportFolder found = read();
   ASSERT_EQ(found.rows.size(), 2U);
   EXPECT_THAT(found.rows[0].samples_ms, IsEmpty());
-  ASSERT_EQ(found.problems.size(), 1U);
-  EXPECT_THAT(found.problems[0], HasSubstr("samples.csv"));
+  EXPECT_THAT(found.problems, ElementsAre(HasSubstr("samples.csv")));
 
   put("samples.csv",
       "scene,backend,integrator,round,steps,ms_per_step\ncloth2500,serial,semi-euler,1,10,2\n");
   found = read();
-  ASSERT_EQ(found.problems.size(), 1U);
-  EXPECT_THAT(found.problems[0], HasSubstr("has no samples of 2 rows"));
+  EXPECT_THAT(found.problems, ElementsAre(HasSubstr("has no samples of 2 rows")));
 }
 
 TEST_F(ReportFolderTest, SaysThatSamplesAreNotChecked) {
@@ -85,9 +80,9 @@ TEST_F(ReportFolderTest, SaysThatSamplesAreNotChecked) {
   unchecked[1].note = unchecked_samples;
   put_run(timings_csv(unchecked), samples);
   const ReportFolder found = read();
-  ASSERT_EQ(found.problems.size(), 1U);
-  EXPECT_THAT(found.problems[0],
-              AllOf(HasSubstr("timings.csv: the samples of 1 row are not checked"), HasSubstr("--resume")));
+  EXPECT_THAT(found.problems,
+              ElementsAre(AllOf(HasSubstr("timings.csv: the samples of 1 row are not checked"),
+                                HasSubstr("--resume"))));
   EXPECT_TRUE(counts(found.rows[1]));
 }
 
@@ -141,8 +136,7 @@ TEST_F(ReportFolderTest, SaysThatProvenanceIsDamaged) {
   put("provenance.json", "{\"build\": ");
   const ReportFolder found = read();
   EXPECT_FALSE(found.provenance);
-  ASSERT_EQ(found.problems.size(), 1U);
-  EXPECT_THAT(found.problems[0], HasSubstr("malformed JSON"));
+  EXPECT_THAT(found.problems, ElementsAre(HasSubstr("malformed JSON")));
 }
 
 TEST_F(ReportFolderTest, FindsPicturesAndEnergyCurves) {
@@ -156,8 +150,7 @@ TEST_F(ReportFolderTest, FindsPicturesAndEnergyCurves) {
   EXPECT_EQ(found.pictures[0].caption, "a.png");
   ASSERT_EQ(found.curves.size(), 1U);
   EXPECT_EQ(found.curves[0].total_j, (std::vector<double>{6, 7}));
-  ASSERT_EQ(found.problems.size(), 1U);
-  EXPECT_THAT(found.problems[0], HasSubstr("b.png is not a PNG"));
+  EXPECT_THAT(found.problems, ElementsAre(HasSubstr("b.png is not a PNG")));
 }
 
 TEST_F(ReportFolderTest, NamesADamagedCurve) {
@@ -333,9 +326,7 @@ TEST(Html, WritesBase64) {
 }
 
 ReportInput input_of(ReportFolder folder) {
-  ReportInput input;
-  input.legend = legend;
-  input.published = published_tables();
+  ReportInput input = of_papers();
   input.tables = paper_tables(legend, published_tables());
   input.folders.push_back(std::move(folder));
   return input;
@@ -360,13 +351,11 @@ TEST_F(ReportFolderTest, TrustsNoAbsurdTime) {
 }
 
 TEST(ReportPage, EscapesNamesOfScenesAndFolders) {
-  ReportFolder folder;
+  ReportFolder folder = folder_of(serial_and_openmp_rows(), made_up_provenance());
   folder.name = "<script>alert(1)</script>";
-  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
   for (ResultRow& row : folder.rows) row.scene = "<script>alert(2)</script>";
   folder.rows[1].status = "failed: <script>alert(3)</script>";
   folder.problems = {"<script>alert(4)</script> is missing"};
-  folder.provenance = made_up_provenance();
   folder.provenance->machine.cpu_model = "<script>alert(5)</script>";
   folder.pictures = {{"<script>alert(6)</script>", "png"}};
   const std::string page = report_page(input_of(folder));
@@ -402,11 +391,9 @@ TEST(ReportPage, ShowsAGuideSceneByScene) {
 }
 
 TEST(ReportPage, ComparesTwoFoldersAsCompareDoes) {
-  ReportFolder folder;
+  ReportFolder folder = folder_of({measured_row("openmp", 1, std::nullopt)}, made_up_provenance());
   folder.name = "base";
-  folder.rows = {measured_row("openmp", 1, std::nullopt)};
   folder.rows[0].samples_ms = {1, 1.01, 1.02, 1.03, 1.04, 1.05, 1.06, 1.07};
-  folder.provenance = made_up_provenance();
   ReportInput input = input_of(folder);
   EXPECT_FALSE(has(report_page(input), "What changed"));
   input.folders.push_back(folder);
@@ -427,8 +414,7 @@ TEST(ReportPage, ComparesTwoFoldersAsCompareDoes) {
 }
 
 TEST(ReportPage, MarksRowsThatAreNotVerifiedInWords) {
-  ReportFolder folder;
-  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
+  ReportFolder folder = folder_of(serial_and_openmp_rows());
   folder.rows[1].verified = false;
   const std::string page = report_page(input_of(folder));
   EXPECT_TRUE(has(page, "✓ yes"));
@@ -437,9 +423,9 @@ TEST(ReportPage, MarksRowsThatAreNotVerifiedInWords) {
 }
 
 TEST(ReportPage, SaysWhyARowOfAnySceneHasNoTime) {
-  ReportFolder folder;
-  folder.rows = {measured_row("serial", 1, 1.0), failed_row("opencl", "unsupported: one reason"),
-                 failed_row("mine", "failed: another reason")};
+  ReportFolder folder =
+      folder_of({measured_row("serial", 1, 1.0), failed_row("opencl", "unsupported: one reason"),
+                 failed_row("mine", "failed: another reason")});
   for (ResultRow& row : folder.rows) {
     row.scene = "my-own";
     row.springs_published.reset();
@@ -453,17 +439,15 @@ TEST(ReportPage, SaysWhyARowOfAnySceneHasNoTime) {
 
 TEST(ReportPage, HasNoTableOfTheLargestScenesWithoutATime) {
   const std::string without = "<p>No row has a verified time.</p>\n<details>";
-  ReportFolder folder;
-  folder.rows = {measured_row("serial", 1, 1.0), failed_row("openmp", "failed: step 3")};
+  ReportFolder folder = folder_of({measured_row("serial", 1, 1.0), failed_row("openmp", "failed: step 3")});
   EXPECT_FALSE(has(report_page(input_of(folder)), without));
   folder.rows[0] = failed_row("serial", "failed: step 3");
   EXPECT_TRUE(has(report_page(input_of(folder)), without));
 }
 
 TEST(ReportPage, MarksARatioThatItsTimesContradict) {
-  ReportFolder folder;
-  folder.rows = {in_six_rounds(measured_row("serial", 1, 1.0)),
-                 in_six_rounds(measured_row("openmp", 0.5, 2.0))};
+  ReportFolder folder = folder_of(
+      {in_six_rounds(measured_row("serial", 1, 1.0)), in_six_rounds(measured_row("openmp", 0.5, 2.0))});
   for (ResultRow& row : folder.rows)
     row.scene_as_shipped = false;  // else a published table has the mark, too
   EXPECT_FALSE(has(report_page(input_of(folder)), "†"));
@@ -482,10 +466,8 @@ void expect_in_order(const std::string& page, const std::vector<std::string>& te
 }
 
 TEST(ReportPage, BeginsWithTheVerdictAndTheTimes) {
-  ReportFolder folder;
+  ReportFolder folder = folder_of(serial_and_openmp_rows(), made_up_provenance());
   folder.name = "run";
-  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
-  folder.provenance = made_up_provenance();
   const std::string page = report_page(input_of(folder));
   expect_in_order(
       page, {"<h2>Verdict</h2>", "<h2>Times</h2>", "<h2>Machine and settings</h2>", "<h2>Speed-up</h2>"});
@@ -497,9 +479,7 @@ TEST(ReportPage, BeginsWithTheVerdictAndTheTimes) {
 }
 
 TEST(ReportPage, SaysAtTheTopOfAFolderWhatDisturbedIt) {
-  ReportFolder folder;
-  folder.rows = {measured_row("serial", 1, 1.0)};
-  folder.provenance = made_up_provenance();
+  ReportFolder folder = folder_of({measured_row("serial", 1, 1.0)}, made_up_provenance());
   EXPECT_FALSE(has(report_page(input_of(folder)), "When the run started"));
   folder.provenance->noise = {"other programs are running (load 9.5 over the last minute): end them"};
   expect_in_order(report_page(input_of(folder)), {"<h2>Times</h2>", "When the run started",
@@ -509,10 +489,9 @@ TEST(ReportPage, SaysAtTheTopOfAFolderWhatDisturbedIt) {
 }
 
 TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {
-  ReportFolder folder;
+  ReportFolder folder = folder_of(
+      {in_six_rounds(measured_row("serial", 1, 1.0)), in_six_rounds(measured_row("openmp", 0.5, 2.0))});
   folder.name = "results/one";
-  folder.rows = {in_six_rounds(measured_row("serial", 1, 1.0)),
-                 in_six_rounds(measured_row("openmp", 0.5, 2.0))};
   ReportInput input = input_of(folder);
   Claim& claim = input.claims.emplace_back();
   claim.says = "Threads help";
@@ -530,9 +509,7 @@ TEST(ReportPage, PutsTheOutcomesOfSeveralFoldersSideBySide) {
 }
 
 TEST(ReportPage, ShowsASingleSceneAsATable) {
-  ReportFolder folder;
-  folder.rows = {measured_row("serial", 1, 1.0), measured_row("openmp", 0.5, 2.0)};
-  folder.provenance = made_up_provenance();
+  ReportFolder folder = folder_of(serial_and_openmp_rows(), made_up_provenance());
   const std::string page = report_page(input_of(folder));
   expect_in_order(page, {"<section id=\"speed-up\">", "<h4>semi-euler: speed-up over one thread</h4>",
                          "A Processor", "openmp, measured</td>"});

@@ -17,11 +17,21 @@ namespace {
 namespace fs = std::filesystem;
 using testing::Lt;
 
-class ResultFiles : public TemporaryFolderTest {};
+class ResultFiles : public TemporaryFolderTest {
+ protected:
+  static ResultFolder results_in(const fs::path& where, Provenance provenance = made_up_provenance()) {
+    return {where, std::move(provenance), paper_tables(legend, published_tables())};
+  }
+  std::vector<ResultRow> read_back(const std::string& timings) const {
+    return read_timings(CsvTable(put("timings.csv", timings)));
+  }
+
+  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+};
 
 TEST_F(ResultFiles, TimingsHaveAColumnForEachNumberAndQuoteWhatNeedsIt) {
-  const std::vector<ResultRow> rows{measured_row("serial", 0.125, 1.0),
-                                    failed_row("opencl", "unavailable: no device \"fast, big\"\nhere")};
+  rows = {measured_row("serial", 0.125, 1.0),
+          failed_row("opencl", "unavailable: no device \"fast, big\"\nhere")};
   EXPECT_THAT(
       timings_csv(rows),
       AllOf(HasSubstr("\ncloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,"
@@ -38,10 +48,10 @@ TEST(ResultColumns, AreWhereTheyWere) {
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
-  std::vector<ResultRow> rows{measured_row("serial", 1.0 / 3, 1.0), measured_row("openmp", 0.1, M_PI),
-                              failed_row("opencl", "failed: \"x\", at\r\nstep 3")};
+  rows = {measured_row("serial", 1.0 / 3, 1.0), measured_row("openmp", 0.1, M_PI),
+          failed_row("opencl", "failed: \"x\", at\r\nstep 3")};
   rows[1].samples_ms = {0.1, 1.0 / 7, std::numeric_limits<double>::denorm_min()};
-  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).write(rows);
+  results_in(folder()).write(rows);
   const std::vector<ResultRow> back = read_results(folder());
   ASSERT_EQ(back.size(), rows.size());
   EXPECT_EQ(timings_csv(back), timings_csv(rows));
@@ -56,8 +66,7 @@ TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
 }
 
 TEST_F(ResultFiles, LeaveOutARoundThatOnlyTheSamplesHave) {
-  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
-  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).write(rows);
+  results_in(folder()).write(rows);
   const std::vector<double> before = rows[0].samples_ms;
   rows[0].samples_ms.push_back(7);
   rows[0].sample_steps.push_back(10);
@@ -69,48 +78,43 @@ TEST_F(ResultFiles, LeaveOutARoundThatOnlyTheSamplesHave) {
 
 TEST_F(ResultFiles, GoOnUnderTheProvenanceOfTheRunThatAddsRows) {
   const std::string file = (folder() / "provenance.json").string();
-  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).begin();
+  results_in(folder()).begin();
   Provenance later = made_up_provenance();
   later.started_utc = "2030-01-01T00:00:00Z";
-  ResultFolder results(folder(), later, paper_tables(legend, published_tables()));
+  ResultFolder results = results_in(folder(), later);
   results.go_on_with(made_up_provenance());
   results.begin();
   EXPECT_THAT(read_file(file), Not(HasSubstr("2030"))) << "nothing of it is measured yet";
-  results.write(std::vector{measured_row("serial", 0.5, 1.0)});
+  results.write(rows);
   EXPECT_THAT(read_file(file), AllOf(HasSubstr("2030"), HasSubstr(made_up_provenance().started_utc)));
 }
 
 TEST_F(ResultFiles, RenewTheFileForGithub) {
-  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   const fs::path file = folder() / "github.json";
-  const auto folder_again = [&] {
-    return ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
-  };
   {
-    ResultFolder results = folder_again();
+    ResultFolder results = results_in(folder());
     results.write(rows);
     EXPECT_FALSE(fs::exists(file)) << "nobody asked for it";
     results.write_for_github(rows);
   }
   {
-    ResultFolder results = folder_again();
+    ResultFolder results = results_in(folder());
     results.go_on_with(made_up_provenance());
     rows[0].ms_per_step = 0.25;
     results.write(rows);
     EXPECT_EQ(text_of(file), to_text(github_table(rows), ListingFormat::json));
   }
-  ResultFolder results = folder_again();
+  ResultFolder results = results_in(folder());
   results.replace_results();
   results.write(rows);
   EXPECT_FALSE(fs::exists(file));
 }
 
 TEST_F(ResultFiles, ThatAreReplacedTakeTheirTracesAlong) {
-  const std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   const std::string stem = "traces/" + file_stems(rows).front();
-  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).write(rows);
+  results_in(folder()).write(rows);
   for (const char* end : {".h5", ".xdmf", ".h5.part", ".xdmf.part", "-mine.h5"}) put(stem + end, "old");
-  ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+  ResultFolder results = results_in(folder());
   results.replace_results();
   results.begin();
   EXPECT_TRUE(fs::exists(folder() / (stem + ".h5"))) << "nothing new is measured yet";
@@ -120,7 +124,7 @@ TEST_F(ResultFiles, ThatAreReplacedTakeTheirTracesAlong) {
 }
 
 TEST_F(ResultFiles, SamplesAreListedRoundByRound) {
-  EXPECT_EQ(samples_csv(std::vector{measured_row("serial", 0.5, 1.0)}),
+  EXPECT_EQ(samples_csv(rows),
             "scene,backend,integrator,round,steps,ms_per_step,outlier\n"
             "cloth2500,serial,semi-euler,1,10,1,\n"
             "cloth2500,serial,semi-euler,2,20,0.25,\n"
@@ -134,17 +138,16 @@ TEST_F(ResultFiles, SamplesAreListedRoundByRound) {
 }
 
 TEST_F(ResultFiles, TimingsAllowFurtherColumnsBehindTheirs) {
-  std::istringstream lines(timings_csv(std::vector{measured_row("serial", 0.5, 1.0)}));
+  std::istringstream lines(timings_csv(rows));
   std::string header, row;
   std::getline(lines, header);
   std::getline(lines, row);
-  const auto back = read_timings(CsvTable(put("timings.csv", header + ",joules\r\n" + row + ",3\r\n")));
+  const auto back = read_back(header + ",joules\r\n" + row + ",3\r\n");
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].status, "ok");
 }
 
 TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
-  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   std::istringstream lines(timings_csv(rows));
   std::string text;
   for (std::string line; std::getline(lines, line);) {
@@ -152,7 +155,7 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
     text += line + '\n';
   }
   EXPECT_THAT(text, HasSubstr("status,note\n"));
-  const auto back = read_timings(CsvTable(put("timings.csv", text)));
+  const auto back = read_back(text);
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].ms_per_step, 0.5);
   EXPECT_EQ(back[0].warm_up_trials, 0);
@@ -161,9 +164,9 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
 }
 
 TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
-  const std::string good = timings_csv(std::vector{measured_row("serial", 0.5, 1.0)});
+  const std::string good = timings_csv(rows);
   const auto complaint = [&](const std::string& text) -> std::string {
-    return sentence_of<CsvError>([&] { read_timings(CsvTable(put("timings.csv", text))); });
+    return sentence_of<CsvError>([&] { read_back(text); });
   };
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -199,7 +202,6 @@ TEST_F(ResultFiles, WithoutAnEndAreRefusedAndNotRead) {
 }
 
 TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
-  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   rows[0].samples_ms.clear();
   rows[0].sample_steps.clear();
   const fs::path file = put("samples.csv",
@@ -209,11 +211,11 @@ TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
 }
 
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
-  ResultFolder results(folder() / "new/out", made_up_provenance(), paper_tables(legend, published_tables()));
+  ResultFolder results = results_in(folder() / "new/out");
   results.begin();
   EXPECT_EQ(text_of(folder() / "new/out/provenance.json"), provenance_text(made_up_provenance()) + '\n');
   EXPECT_TRUE(read_results(folder() / "new/out").empty());
-  std::vector<ResultRow> rows;
+  rows.clear();
   for (const ResultRow& row : table_rows()) {
     rows.push_back(row);
     results.write(rows);
@@ -233,8 +235,7 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
 }
 
 TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
-  ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
-  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  ResultFolder results = results_in(folder());
   results.write(rows);
   const std::string before = text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json");
   rows.push_back(measured_row("openmp", 0.25, 2.0));
@@ -250,7 +251,7 @@ TEST_F(ResultFiles, GoIntoNoFolderThatALinkLeadsTo) {
   fs::create_directory(folder() / "elsewhere");
   fs::create_directory(folder() / "out");
   fs::create_directory_symlink(folder() / "elsewhere", folder() / "out" / programs_name);
-  ResultFolder results(folder() / "out", made_up_provenance(), paper_tables(legend, published_tables()));
+  ResultFolder results = results_in(folder() / "out");
   ResultRow program = failed_row("mine.py", "failed: out of cake");
   program.program_output = "cake";
   EXPECT_THROW(results.write(std::vector{program}), WriteError);
@@ -259,8 +260,7 @@ TEST_F(ResultFiles, GoIntoNoFolderThatALinkLeadsTo) {
 
 TEST_F(ResultFiles, WithAByteOrderMarkAreReadToo) {
   const std::string mark = "\xef\xbb\xbf";
-  const std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
-  std::vector<ResultRow> back = read_timings(CsvTable(put("timings.csv", mark + timings_csv(rows))));
+  std::vector<ResultRow> back = read_back(mark + timings_csv(rows));
   ASSERT_EQ(back.size(), 1U);
   read_samples(CsvTable(put("samples.csv", mark + samples_csv(rows))), back);
   EXPECT_EQ(back[0].samples_ms, rows[0].samples_ms);
