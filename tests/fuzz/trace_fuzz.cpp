@@ -2,11 +2,8 @@
 // those of a whole file: HDF5 crashes on some that are damaged, which TraceReader finds out in a process of
 // its own.
 
-#include <unistd.h>
-
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -47,15 +44,13 @@ std::string trace_of(System system, const Surface& surface = {}) {
     system.start.position.resize(grid->nodes());
   system.start.velocity.resize(system.nodes());
   system.node_mass.assign(system.nodes(), 1);
-  const auto folder = std::filesystem::temp_directory_path() / ("mssim-fuzz-" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
-  H5mdTrace trace(folder / "fuzz.h5", system, {"Ada", "1", "{}", "{}", "openmp", "rk4", 1e-3}, surface);
+  const TemporaryFolder folder;
+  H5mdTrace trace(folder.path() / "fuzz.h5", system, {"Ada", "1", "{}", "{}", "openmp", "rk4", 1e-3},
+                  surface);
   trace.write_frame(0, 0, system.start, {});
   trace.write_frame(1, 1e-3, system.start, {});
   trace.close();
-  std::string bytes = read_file(folder / "fuzz.h5");
-  std::filesystem::remove_all(folder);
-  return bytes;
+  return read_file(folder.path() / "fuzz.h5");
 }
 
 constexpr std::array<const char*, 6> of_all{"/connectivity/springs", "/parameters/springs/rest_length",

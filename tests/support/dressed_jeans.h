@@ -26,7 +26,7 @@ struct DressingCase {
     body = std::move(built.body);
   }
 
-  Garment& garment() { return std::get<Garment>(system.topology); }
+  Garment& garment() { return garment_in(system); }
   double dt_s() const { return spec.dt_s.value(); }
 };
 

@@ -115,7 +115,7 @@ inline void expect_goes_on_when_draped(DressingBackend& backend, const System& s
   const State expected = backend.state();
   draped.draped = false;
   backend.set_state(draped);
-  EXPECT_EQ(backend.progress().open_joints, std::get<Garment>(system.topology).joints.size());
+  EXPECT_EQ(backend.progress().open_joints, garment_in(system).joints.size());
   backend.step(40);
   EXPECT_GT(largest_distance(backend.state().position, expected.position), 1e-5);
   draped.draped = true;

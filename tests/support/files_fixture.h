@@ -13,26 +13,17 @@ namespace mssim {
 /// A test with an empty folder of its own, removed afterwards.
 class TemporaryFolderTest : public testing::Test {
  protected:
-  TemporaryFolderTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "mssim-test-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
-    folder_ = name;
-  }
-  ~TemporaryFolderTest() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
   /// Writes a file in the folder, with the folders that it lies in. Returns its path.
   std::filesystem::path put(const std::filesystem::path& name, std::string_view text) const {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+    std::filesystem::create_directories((folder() / name).parent_path());
+    std::ofstream(folder() / name, std::ios::binary) << text;
+    return folder() / name;
   }
 
  private:
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 /// Variables of the environment that a test changes: puts them back.

@@ -45,6 +45,7 @@ inline System garment_of(const std::vector<SquarePanel>& panels) {
 }
 
 inline Garment& garment_in(System& system) { return std::get<Garment>(system.topology); }
+inline const Garment& garment_in(const System& system) { return std::get<Garment>(system.topology); }
 
 /// Gives the garment the body that it meets.
 inline void put_on(System& system, const Surface& body, const BodyMapSettings& settings) {

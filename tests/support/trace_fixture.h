@@ -60,9 +60,9 @@ inline std::string text_attribute(hid_t file, const std::string& object, const s
   return text;
 }
 
-inline Hdf5File open(const std::filesystem::path& file) {
+inline Hdf5File open(const std::filesystem::path& file, unsigned mode = H5F_ACC_RDONLY) {
   prepare_hdf5();
-  return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening " + file.string()};
+  return {H5Fopen(file.c_str(), mode, H5P_DEFAULT), "opening " + file.string()};
 }
 
 inline std::vector<float> in_single_precision(const std::vector<Vec3d>& vectors) {

@@ -210,7 +210,7 @@ TEST(GarmentVerification, ComparesAPublishedAlgorithmWithItself) {
         << dressing.name << " is taken for mssim's own form";
   }
   System weaker = scene.system;
-  std::get<Garment>(weaker.topology).dressing.correction_threshold = 0.06;
+  garment_in(weaker).dressing.correction_threshold = 0.06;
   const auto backend = maker_of(published_dressings.front())(weaker, semi_euler, scene.dt_s, {.threads = 1});
   EXPECT_TRUE(verify_garment(*backend, scene.system, published, scene.dt_s).failure);
 }
@@ -291,7 +291,7 @@ void stiffen(System& system, GridSpringKind kind) { system.materials.at(kind).st
 std::vector<std::shared_ptr<const BodyMaps>> maps_farther_out(double metres) {
   SceneSpec spec = jeans().spec;
   std::get<GarmentSpec>(spec.content).skin_m += metres;
-  return std::get<Garment>(build_system(spec).topology).body_maps;
+  return garment_in(build_system(spec)).body_maps;
 }
 
 TEST(GarmentVerification, FindsEveryMistake) {

@@ -55,7 +55,7 @@ TEST(Fit, CountsRowsThatDoNotGoOnceAroundTheirLimb) {
   EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{0.2, 0, 0})).rows_astray, 5U);
   // One row is drawn aside.
   std::vector<Vec3d> position = system.start.position;
-  for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
+  for (const GarmentPanel& panel : garment_in(system).panels)
     for (std::uint32_t column = 0; column < panel.columns; ++column) position[panel.node(2, column)].x += 0.3;
   EXPECT_EQ(fit_of(system, position, nobody(Vec3d{})).rows_astray, 1U);
   // A row must go around each of several axes.
@@ -192,9 +192,9 @@ TEST(Fit, TakesTheLayerWhoseUpperEdgesAreFarthestOff) {
   std::vector<Vec3d> position = system.start.position;
   for (std::size_t node = 0; node < 12; ++node) position[node].y += node < 6 ? 0.005 : -0.012;
   EXPECT_NEAR(fit_of(system, position, nobody(Vec3d{})).upper_edge_rise, -0.0035, 1e-6);
-  std::get<Garment>(system.topology).panels[1].layer = 1;
+  garment_in(system).panels[1].layer = 1;
   EXPECT_NEAR(fit_of(system, position, nobody(Vec3d{})).upper_edge_rise, -0.012, 1e-6);
-  std::get<Garment>(system.topology).panels[0].layer = 2;
+  garment_in(system).panels[0].layer = 2;
   EXPECT_NEAR(fit_of(system, position, nobody(Vec3d{})).upper_edge_rise, -0.012, 1e-6);
 }
 
@@ -203,7 +203,7 @@ TEST(Fit, CountsWhereLayersCross) {
   // lower side runs through the square, and the square's upper side and diagonal through the sheet.
   System system = garment_of({{2, 2, 1, {0, 0, 0}}, {2, 2, 2, {0.6, 0.3, -1}, {0, 0, 1}}});
   EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{})).crossings, 0U) << "in one layer";
-  std::get<Garment>(system.topology).panels[1].layer = 1;
+  garment_in(system).panels[1].layer = 1;
   EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{})).crossings, 3U);
   for (std::size_t node = 4; node < 8; ++node) system.start.position[node].x += 0.5;
   EXPECT_EQ(fit_of(system, system.start.position, nobody(Vec3d{})).crossings, 0U) << "beside it";
@@ -213,7 +213,7 @@ TEST(Fit, SamplesBothTrianglesOfEveryCell) {
   const System system = garment_of({{3, 2, 1, {0, 0, 0}}});
   std::vector<Vec3d> position = system.start.position;
   position[3].z = 4;  // the corner far from the first cell's first
-  const std::vector<Vec3d> samples = face_samples(std::get<Garment>(system.topology).panels[0], position);
+  const std::vector<Vec3d> samples = face_samples(garment_in(system).panels[0], position);
   ASSERT_EQ(samples.size(), 2U * 25);
   EXPECT_EQ(samples[0], (Vec3d{0, 0, 0}));
   EXPECT_EQ(samples[24], (Vec3d{1, 1, 4}));

@@ -1,13 +1,12 @@
 // Garments of pieces that a scene file draws.
 
-#include <variant>
-
 #include "garment/contact/body_maps.h"
 #include "garment/layers/cloth_contacts.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/files_fixture.h"
+#include "tests/support/garment_system.h"
 #include "tests/support/testing.h"
 
 namespace mssim {
@@ -78,8 +77,6 @@ const char* const with_layers = R"("none": {}
     "layers": {"thickness_m": 0.004, "friction": 0.2, "push_speed_m_per_s": 0.7, "sweeps": 3})";
 
 System built(const std::string& text) { return build_system(parse_scene("pieces.json", text)); }
-
-const Garment& garment_in(const System& system) { return std::get<Garment>(system.topology); }
 
 double mass_of(const System& system, const GarmentPanel& panel) {
   const auto first = system.node_mass.begin() + panel.first_node;

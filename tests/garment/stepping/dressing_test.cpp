@@ -174,7 +174,7 @@ TEST(Dressing, LeavesOfAHeavyHemsElongationWhatTheCorrectionAllows) {
 
 TEST(Dressing, CorrectsAlongRowsColumnsAndDiagonals) {
   const System system = garment_of({{3, 4, 0.01, {0, 0, 0}}, {2, 2, 0.01, {1, 0, 0}}});
-  const auto order = correction_order(std::get<Garment>(system.topology), system.springs);
+  const auto order = correction_order(garment_in(system), system.springs);
   // Structural 2rc - r - c and shear 2(r-1)(c-1) of 3 x 4 and of 2 x 2, each once.
   EXPECT_EQ(order.size(), 17U + 12 + 4 + 2);
   auto sorted = order;
@@ -307,7 +307,7 @@ TEST(Drape, ASheetDroppedOnASphereRestsOnItWithNoPointInside) {
   EXPECT_EQ(fit.nodes_inside, 0U);
   EXPECT_EQ(fit.deepest_face_sample, 0);
   // It lies on the sphere's top, maps and the sagitta of its cells above it, and hangs down around it.
-  const GarmentPanel& panel = std::get<Garment>(system.topology).panels[0];
+  const GarmentPanel& panel = garment_in(system).panels[0];
   EXPECT_NEAR(result.state.position[panel.node(middle, middle)].y, sphere_radius + 0.003, 0.003);
   for (const std::uint32_t corner : {panel.node(0, 0), panel.node(0, 20), panel.node(20, 0)})
     EXPECT_LT(result.state.position[corner].y, 0.05);

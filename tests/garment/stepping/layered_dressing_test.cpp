@@ -93,7 +93,7 @@ System flying_sheet(std::uint32_t side) {
 }
 
 std::size_t crossings_after(const System& system, DressingBackend& backend, int steps) {
-  const Garment& garment = std::get<Garment>(system.topology);
+  const Garment& garment = garment_in(system);
   backend.step(steps);
   return count_crossings(garment, backend.state().position);
 }

@@ -34,7 +34,7 @@ TEST_F(GarmentTrace, HasAnXdmfWithEachPanelAndTheBodyInEachFrame) {
 TEST_F(GarmentTrace, SaysWherePanelsAreFlatAndWhatIsSewnToWhat) {
   write(garment_, 1);
   const Hdf5File h5 = open(file());
-  const auto& written = std::get<Garment>(garment_.topology);
+  const auto& written = garment_in(garment_);
   const auto flat = read<double>(h5.get(), "/parameters/panels/flat", H5T_NATIVE_DOUBLE);
   ASSERT_EQ(flat.size(), 2 * written.flat.size());
   for (std::size_t node = 0; node < written.flat.size(); ++node) {

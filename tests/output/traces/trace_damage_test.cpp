@@ -33,7 +33,7 @@ class TraceDamage : public Trace {
   std::string after(const System& system, const Change& change, const Surface& body = {}) const {
     write(system, 3, body);
     {
-      const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+      const Hdf5File h5 = open(file(), H5F_ACC_RDWR);
       change(h5.get());
       checked(H5Fflush(h5.get(), H5F_SCOPE_GLOBAL), "flushing");
     }

@@ -80,7 +80,7 @@ TEST_F(TraceReading, GivesBackBodies) {
 
 TEST_F(TraceReading, GivesBackAGarmentAndItsBody) {
   const System system = two_panels();
-  const auto& written = std::get<Garment>(system.topology);
+  const auto& written = garment_in(system);
   for (const bool in_double : {false, true}) {
     const TraceReader reader = read_back(system, in_double, small_tetrahedron());
     EXPECT_EQ(reader.content().shape.kind, "garment");
@@ -120,7 +120,7 @@ TEST_F(TraceReading, TakesThePartOfARunThatDidNotEnd) {
 
 TEST_F(TraceReading, TakesStringsOfAnyLength) {
   write(1);
-  const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+  const Hdf5File h5 = open(file(), H5F_ACC_RDWR);
   checked(H5Ldelete(h5.get(), "/parameters/scene", H5P_DEFAULT), "deleting");
   const Hdf5Type type(H5Tcopy(H5T_C_S1), "type");
   checked(H5Tset_size(type.get(), H5T_VARIABLE), "size");
@@ -170,7 +170,7 @@ TEST_F(TraceReading, RefusesWhatOtherProgramsWrote) {
   }
   EXPECT_THAT(refusal(file()), HasSubstr("H5MD"));
   {
-    const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+    const Hdf5File h5 = open(file(), H5F_ACC_RDWR);
     create_group(h5.get(), "/h5md");
     write_attribute(create_group(h5.get(), "/h5md/creator").get(), "name", std::string_view("GROMACS"));
   }
@@ -181,7 +181,7 @@ TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
   write(frames);
   const std::string particles = "/particles/cloth";
   const auto repack = [&](const std::string& path, hid_t type, std::vector<hsize_t> chunk, bool deflated) {
-    const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+    const Hdf5File h5 = open(file(), H5F_ACC_RDWR);
     const std::vector<hsize_t> shape = shape_of(h5.get(), path);
     const std::vector<double> numbers = read<double>(h5.get(), path, H5T_NATIVE_DOUBLE);
     checked(H5Ldelete(h5.get(), path.c_str(), H5P_DEFAULT), path);
@@ -202,7 +202,7 @@ TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
   repack("/parameters/springs/rest_length", H5T_IEEE_F64BE, {5}, true);
   const auto others = [&](const std::string& path, const std::string& name, hid_t type, hid_t memory,
                           const void* number) {
-    const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+    const Hdf5File h5 = open(file(), H5F_ACC_RDWR);
     const Hdf5Space scalar(H5Screate(H5S_SCALAR), "space");
     checked(H5Adelete_by_name(h5.get(), path.c_str(), name.c_str(), H5P_DEFAULT), name);
     const Hdf5Attribute attribute(H5Acreate_by_name(h5.get(), path.c_str(), name.c_str(), type, scalar.get(),
