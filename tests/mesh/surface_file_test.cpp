@@ -17,16 +17,17 @@ using Triangle = std::array<std::uint32_t, 3>;
 const std::string obj_points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
 const std::string obj_tetrahedron = obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
+Surface obj(std::string_view text) { return parse_obj("a.obj", text); }
+
 TEST(ObjFile, PointsAndTrianglesAreRead) {
-  const Surface surface = parse_obj("a.obj", obj_tetrahedron);
+  const Surface surface = obj(obj_tetrahedron);
   EXPECT_EQ(surface.points.size(), 4U);
   EXPECT_NEAR(volume_of(surface), 1.0 / 6, 1e-15);
   EXPECT_EQ(input_error_of([&] { validate_surface(surface, "a.obj"); }), "");
 }
 
 TEST(ObjFile, AllFormsOfCornersAndLinesAreRead) {
-  const Surface surface = parse_obj(
-      "a.obj",
+  const Surface surface = obj(
       "# cube side\r\nmtllib a.mtl\r\no a\r\nv 0 0 0 1.0\r\nv 1 0 0 .5 .5 .5\r\nvt 0 0\r\nvn 0 0 1\r\nv 1 1 "
       "0\r\n"
       "g g1\r\nusemtl m\r\ns off\r\nv 0 1 0\r\nf 1/1/1 2//1 3/1 -1 # quad\r\nf -4//-1 -3/-1/-1 5\r\nv 2 2 2");
@@ -35,10 +36,10 @@ TEST(ObjFile, AllFormsOfCornersAndLinesAreRead) {
 }
 
 TEST(ObjFile, LinesGoOnAfterABackslash) {
-  const Surface plain = parse_obj("a.obj", obj_tetrahedron);
-  const Surface surface = parse_obj("a.obj",
-                                    "# C:\\\nv 0 0\\\n0\nv 1 \\ \r\n 0 0\nv 0 1 0\nv 0 0 1\ng a \\\nf 1 2\nf "
-                                    "1\\\r3\\\r\n2\nf 1 2 4 \\\n\nf 2 3 4\nf \\\n1 4 \\ # c\n3\n");
+  const Surface plain = obj(obj_tetrahedron);
+  const Surface surface =
+      obj("# C:\\\nv 0 0\\\n0\nv 1 \\ \r\n 0 0\nv 0 1 0\nv 0 0 1\ng a \\\nf 1 2\nf "
+          "1\\\r3\\\r\n2\nf 1 2 4 \\\n\nf 2 3 4\nf \\\n1 4 \\ # c\n3\n");
   EXPECT_EQ(surface.points, plain.points);
   EXPECT_EQ(surface.triangles, plain.triangles);
 }
@@ -46,7 +47,7 @@ TEST(ObjFile, LinesGoOnAfterABackslash) {
 TEST(ObjFile, LinesMayEndInCrAlone) {
   std::string text = obj_tetrahedron;
   std::ranges::replace(text, '\n', '\r');
-  EXPECT_EQ(parse_obj("a.obj", text).triangles, parse_obj("a.obj", obj_tetrahedron).triangles);
+  EXPECT_EQ(obj(text).triangles, obj(obj_tetrahedron).triangles);
 }
 
 using Outline = std::vector<std::array<double, 2>>;
@@ -60,7 +61,7 @@ Surface polygon(const Outline& outline, std::size_t first) {
     text += "v " + decimal(p.x) + ' ' + decimal(p.y) + ' ' + decimal(p.z) + '\n';
     face += ' ' + std::to_string(i + 1);
   }
-  return parse_obj("a.obj", text + face + '\n');
+  return obj(text + face + '\n');
 }
 
 TEST(ObjFile, ConcavePolygonsAreCutInTheirPlane) {
@@ -95,17 +96,16 @@ TEST(ObjFile, ConcavePolygonsAreCutInTheirPlane) {
 
 TEST(ObjFile, QuadranglesThatAreBentOrHaveACornerTwiceAreCut) {
   // Seen along its normal its edges cross, and they pass each other.
-  EXPECT_THAT(parse_obj("a.obj", "v 0 0 0\nv 1 1 0\nv 1 0 1\nv 0 1 1.1\nf 1 2 3 4\n").triangles,
+  EXPECT_THAT(obj("v 0 0 0\nv 1 1 0\nv 1 0 1\nv 0 1 1.1\nf 1 2 3 4\n").triangles,
               ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
-  EXPECT_THAT(parse_obj("a.obj", obj_points + "v 1 0 0\nf 1 2 5 3\nf 4 2 3 4\n").triangles,
+  EXPECT_THAT(obj(obj_points + "v 1 0 0\nf 1 2 5 3\nf 4 2 3 4\n").triangles,
               ElementsAre(Triangle{0, 1, 2}, Triangle{3, 1, 2}));
 }
 
 TEST(ObjFile, LinesThatAreNoGeometryAreLeftOut) {
-  const Surface plain = parse_obj("a.obj", obj_tetrahedron);
-  const Surface surface = parse_obj(
-      "a.obj",
-      "# a scan\nmtllib a.mtl\no body\ncstype bezier\ncurv2 1 2 \\\n3 4\ntrace_obj a\nTexture 1 2\n" +
+  const Surface plain = obj(obj_tetrahedron);
+  const Surface surface =
+      obj("# a scan\nmtllib a.mtl\no body\ncstype bezier\ncurv2 1 2 \\\n3 4\ntrace_obj a\nTexture 1 2\n" +
           obj_points +
           "vt 0 0 0\nvn nan nan nan\nvp 1\ng a b\ns 1\nusemtl skin\nlod 2\n"
           "p 1\nl 1 2 \xe9\nf 1 3 2\nf 1 2 4\ncall more.obj\nf 2 3 4\nf 1 4 3\nend\n");
@@ -115,16 +115,14 @@ TEST(ObjFile, LinesThatAreNoGeometryAreLeftOut) {
 
 TEST(ObjFile, AByteOrderMarkIsLeftOut) {
   const std::string mark = "\xef\xbb\xbf";
-  EXPECT_EQ(parse_obj("a.obj", mark + obj_tetrahedron).triangles.size(), 4U);
-  EXPECT_THAT(input_error_of([&] { parse_obj("a.obj", mark + "v 0 0 o\n"); }),
-              StartsWith("a.obj, line 1: z is \"o\""));
-  EXPECT_THAT(input_error_of([&] { parse_obj("a.obj", obj_points + "f 1 2 " + mark + "3\n"); }),
-              HasSubstr("cannot be read"))
+  EXPECT_EQ(obj(mark + obj_tetrahedron).triangles.size(), 4U);
+  EXPECT_THAT(input_error_of([&] { obj(mark + "v 0 0 o\n"); }), StartsWith("a.obj, line 1: z is \"o\""));
+  EXPECT_THAT(input_error_of([&] { obj(obj_points + "f 1 2 " + mark + "3\n"); }), HasSubstr("cannot be read"))
       << "elsewhere it is no mark";
 }
 
 TEST(ObjFile, PointsAtOnePlaceBecomeOne) {
-  const Surface surface = parse_obj("a.obj", obj_points + "v -0 0 0\nf 5 3 2\nf 1 2 4\n");
+  const Surface surface = obj(obj_points + "v -0 0 0\nf 5 3 2\nf 1 2 4\n");
   EXPECT_THAT(surface.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
@@ -169,13 +167,13 @@ const BrokenText broken_obj_files[]{
 
 TEST(ObjFile, ThatIsBrokenIsRefusedWithPlaceAndValue) {
   for (const auto& [text, begin, about] : broken_obj_files)
-    EXPECT_THAT(input_error_of([text = text] { parse_obj("a.obj", text); }),
+    EXPECT_THAT(input_error_of([text = text] { obj(text); }),
                 AllOf(StartsWith(begin), HasSubstr(about), Not(HasSubstr("\n"))));
 }
 
 /// An ASCII STL file of the tetrahedron above.
 std::string ascii_stl() {
-  const Surface surface = parse_obj("a.obj", obj_tetrahedron);
+  const Surface surface = obj(obj_tetrahedron);
   std::string text = "solid a tetrahedron\n";
   for (const Triangle& triangle : surface.triangles) {
     text += " facet normal nan 0 0\n  outer loop\n";
@@ -195,7 +193,7 @@ void append_little_endian(std::string& bytes, std::uint32_t number) {
 
 /// A binary one; its first bytes mislead, as those of real files do.
 std::string binary_stl(float first_x = 0) {
-  const Surface surface = parse_obj("a.obj", obj_tetrahedron);
+  const Surface surface = obj(obj_tetrahedron);
   std::string bytes = "solid but binary";
   bytes.resize(80, ' ');
   append_little_endian(bytes, static_cast<std::uint32_t>(surface.triangles.size()));

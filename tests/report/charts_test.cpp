@@ -277,6 +277,10 @@ FoundGuide two_methods() {
   return guide;
 }
 
+std::vector<Chart> charts_of(const FoundGuide& guide, const Provenance& provenance = {}) {
+  return guide_charts(guide, legend, provenance, "cloth", "f1");
+}
+
 const Chart& chart_called(const std::vector<Chart>& charts, const std::string& id) {
   for (const Chart& chart : charts)
     if (chart.id == id) return chart;
@@ -299,20 +303,20 @@ TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
 }
 
 TEST(GuideCharts, PutDivergedPointsAtTheEdgeWhateverTheirError) {
-  for (const Chart& chart : guide_charts(two_methods(), legend, {}, "cloth", "f1")) {
+  for (const Chart& chart : charts_of(two_methods())) {
     const Series& diverged = series(chart, "diverged");
     EXPECT_EQ(diverged.mark, PointMark::cross);
     EXPECT_THAT(diverged.y, ElementsAre(10)) << chart.id;
     EXPECT_THAT(chart.remarks, Contains(HasSubstr("Crosses at an error of 10 ")));
   }
-  const auto charts = guide_charts(two_methods(), legend, {}, "cloth", "f1");
+  const auto charts = charts_of(two_methods());
   EXPECT_THAT(charts.front().remarks, Contains("Diverged: rk4 with 4.00 ms"));
 }
 
 TEST(GuideCharts, PreferABackendThatDidNotDiverge) {
   FoundGuide guide = two_methods();
   guide.points[0] = guide_point("rk4", "serial", 0.004, 1, 0.7);
-  const auto charts = guide_charts(guide, legend, {}, "cloth", "f1");
+  const auto charts = charts_of(guide);
   EXPECT_THAT(series(charts.front(), "rk4").x, ElementsAre(1, 2, 8));
   EXPECT_THAT(names_in(charts.front()), Not(Contains("diverged")));
 }
@@ -320,7 +324,7 @@ TEST(GuideCharts, PreferABackendThatDidNotDiverge) {
 TEST(GuideCharts, MarkWhatIsNotCompared) {
   FoundGuide guide = two_methods();
   guide.points[2].status = "within the reference's error";
-  for (const Chart& chart : guide_charts(guide, legend, {}, "cloth", "f1")) {
+  for (const Chart& chart : charts_of(guide)) {
     const Series& marked = series(chart, "not compared");
     EXPECT_EQ(marked.mark, PointMark::square);
     EXPECT_THAT(marked.y, ElementsAre(0.03));
@@ -329,7 +333,7 @@ TEST(GuideCharts, MarkWhatIsNotCompared) {
 }
 
 TEST(GuideCharts, ShowErrorsOverStepsWithTheirOrders) {
-  const auto charts = guide_charts(two_methods(), legend, {}, "cloth", "f1");
+  const auto charts = charts_of(two_methods());
   const Chart& steps = chart_called(charts, "f1-error-step");
   EXPECT_THAT(names_in(steps), ElementsAre("rk4", "implicit-euler", "diverged", "order 1", "order 4"));
   EXPECT_THAT(series(steps, "rk4").x, ElementsAre(0.002, 0.001));
@@ -341,7 +345,7 @@ TEST(GuideCharts, ShowErrorsOverStepsWithTheirOrders) {
 }
 
 TEST(GuideCharts, SayWhichMethodsHaveNoNumberOfEvaluations) {
-  const auto charts = guide_charts(two_methods(), legend, {}, "cloth", "f1");
+  const auto charts = charts_of(two_methods());
   const Chart& evaluations = chart_called(charts, "f1-error-evaluations");
   EXPECT_THAT(names_in(evaluations), ElementsAre("rk4", "diverged"));
   EXPECT_THAT(series(evaluations, "rk4").x, ElementsAre(2000, 4000));
@@ -352,7 +356,7 @@ TEST(GuideCharts, GiveEachIntegratorAColour) {
   FoundGuide guide;
   for (const Integrator* integrator : all_integrators)
     guide.points.push_back(guide_point(std::string(integrator->name), "serial", 0.001, 1, 0.1));
-  const Chart chart = guide_charts(guide, legend, made_up_provenance(), "cloth", "f1").at(0);
+  const Chart chart = charts_of(guide, made_up_provenance()).at(0);
   EXPECT_EQ(chart.subtitle, "Measured on A Processor, 2 threads");
   std::set<std::string_view> colours;
   for (const std::size_t look : looks_of(chart.series, chart.families))
@@ -364,7 +368,7 @@ TEST(GuideCharts, NameTheOnlyDeviceInSizes) {
   FoundGuide guide;
   for (const double nodes : {256.0, 529.0}) guide.times.push_back({"cloth", "rk4", "opencl", nodes, nodes});
   Provenance provenance = made_up_provenance();
-  const auto names = [&] { return names_in(guide_charts(guide, legend, provenance, "cloth", "f1").at(0)); };
+  const auto names = [&] { return names_in(charts_of(guide, provenance).at(0)); };
   EXPECT_THAT(names(), ElementsAre("opencl"));
   provenance.opencl_devices = {"Portable Computing Language: pthread-A Processor, driver 3.1"};
   EXPECT_THAT(names(), ElementsAre("opencl on the CPU"));
@@ -379,7 +383,7 @@ TEST(GuideCharts, ShowSizesOfAnExplicitAndAnImplicitIntegrator) {
       guide.times.push_back({"cloth", integrator, "openmp", nodes, nodes / 100});
       if (nodes < 300) guide.times.push_back({"cloth", integrator, "serial", nodes, nodes / 10});
     }
-  const auto charts = guide_charts(guide, legend, {}, "cloth", "f1");
+  const auto charts = charts_of(guide);
   ASSERT_EQ(charts.size(), 2U);
   EXPECT_EQ(charts[0].id, "f1-sizes-explicit");
   EXPECT_EQ(charts[0].title, "cloth in other sizes, semi-euler");

@@ -110,6 +110,13 @@ TEST(TeamGain, TakesRoundsUntilNoneIsLeft) {
   EXPECT_EQ(gain.take_rounds(three), 3U);
 }
 
+/// Calls `run` in so many threads, with the number of each, and waits for all.
+void in_threads(std::uint32_t threads, const std::function<void(std::uint32_t thread)>& run) {
+  std::vector<std::jthread> group;
+  for (std::uint32_t thread = 0; thread < threads; ++thread)
+    group.emplace_back([&run, thread] { run(thread); });
+}
+
 constexpr std::uint32_t phase_count = 2000, chunk_count = 5;
 
 /// Counts who took what, and who took a chunk of another phase than is open.
@@ -159,19 +166,16 @@ TEST(ChunkTickets, NeedNoLeader) {
     Ledger ledger;
     std::uint32_t phase = 0;
     tickets.open();
-    std::vector<std::jthread> group;
-    for (std::uint32_t thread = 0; thread < threads; ++thread)
-      group.emplace_back([&, thread] {
-        tickets.work_until_closed(
-            thread, 100, [&](const ChunkTickets::Ticket& ticket) { ledger.take(ticket); },
-            [&] {
-              ledger.expect_phase_whole(phase);
-              if (++phase == phase_count) return tickets.close();
-              ledger.open(phase);
-              tickets.open();
-            });
-      });
-    group.clear();
+    in_threads(threads, [&](std::uint32_t thread) {
+      tickets.work_until_closed(
+          thread, 100, [&](const ChunkTickets::Ticket& ticket) { ledger.take(ticket); },
+          [&] {
+            ledger.expect_phase_whole(phase);
+            if (++phase == phase_count) return tickets.close();
+            ledger.open(phase);
+            tickets.open();
+          });
+    });
     EXPECT_EQ(phase, phase_count);
   }
 }
@@ -289,11 +293,7 @@ TEST(SpinBarrier, LetsEightThreadsOfOneCpuTakeEveryRoundOnce) {
   for (int call = 0; call < 3; ++call) {
     Rounds rounds(8, 1000);
     SpinBarrier barrier(8, gain);
-    {
-      std::vector<std::jthread> group;
-      for (std::size_t part = 0; part < 8; ++part)
-        group.emplace_back([&, part] { rounds.run(barrier, part, [] {}); });
-    }
+    in_threads(8, [&](std::uint32_t part) { rounds.run(barrier, part, [] {}); });
     rounds.expect_whole();
   }
 }
@@ -333,11 +333,7 @@ TEST(SpinBarrier, LetsOneThreadWorkAloneWhereThreadsSayThatTheyHaveWaited) {
 TEST(SpinBarrier, KeepsThreadsTogetherWithoutATeamGain) {
   Rounds rounds(3, 200);
   SpinBarrier barrier(3);
-  {
-    std::vector<std::jthread> group;
-    for (std::size_t part = 0; part < 3; ++part)
-      group.emplace_back([&, part] { rounds.run(barrier, part, [] {}); });
-  }
+  in_threads(3, [&](std::uint32_t part) { rounds.run(barrier, part, [] {}); });
   rounds.expect_whole();
   EXPECT_EQ(rounds.alone(), 0U);
 }

@@ -21,8 +21,13 @@ ComparedRow compared(const ResultRow& base, const ResultRow& next) {
   return comparison.rows.at(0);
 }
 
+/// Two rows of openmp with as many samples, spread alike.
+ComparedRow compared(double base_ms, double new_ms, double spread = 0.02, int count = 15) {
+  return compared(row_of("openmp", base_ms, spread, count), row_of("openmp", new_ms, spread, count));
+}
+
 TEST(Verdict, OfATimeThatRoseBeyondTheThresholdIsSlower) {
-  const ComparedRow row = compared(row_of("openmp", 1), row_of("openmp", 1.1));
+  const ComparedRow row = compared(1, 1.1);
   EXPECT_EQ(row.verdict, Verdict::slower);
   EXPECT_NEAR(row.ratio->ratio, 1.1, 0.01);
   EXPECT_LT(row.ratio->p, significance);
@@ -30,21 +35,19 @@ TEST(Verdict, OfATimeThatRoseBeyondTheThresholdIsSlower) {
 }
 
 TEST(Verdict, OfATimeThatFellBeyondTheThresholdIsFaster) {
-  EXPECT_EQ(compared(row_of("openmp", 1.1), row_of("openmp", 1)).verdict, Verdict::faster);
+  EXPECT_EQ(compared(1.1, 1).verdict, Verdict::faster);
 }
 
 TEST(Verdict, OfASmallChangeIsSameThoughItIsSignificant) {
-  const ComparedRow row = compared(row_of("openmp", 1, 0.01), row_of("openmp", 1.03, 0.01));
+  const ComparedRow row = compared(1, 1.03, 0.01);
   EXPECT_LT(row.ratio->p, significance);
   EXPECT_EQ(row.verdict, Verdict::same);
 }
 
-TEST(Verdict, OfARunWithItselfIsSame) {
-  EXPECT_EQ(compared(row_of("openmp", 1), row_of("openmp", 1)).verdict, Verdict::same);
-}
+TEST(Verdict, OfARunWithItselfIsSame) { EXPECT_EQ(compared(1, 1).verdict, Verdict::same); }
 
 TEST(Verdict, OfNoisyTimesIsUndecidedAndSaysHowManyWouldDo) {
-  const ComparedRow row = compared(row_of("openmp", 1, 0.3), row_of("openmp", 1.01, 0.3));
+  const ComparedRow row = compared(1, 1.01, 0.3);
   EXPECT_EQ(row.verdict, Verdict::undecided);
   ASSERT_TRUE(row.samples_needed);
   EXPECT_GT(*row.samples_needed, 50U);
@@ -52,7 +55,7 @@ TEST(Verdict, OfNoisyTimesIsUndecidedAndSaysHowManyWouldDo) {
 }
 
 TEST(Verdict, OfAChangeAtTheThresholdItselfWouldNeedManySamples) {
-  const ComparedRow row = compared(row_of("openmp", 1, 0.3), row_of("openmp", 1.0499, 0.3));
+  const ComparedRow row = compared(1, 1.0499, 0.3);
   EXPECT_EQ(row.verdict, Verdict::undecided);
   EXPECT_EQ(row.samples_needed, std::nullopt);
 }
@@ -95,12 +98,12 @@ TEST(SamplesNeeded, AreAsManyMoreAsTheIntervalIsTooWideSquared) {
 }
 
 TEST(Verdict, OfFewSamplesIsUndecidedHoweverFarApart) {
-  const ComparedRow row = compared(row_of("openmp", 1, 0.01, 3), row_of("openmp", 2, 0.01, 3));
+  const ComparedRow row = compared(1, 2, 0.01, 3);
   EXPECT_EQ(row.verdict, Verdict::undecided);
   EXPECT_EQ(row.samples_needed, 5U);
-  EXPECT_EQ(compared(row_of("openmp", 1, 0.01, 5), row_of("openmp", 2, 0.01, 5)).verdict, Verdict::slower);
+  EXPECT_EQ(compared(1, 2, 0.01, 5).verdict, Verdict::slower);
   // Three samples that agree have no 95 % interval, so they are not the same either.
-  EXPECT_EQ(compared(row_of("openmp", 1, 0, 3), row_of("openmp", 1, 0, 3)).verdict, Verdict::undecided);
+  EXPECT_EQ(compared(1, 1, 0, 3).verdict, Verdict::undecided);
 }
 
 TEST(RunComparison, CallsARowLostThatHasNoTimeAnyMore) {

@@ -88,6 +88,11 @@ TEST(History, SeesASlowdownBeforeASmallChange) {
               ElementsAre(HasSubstr("slower since commit commit-12, 1.1 times")));
 }
 
+std::string cell_of(const Table& table, std::size_t row, std::string_view column) {
+  const auto found = std::ranges::find(table.columns, column, &Column::name);
+  return cell_text(table.rows[row][static_cast<std::size_t>(found - table.columns.begin())], *found);
+}
+
 TEST(History, TellsNoIntervalOfTooFewTimes) {
   std::vector<HistoryEntry> history;
   MachineHistory machine = with_levels(history, {0.5, 0.6});
@@ -97,9 +102,7 @@ TEST(History, TellsNoIntervalOfTooFewTimes) {
   EXPECT_THAT(
       regressions(machine, threshold, recent),
       ElementsAre(AllOf(HasSubstr("slower since commit commit-11"), testing::Not(HasSubstr(" to ")))));
-  const Table table = history_table(machine, threshold);
-  const auto low = std::ranges::find(table.columns, "low", &Column::name) - table.columns.begin();
-  EXPECT_EQ(cell_text(table.rows[2][static_cast<std::size_t>(low)], {}), "–");
+  EXPECT_EQ(cell_of(history_table(machine, threshold), 2, "low"), "–");
   EXPECT_EQ(series.low, series.ms) << "entries of three samples";
   history[0].rows[1].samples = 6;
   EXPECT_EQ(machines_of(history)[0].series[1].low[0], 0.25);
@@ -164,10 +167,7 @@ TEST(History, ShowsEachLevelAndWhatVanished) {
   history.back().commit = "0123456789abcdef0123456789abcdef01234567, changed";
   const Table table = history_table(machines_of(history)[0], threshold);
   ASSERT_EQ(table.rows.size(), 4U);
-  const auto cell = [&](std::size_t row, std::string_view column) {
-    const auto found = std::ranges::find(table.columns, column, &Column::name);
-    return cell_text(table.rows[row][static_cast<std::size_t>(found - table.columns.begin())], *found);
-  };
+  const auto cell = [&](std::size_t row, std::string_view column) { return cell_of(table, row, column); };
   EXPECT_EQ(cell(0, "verdict"), "–");
   EXPECT_EQ(cell(1, "commits"), "12");
   EXPECT_EQ(cell(2, "since"), "commit-12");
