@@ -10,7 +10,7 @@ namespace mssim {
 namespace {
 
 std::string surface_complaint(const Surface& surface) {
-  return input_error_of([&] { validate_surface(surface, "cube"); });
+  return sentence_of<InputError>([&] { validate_surface(surface, "cube"); });
 }
 
 TEST(Surface, ClosedSurfacesAreAccepted) {
@@ -98,7 +98,9 @@ TEST(Surface, CoordinatesAreWholeMicrometres) {
 }
 
 TEST(Surface, ShapesThatCannotBeAreRefused) {
-  const auto complaint_about = [](const auto& shape) { return input_error_of([&] { surface_of(shape); }); };
+  const auto complaint_about = [](const auto& shape) {
+    return sentence_of<InputError>([&] { surface_of(shape); });
+  };
   EXPECT_THAT(complaint_about(BoxShape{{1, 0, 1}, {1, 1, 1}}),
               HasSubstr("size along y is 0 m; give a length"));
   EXPECT_THAT(complaint_about(BoxShape{{1, 1, std::nan("")}, {1, 1, 1}}), HasSubstr("size along z is nan m"));
@@ -159,7 +161,7 @@ TEST(InteriorPoints, LieInTheTrianglesOfACoarseShape) {
 
 TEST(InteriorPoints, TooDenseForMicrometresAreRefused) {
   const auto complaint = [](const Shape& shape, std::uint32_t count) {
-    return input_error_of([&] { points_of({shape, {count, 1, 0.1, 0.6}}); });
+    return sentence_of<InputError>([&] { points_of({shape, {count, 1, 0.1, 0.6}}); });
   };
   const auto tells =
       AllOf(HasSubstr(" m apart"), HasSubstr("larger body"), HasSubstr("fewer cells or points"));
@@ -215,7 +217,7 @@ TEST(Openings, ThatAreClosedLeaveASurfaceThatEnclosesTheVolume) {
   Surface surface = open_sphere(0.95);
   const double whole = volume_of(surface_of(SphereShape{1, 12}));
   EXPECT_EQ(close_openings(surface, 1).size(), 1U);
-  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "sphere"); }), "");
+  EXPECT_EQ(sentence_of<InputError>([&] { validate_surface(surface, "sphere"); }), "");
   EXPECT_THAT(openings_of(surface), IsEmpty());
   EXPECT_LT(volume_of(surface), whole);
   EXPECT_GT(volume_of(surface), 0.98 * whole);
@@ -245,7 +247,7 @@ TEST(Openings, AreNotSpannedByAnEdgeThatTheSurfaceHas) {
   // A roof whose short ridge would also be the shortest edge across what is open below it.
   Surface roof{{{-0.2, 0, 0}, {0.2, 0, 0}, {0, -0.3, 1}, {0, -0.3, -1}}, {{0, 2, 1}, {0, 1, 3}}};
   span_openings(roof);
-  EXPECT_EQ(input_error_of([&] { validate_surface(roof, "roof"); }), "");
+  EXPECT_EQ(sentence_of<InputError>([&] { validate_surface(roof, "roof"); }), "");
   EXPECT_EQ(roof.triangles.size(), 4U);
 }
 
@@ -256,7 +258,7 @@ TEST(Openings, AMissingTriangleIsPutBack) {
   EXPECT_EQ(close_openings(surface, 1).front().edges(), 3U);
   EXPECT_EQ(surface.points, whole.points);
   EXPECT_NEAR(volume_of(surface), volume_of(whole), 1e-12);
-  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "sphere"); }), "");
+  EXPECT_EQ(sentence_of<InputError>([&] { validate_surface(surface, "sphere"); }), "");
 }
 
 TEST(Openings, ThatTouchInAPointAreToldApart) {
@@ -282,7 +284,7 @@ TEST(Openings, ThatTouchInAPointAreToldApart) {
   const std::vector<Opening> openings = close_openings(cube, 2);
   ASSERT_EQ(openings.size(), 2U);
   for (const Opening& opening : openings) EXPECT_EQ(opening.edges(), 3U);
-  EXPECT_EQ(input_error_of([&] { validate_surface(cube, "cube"); }), "");
+  EXPECT_EQ(sentence_of<InputError>([&] { validate_surface(cube, "cube"); }), "");
   EXPECT_NEAR(volume_of(cube), 1, 1e-12);
 }
 
@@ -290,7 +292,7 @@ TEST(Openings, LargeOnesAreRefusedAndNothingIsFilled) {
   Surface surface = open_sphere(0.5);
   const std::size_t before = surface.triangles.size();
   EXPECT_THAT(
-      input_error_of([&] { close_openings(surface, 0.2); }),
+      sentence_of<InputError>([&] { close_openings(surface, 0.2); }),
       AllOf(StartsWith("the opening of "), HasSubstr(" edges around ("), HasSubstr(" is 1.7"),
             HasSubstr(" m across, and at most 0.2 m are closed; close it where the surface was made")));
   EXPECT_EQ(surface.triangles.size(), before);
@@ -304,7 +306,8 @@ TEST(Openings, TrianglesThatDisagreeMakeNoRing) {
         std::ranges::find(triangle, ring.points[1]) != triangle.end())
       std::swap(triangle[1], triangle[2]);
   EXPECT_FALSE(openings_of(surface).front().is_ring && openings_of(surface).back().is_ring);
-  EXPECT_THAT(input_error_of([&] { close_openings(surface, 1); }), HasSubstr("does not enclose a hole"));
+  EXPECT_THAT(sentence_of<InputError>([&] { close_openings(surface, 1); }),
+              HasSubstr("does not enclose a hole"));
 }
 
 TEST(Openings, OfManyPointsAreMeasuredFromTheirCentre) {
@@ -325,7 +328,7 @@ TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {
   EXPECT_EQ(close_openings(triangle, 2).size(), 1U);
   const Surface three_four_five{{{0, 0, 0}, {3, 0, 0}, {0, 4, 0}}, {{0, 1, 2}}};
   EXPECT_DOUBLE_EQ(openings_of(three_four_five).front().size, 5);
-  EXPECT_THAT(input_error_of([&] { validate_surface(triangle, "it"); }), HasSubstr("volume"));
+  EXPECT_THAT(sentence_of<InputError>([&] { validate_surface(triangle, "it"); }), HasSubstr("volume"));
   Surface point{{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
   EXPECT_THAT(close_openings(point, 1), IsEmpty());
   Surface nothing;
@@ -361,7 +364,7 @@ TEST(JoinedCorners, ThatDifferInTheirLastDigitsBecomeOne) {
     Surface loose = apart(whole, jitter);
     EXPECT_EQ(join_corners(loose), 3 * whole.triangles.size() - whole.points.size());
     EXPECT_EQ(loose.points.size(), whole.points.size());
-    EXPECT_EQ(input_error_of([&] { validate_surface(loose, "joined"); }), "");
+    EXPECT_EQ(sentence_of<InputError>([&] { validate_surface(loose, "joined"); }), "");
     EXPECT_NEAR(volume_of(loose) / volume_of(whole), 1, 0.05);
   }
 }
@@ -372,16 +375,16 @@ TEST(JoinedCorners, OfWhatIsClosedOrOpenOrFartherApartStayAsTheyAre) {
     Surface same = surface;
     EXPECT_EQ(join_corners(same), 0U);
     EXPECT_EQ(same.points, surface.points);
-    EXPECT_EQ(input_error_of([&] { require_joined(same); }), "");
+    EXPECT_EQ(sentence_of<InputError>([&] { require_joined(same); }), "");
   }
   const Surface whole = surface_of(SphereShape{1, 12});
   Surface loose = apart(whole, 1e-3);
   join_corners(loose);
   const auto says_so = AllOf(HasSubstr("triangles do not join: "), HasSubstr("merge the points"));
-  EXPECT_THAT(input_error_of([&] { require_joined(loose); }), says_so);
-  EXPECT_THAT(input_error_of([&] { close_openings(loose, 1); }), says_so)
+  EXPECT_THAT(sentence_of<InputError>([&] { require_joined(loose); }), says_so);
+  EXPECT_THAT(sentence_of<InputError>([&] { close_openings(loose, 1); }), says_so)
       << "they would be closed one by one";
-  EXPECT_THAT(input_error_of([&] { validate_surface(loose, "a"); }), says_so);
+  EXPECT_THAT(sentence_of<InputError>([&] { validate_surface(loose, "a"); }), says_so);
 }
 
 }  // namespace

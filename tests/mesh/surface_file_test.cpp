@@ -23,7 +23,7 @@ TEST(ObjFile, PointsAndTrianglesAreRead) {
   const Surface surface = obj(obj_tetrahedron);
   EXPECT_EQ(surface.points.size(), 4U);
   EXPECT_NEAR(volume_of(surface), 1.0 / 6, 1e-15);
-  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "a.obj"); }), "");
+  EXPECT_EQ(sentence_of<InputError>([&] { validate_surface(surface, "a.obj"); }), "");
 }
 
 TEST(ObjFile, AllFormsOfCornersAndLinesAreRead) {
@@ -116,8 +116,10 @@ TEST(ObjFile, LinesThatAreNoGeometryAreLeftOut) {
 TEST(ObjFile, AByteOrderMarkIsLeftOut) {
   const std::string mark = "\xef\xbb\xbf";
   EXPECT_EQ(obj(mark + obj_tetrahedron).triangles.size(), 4U);
-  EXPECT_THAT(input_error_of([&] { obj(mark + "v 0 0 o\n"); }), StartsWith("a.obj, line 1: z is \"o\""));
-  EXPECT_THAT(input_error_of([&] { obj(obj_points + "f 1 2 " + mark + "3\n"); }), HasSubstr("cannot be read"))
+  EXPECT_THAT(sentence_of<InputError>([&] { obj(mark + "v 0 0 o\n"); }),
+              StartsWith("a.obj, line 1: z is \"o\""));
+  EXPECT_THAT(sentence_of<InputError>([&] { obj(obj_points + "f 1 2 " + mark + "3\n"); }),
+              HasSubstr("cannot be read"))
       << "elsewhere it is no mark";
 }
 
@@ -167,7 +169,7 @@ const BrokenText broken_obj_files[]{
 
 TEST(ObjFile, ThatIsBrokenIsRefusedWithPlaceAndValue) {
   for (const auto& [text, begin, about] : broken_obj_files)
-    EXPECT_THAT(input_error_of([text = text] { obj(text); }),
+    EXPECT_THAT(sentence_of<InputError>([text = text] { obj(text); }),
                 AllOf(StartsWith(begin), HasSubstr(about), Not(HasSubstr("\n"))));
 }
 
@@ -217,7 +219,7 @@ TEST(StlFile, AsciiAndBinaryGiveTheSameSurface) {
     const Surface surface = parse_stl("a.stl", content);
     EXPECT_EQ(surface.points.size(), 4U);
     EXPECT_NEAR(volume_of(surface), 1.0 / 6, 1e-15);
-    EXPECT_EQ(input_error_of([&] { validate_surface(surface, "a.stl"); }), "");
+    EXPECT_EQ(sentence_of<InputError>([&] { validate_surface(surface, "a.stl"); }), "");
   }
 }
 
@@ -242,13 +244,14 @@ TEST(StlFile, AByteOrderMarkIsLeftOut) {
 TEST(StlFile, CutOffAnywhereIsRefused) {
   for (const std::string& content : {ascii_stl(), binary_stl()})
     for (std::size_t bytes = 0; bytes + sizeof "endsolid a" < content.size(); bytes += 7)
-      EXPECT_THAT(input_error_of([&] { parse_stl("a.stl", content.substr(0, bytes)); }), StartsWith("a.stl"))
+      EXPECT_THAT(sentence_of<InputError>([&] { parse_stl("a.stl", content.substr(0, bytes)); }),
+                  StartsWith("a.stl"))
           << bytes << " bytes";
 }
 
 TEST(StlFile, BrokenBinaryNamesTheByte) {
   const auto complaint = [](const std::string& content) {
-    return input_error_of([&] { parse_stl("a.stl", content); });
+    return sentence_of<InputError>([&] { parse_stl("a.stl", content); });
   };
   EXPECT_THAT(complaint(binary_stl(NAN)), StartsWith("a.stl, byte 96: a corner is at (nan, 0, 0)"));
   EXPECT_THAT(complaint(binary_stl(-2e9F)), HasSubstr("for each axis give a number from -1e9 to 1e9"));
@@ -277,7 +280,7 @@ const BrokenText broken_stl_files[]{
 
 TEST(StlFile, ThatIsBrokenIsRefusedWithPlaceAndValue) {
   for (const auto& [text, begin, about] : broken_stl_files)
-    EXPECT_THAT(input_error_of([text = text] { parse_stl("a.stl", text); }),
+    EXPECT_THAT(sentence_of<InputError>([text = text] { parse_stl("a.stl", text); }),
                 AllOf(StartsWith(begin), HasSubstr(about)));
 }
 
@@ -289,9 +292,9 @@ TEST_F(SurfaceFile, IsReadByItsExtension) {
   put("a.ply", "");
   EXPECT_EQ(read_surface(folder() / "a.OBJ").surface.triangles.size(), 4U);
   EXPECT_EQ(read_surface(folder() / "a.stl").surface.triangles.size(), 4U);
-  EXPECT_THAT(input_error_of([&] { read_surface(folder() / "a.ply"); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { read_surface(folder() / "a.ply"); }),
               HasSubstr("ends in neither .obj nor .stl"));
-  EXPECT_THAT(input_error_of([&] { read_surface(folder() / "b.obj"); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { read_surface(folder() / "b.obj"); }),
               HasSubstr("b.obj: there is no such file"));
 }
 
@@ -311,7 +314,7 @@ TEST_F(SurfaceFile, OfASheetThatIsTooThinToBeMeshedIsRefused) {
     for (Vec3d& p : box.points) p.y *= thickness;
     return put("sheet.obj", obj_text(box));
   };
-  EXPECT_THAT(input_error_of([&] { surface_mesh({sheet(0.0001)}); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { surface_mesh({sheet(0.0001)}); }),
               AllOf(HasSubstr("sheet.obj: it is 0.0001 m thick at (0."), HasSubstr("at most 4000000"),
                     HasSubstr("thicker")));
   // What is foreseen of the other is what comes.
@@ -325,10 +328,10 @@ TEST_F(SurfaceFile, OfAThickBodyFarFromTheOriginIsMeshed) {
 
 TEST_F(SurfaceFile, ThatEnclosesNoBodyIsNamed) {
   put("open.obj", obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
-  EXPECT_THAT(input_error_of([&] { surface_mesh({folder() / "open.obj"}); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { surface_mesh({folder() / "open.obj"}); }),
               HasSubstr("open.obj: the edge from "));
   put("a.obj", obj_tetrahedron);
-  EXPECT_THAT(input_error_of([&] {
+  EXPECT_THAT(sentence_of<InputError>([&] {
                 surface_mesh({folder() / "a.obj", 1, 1e-12});
               }),
               HasSubstr("more than ten million"));

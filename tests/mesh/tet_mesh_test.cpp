@@ -104,7 +104,7 @@ const BrokenFile broken_files[]{
 
 TEST(TetgenFiles, ThatAreBrokenAreRefusedWithPlaceAndValue) {
   for (const auto& [nodes, tetrahedra, begin, about] : broken_files)
-    EXPECT_THAT(input_error_of(
+    EXPECT_THAT(sentence_of<InputError>(
                     [&, n = nodes, t = tetrahedra] { parse(n ? n : good_nodes, t ? t : good_tetrahedra); }),
                 AllOf(StartsWith(begin), HasSubstr(about), Not(HasSubstr("\n"))));
 }
@@ -112,14 +112,14 @@ TEST(TetgenFiles, ThatAreBrokenAreRefusedWithPlaceAndValue) {
 TEST(TetgenFiles, OfOneEndlessLineAreRefusedBeforeItIsSplitIntoWords) {
   std::string words = "5 3 0 0\n0";
   while (words.size() <= 9 + (std::size_t{1} << 20)) words += " 1";
-  EXPECT_THAT(input_error_of([&] { parse(words, good_tetrahedra); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { parse(words, good_tetrahedra); }),
               AllOf(StartsWith("a.node, line 2: it has "), HasSubstr("break the file into lines")));
 }
 
 TEST_F(MeshTest, TetgenFilesThatAreMissingOrFoldersAreNamed) {
   put("a.node", good_nodes);
   const auto complaint = [&](const std::string& ele) {
-    return input_error_of([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
+    return sentence_of<InputError>([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
   };
   EXPECT_THAT(complaint("b.ele"), HasSubstr("b.ele: there is no such file: give the file of a mesh"));
   std::filesystem::create_directory(folder() / "c.ele");
@@ -245,7 +245,7 @@ TEST(ShapeMesh, OfACoarseShapeHasAllItsPoints) {
 
 TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
   const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {
-    return input_error_of([&] { shape_mesh({shape, interior}); });
+    return sentence_of<InputError>([&] { shape_mesh({shape, interior}); });
   };
   EXPECT_THAT(complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),
               StartsWith("its mesh would have 6000007 points or more, for which TetGen needs more than"));

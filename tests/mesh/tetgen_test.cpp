@@ -73,7 +73,7 @@ TEST_F(TetgenTest, SaysWhichItIs) {
 }
 
 std::string complaint_about(const Surface& surface, const char* switches = keep_surface) {
-  return input_error_of([&] {
+  return sentence_of<InputError>([&] {
     validate_surface(surface, "surface");
     tetrahedralise(surface, {}, switches);
   });

@@ -27,11 +27,6 @@ class MeshTest : public TemporaryFolderTest {
   KeptVariables kept_{"HOME", "PATH", "TMPDIR", "XDG_CACHE_HOME"};
 };
 
-/// What a InputError that `body` throws says, or "" when it throws none.
-inline std::string input_error_of(const std::function<void()>& body) {
-  return sentence_of<InputError>([&] { body(); });
-}
-
 /// A cube with sides of 1 m and one cell, its lowest corner at `corner`.
 inline Surface unit_cube(const Vec3d& corner = {}) {
   Surface cube = surface_of(BoxShape{{1, 1, 1}, {1, 1, 1}});

@@ -48,7 +48,7 @@ Surface arch(std::uint32_t cells) {
   return surface;
 }
 
-std::string complaint(const std::function<void()>& body) { return input_error_of(body); }
+std::string complaint(const std::function<void()>& body) { return sentence_of<InputError>(body); }
 
 TEST(BodyProfile, ASphereHasTheCirclesOfItsHeights) {
   const BodyProfile profile(surface_of(SphereShape{0.5, 60}));

@@ -1,8 +1,8 @@
 #include "garment/body/mannequin.h"
 
 #include "garment/body/body_profile.h"
-#include "tests/support/mesh_fixture.h"
 #include "tests/support/testing.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
@@ -156,14 +156,14 @@ TEST(Mannequin, MeasuresThatMakeNoBodyAreNamed) {
   for (const Spoiled& one : all) {
     BodyMeasures measures;
     one.of(measures) = one.value;
-    EXPECT_THAT(input_error_of([&] { mannequin(measures); }), HasSubstr(one.says));
+    EXPECT_THAT(sentence_of<InputError>([&] { mannequin(measures); }), HasSubstr(one.says));
   }
 }
 
 TEST(Mannequin, TheStanceAskedForIsEnough) {
   BodyMeasures measures;
   measures.stance = 0.08;
-  const std::string complaint = input_error_of([&] { mannequin(measures); });
+  const std::string complaint = sentence_of<InputError>([&] { mannequin(measures); });
   EXPECT_THAT(complaint,
               AllOf(HasSubstr("stance is 0.08 m"), HasSubstr("its legs would touch at the height")));
   const std::string before = "give a stance of at least ";
@@ -177,7 +177,7 @@ TEST(Mannequin, TheStanceAskedForIsEnough) {
 
 TEST(Mannequin, PointsAroundAreChecked) {
   for (const std::uint32_t cells_around : {0U, 12U, 50U, 516U})
-    EXPECT_THAT(input_error_of([&] { mannequin({}, cells_around); }),
+    EXPECT_THAT(sentence_of<InputError>([&] { mannequin({}, cells_around); }),
                 AllOf(HasSubstr(" " + std::to_string(cells_around) + " points"),
                       HasSubstr("give a multiple of four")));
 }

@@ -1,8 +1,9 @@
 #include "garment/body/mannequin.h"
 #include "garment/body/stance.h"
+#include "mesh/meshing.h"
 #include "tests/support/body_with_arms.h"
-#include "tests/support/mesh_fixture.h"
 #include "tests/support/testing.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
@@ -99,17 +100,18 @@ TEST(StanceGuess, WhatIsGivenIsKept) {
 }
 
 TEST(StanceGuess, WhatCannotBeIsRefused) {
-  EXPECT_THAT(input_error_of([] {
+  EXPECT_THAT(sentence_of<InputError>([] {
                 guess_stance(form(), {{}, UpAxis::y, Facing::plus_y});
               }),
               HasSubstr("it cannot look along y, which is its upright axis"));
   Surface lying = form();
   for (Vec3d& point : lying.points) point = {point.y, -point.x, point.z};
-  EXPECT_THAT(input_error_of([&] { guess_stance(lying, {}); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { guess_stance(lying, {}); }),
               HasSubstr("upright neither in y nor in z; turn it"));
   Surface huge = form();
   for (Vec3d& point : huge.points) point = 300.0 * point;
-  EXPECT_THAT(input_error_of([&] { guess_stance(huge, {}); }), HasSubstr("give the unit with --unit"));
+  EXPECT_THAT(sentence_of<InputError>([&] { guess_stance(huge, {}); }),
+              HasSubstr("give the unit with --unit"));
   EXPECT_EQ(guess_stance(huge, {0.1, {}, {}}).stance.unit_m, 0.1);
 }
 

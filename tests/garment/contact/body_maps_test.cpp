@@ -304,7 +304,7 @@ TEST(BodyMaps, WhatCannotBeIsNamed) {
   EXPECT_THAT(complaint({.pixel = 0.0001}), HasSubstr("10006 pixels of 1e-04 m along x; give larger pixels"));
   Surface open = unit_cube();
   open.triangles.pop_back();
-  EXPECT_THAT(input_error_of([&] { BodyMaps{open}; }), HasSubstr("the body: the edge from"));
+  EXPECT_THAT(sentence_of<InputError>([&] { BodyMaps{open}; }), HasSubstr("the body: the edge from"));
 }
 
 // What a camera sees of a body: depth and normals.

@@ -215,7 +215,7 @@ TEST(Solid, ThreadsDoNotMatter) {
 TEST(Solid, AnOpenSurfaceIsRefused) {
   Surface open = unit_cube();
   open.triangles.pop_back();
-  EXPECT_THAT(input_error_of([&] { Solid{open}; }), StartsWith("the body: the edge from"));
+  EXPECT_THAT(sentence_of<InputError>([&] { Solid{open}; }), StartsWith("the body: the edge from"));
 }
 
 // How far points lie outside of a body whose hollows are bridged.

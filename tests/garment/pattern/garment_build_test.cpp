@@ -1,8 +1,8 @@
 #include "garment/pattern/garment_build.h"
 
-#include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
 #include "tests/support/testing.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
@@ -107,7 +107,7 @@ TEST(PanelSprings, BadClothIsRefused) {
   const auto complaint = [](auto change) {
     PanelMaterial cloth;
     change(cloth);
-    return input_error_of([&] { require_cloth("front", cloth); });
+    return sentence_of<InputError>([&] { require_cloth("front", cloth); });
   };
   EXPECT_EQ(complaint([](PanelMaterial&) {}), "");
   EXPECT_EQ(complaint([](PanelMaterial& cloth) { cloth.area_density = 0; }),
@@ -207,7 +207,7 @@ TEST(Placement, BadPlacementsAreRefused) {
   const BodyDepth short_body{
       [](double y) { return y < 0.7 ? 0.1 : std::numeric_limits<double>::quiet_NaN(); },
       [](double) { return -0.1; }};
-  EXPECT_THAT(input_error_of([&] { place_panel("front", mesh, {}, short_body); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { place_panel("front", mesh, {}, short_body); }),
               AllOf(StartsWith("front: the body has the depth nan m at the height 0.7"),
                     HasSubstr("give a body that reaches over")));
 }
@@ -224,7 +224,7 @@ struct Pair {
 
   std::vector<Joint> join(const Seam& seam) const { return join_seam(seam, panels, meshes, 7); }
   std::string complaint(const Seam& seam) const {
-    return input_error_of([&] { join(seam); });
+    return sentence_of<InputError>([&] { join(seam); });
   }
 };
 

@@ -1,8 +1,8 @@
 #include "garment/pattern/jeans.h"
 
 #include "model/system.h"
-#include "tests/support/mesh_fixture.h"
 #include "tests/support/testing.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
@@ -163,7 +163,7 @@ TEST(JeansDraft, BadMeasuresAreRefused) {
   const auto complaint = [](auto change) {
     JeansMeasures measures = JeansBody{}.measures();
     change(measures);
-    return input_error_of([&] { draft_jeans(measures); });
+    return sentence_of<InputError>([&] { draft_jeans(measures); });
   };
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.girth = nullptr; }),
               StartsWith("jeans: the body's girth is missing"));
@@ -201,7 +201,7 @@ TEST(JeansGrid, TheNumberOfNodesIsMetWithCellsAboutSquare) {
       EXPECT_GT(grid.back_columns, grid.front_columns);
     }
   }
-  EXPECT_THAT(input_error_of([] { jeans_grid(draft_jeans(JeansBody{}.measures()), 299); }),
+  EXPECT_THAT(sentence_of<InputError>([] { jeans_grid(draft_jeans(JeansBody{}.measures()), 299); }),
               HasSubstr("cannot have 299 nodes; give a number from 300"));
 }
 
@@ -363,7 +363,7 @@ TEST(GarmentBuild, TwoPanelsOfOneNameAreRefused) {
   const JeansBody body;
   GarmentPattern pattern = body.pattern(1'000);
   pattern.panels[2].piece.name = "front left";
-  EXPECT_EQ(input_error_of([&] { build_garment(pattern, body.depths()); }),
+  EXPECT_EQ(sentence_of<InputError>([&] { build_garment(pattern, body.depths()); }),
             "front left: two panels have this name; rename one of them");
 }
 
@@ -371,7 +371,7 @@ TEST(GarmentBuild, BadClothIsNamedByItsPanel) {
   const JeansBody body;
   GarmentPattern pattern = body.pattern(1'000);
   pattern.panels[1].cloth.area_density = -1;
-  EXPECT_THAT(input_error_of([&] { build_garment(pattern, body.depths()); }),
+  EXPECT_THAT(sentence_of<InputError>([&] { build_garment(pattern, body.depths()); }),
               StartsWith("back left: the cloth's area"));
 }
 

@@ -1,7 +1,7 @@
 #include "garment/pattern/garment_build.h"
-#include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
 #include "tests/support/testing.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
@@ -49,14 +49,16 @@ TEST(Curve, MirroredItsXIsTurnedRound) {
 }
 
 TEST(Curve, WhatIsNoCurveIsRefused) {
-  const auto complaint = [](std::vector<Vec3d> points) { return input_error_of([&] { Curve{points}; }); };
+  const auto complaint = [](std::vector<Vec3d> points) {
+    return sentence_of<InputError>([&] { Curve{points}; });
+  };
   EXPECT_THAT(complaint({{0, 0, 0}}), HasSubstr("has 1 point; give two or more points"));
   EXPECT_THAT(complaint({{0, 0, 0}, {1, 2, 0}, {1, 2, 0}}),
               AllOf(HasSubstr("point 2 of a boundary curve, (1, 2, 0), "), HasSubstr("remove one of them")));
   EXPECT_THAT(complaint({{0, 0, 0}, {1, 2, 3}}),
               HasSubstr("(1, 2, 3), does not lie in the plane of the pattern"));
   EXPECT_THAT(complaint({{0, 0, 0}, {std::numeric_limits<double>::infinity(), 2, 0}}), HasSubstr("finite"));
-  EXPECT_THAT(input_error_of([] {
+  EXPECT_THAT(sentence_of<InputError>([] {
                 Curve::bezier(std::array{Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{2, 0, 0}});
               }),
               HasSubstr("has 3 points; give 4, 7, 10 or another 3 n + 1 points"));
@@ -73,7 +75,7 @@ void expect_node(const PanelMesh& mesh, std::size_t row, std::size_t column, dou
 }
 
 std::string complaint(const PatternPiece& piece, const PanelGrid& grid = {4, 4}) {
-  return input_error_of([&] { mesh_panel(piece, grid); });
+  return sentence_of<InputError>([&] { mesh_panel(piece, grid); });
 }
 
 TEST(PanelMesh, ATrapezoidIsTheBilinearBlendOfItsCorners) {
