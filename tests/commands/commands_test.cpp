@@ -137,7 +137,7 @@ class SceneReadingTest : public TemporaryFolderTest {
   /// How often these arguments, which must end well, have the file of `scene`, which stands behind them,
   /// opened.
   int openings(const std::vector<std::string>& arguments, const std::string& scene = "cloth2500") const {
-    const std::filesystem::path file = put("mine.json", text_of(source_file("scenes/" + scene + ".json")));
+    const std::filesystem::path file = put("mine.json", read_file(source_file("scenes/" + scene + ".json")));
     return openings_of(file, arguments, file);
   }
 
@@ -214,7 +214,7 @@ TEST_F(NamedFilesReadingTest, IsDoneOnceOfASceneWhoseShapeIsTaken) {
 }
 
 TEST_F(NamedFilesReadingTest, IsDoneOnceOfABody) {
-  auto scene = nlohmann::json::parse(text_of(source_file("scenes/jeans1k.json")));
+  auto scene = nlohmann::json::parse(read_file(source_file("scenes/jeans1k.json")));
   auto& garment = scene["garment"];
   garment.erase("mannequin");
   garment["body"] = "surface_file";

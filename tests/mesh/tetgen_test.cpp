@@ -208,7 +208,7 @@ TEST_F(MeshCacheTest, WithoutEntryAndTetgenTheRemedyIsNamed) {
 TEST_F(MeshCacheTest, ADamagedEntryIsMadeAnew) {
   const TetMesh made = mesh();
   const fs::path file = entry();
-  const std::string whole = text_of(file);
+  const std::string whole = read_file(file);
   std::string changed = whole;
   changed[whole.size() / 2] = changed[whole.size() / 2] == '1' ? '2' : '1';
   for (const std::string& damaged :
@@ -216,7 +216,7 @@ TEST_F(MeshCacheTest, ADamagedEntryIsMadeAnew) {
         std::string("mssim mesh 1 99999999999999999999 0\n"), std::string("nonsense")}) {
     put(file, damaged);
     expect_same(mesh(), made);
-    EXPECT_EQ(text_of(file), whole);
+    EXPECT_EQ(read_file(file), whole);
   }
   put(file, changed);
   ::setenv("PATH", "", 1);

@@ -20,7 +20,7 @@ TEST_F(AtomicFileTest, ReplacesTheOldTextAndLeavesNothingElse) {
   const auto file = folder() / "rows.csv";
   write_file_atomically(file, "old, and longer than the new one\n");
   write_file_atomically(file, "new\n");
-  EXPECT_EQ(text_of(file), "new\n");
+  EXPECT_EQ(read_file(file), "new\n");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
 }
 
@@ -56,7 +56,7 @@ TEST_F(AtomicFileTest, WritesIntoTheWorkingFolderToo) {
               return 0;
             }),
             0);
-  EXPECT_EQ(text_of(folder() / "rows.csv"), "text");
+  EXPECT_EQ(read_file(folder() / "rows.csv"), "text");
 }
 
 TEST_F(AtomicFileTest, NamesFileReasonAndRemedyWhenTheFolderIsMissing) {
@@ -94,8 +94,8 @@ TEST_F(AtomicFileTest, WritesThroughNoLinkInThePlaceOfItsTemporary) {
   std::filesystem::remove(temporary_of(file));
   std::filesystem::create_hard_link(victim, temporary_of(file));
   write_file_atomically(file, "text");
-  EXPECT_EQ(text_of(file), "text");
-  EXPECT_EQ(text_of(victim), "mine");
+  EXPECT_EQ(read_file(file), "text");
+  EXPECT_EQ(read_file(victim), "mine");
 }
 
 TEST_F(AtomicFileTest, ReplacesALinkUnlessItsTargetIsAskedFor) {
@@ -105,10 +105,10 @@ TEST_F(AtomicFileTest, ReplacesALinkUnlessItsTargetIsAskedFor) {
   EXPECT_EQ(target_of("rows.csv"), "rows.csv");
   EXPECT_TRUE(std::filesystem::equivalent(target_of(second), victim));
   write_file_atomically(target_of(second), "text");
-  EXPECT_EQ(text_of(victim), "text");
+  EXPECT_EQ(read_file(victim), "text");
   EXPECT_TRUE(std::filesystem::is_symlink(file));
   write_file_atomically(file, "new");
-  EXPECT_EQ(text_of(victim), "text");
+  EXPECT_EQ(read_file(victim), "text");
   EXPECT_FALSE(std::filesystem::is_symlink(file));
   std::filesystem::create_symlink("b", folder() / "a");
   std::filesystem::create_symlink("a", folder() / "b");
@@ -123,7 +123,7 @@ TEST_F(AtomicFileTest, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
     EXPECT_THAT([&] { write_file_atomically(file, std::string(5000, 'x')); },
                 ThrowsMessage<WriteError>(HasSubstr("File too large")));
   });
-  EXPECT_EQ(text_of(file), "old\n");
+  EXPECT_EQ(read_file(file), "old\n");
   EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
 }
 
@@ -142,11 +142,11 @@ TEST_F(AtomicFileTest, HasOneWriterAtATime) {
         ThrowsMessage<WriteError>(HasSubstr("another mssim is writing " + file.string() + "; wait until"));
     EXPECT_THAT(writes_too, refused);
     expect_in_child([&] { EXPECT_THAT(writes_too, refused); });
-    EXPECT_EQ(text_of(temporary_of(file)), "first") << "who is refused has changed nothing";
+    EXPECT_EQ(read_file(temporary_of(file)), "first") << "who is refused has changed nothing";
     first.move_into_place();
     writes_too();
   }
-  EXPECT_EQ(text_of(file), "second");
+  EXPECT_EQ(read_file(file), "second");
   EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
 }
 
@@ -162,7 +162,7 @@ TEST_F(AtomicFileTest, IsKeptOrRemovedWhenItsWriterGivesUp) {
     kept.append("kept");
     kept.keep();
   }
-  EXPECT_EQ(text_of(temporary_of(file)), "kept");
+  EXPECT_EQ(read_file(temporary_of(file)), "kept");
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 

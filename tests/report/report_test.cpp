@@ -256,7 +256,7 @@ TEST_F(GuideFolderTest, GoesWithoutSizes) {
 }
 
 TEST_F(GuideFolderTest, SaysWhatIsMissingOrDamaged) {
-  const std::string points = text_of(folder() / "guide.csv");
+  const std::string points = read_file(folder() / "guide.csv");
   put("guide.csv", points.substr(0, points.size() - 30));  // ends within the last row
   std::filesystem::remove(folder() / "guide.md");
   put("guide-sizes.csv", "scene,nodes\ncloth,3\n");

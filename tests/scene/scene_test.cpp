@@ -22,7 +22,7 @@ class SceneFile : public TemporaryFolderTest {
   }
 };
 
-const std::string good = text_of(source_file("scenes/cloth2500.json"));
+const std::string good = read_file(source_file("scenes/cloth2500.json"));
 
 TEST_F(SceneFile, GivesEveryFieldItsValue) {
   const SceneSpec spec = load_scene(source_file("scenes/cloth2500.json"));

@@ -167,7 +167,7 @@ TEST_F(ChangePointRates, AreAtMostTheStatedErrorWithoutAChangeAndThoseOfTheDocum
     table += '\n';
   }
   std::cout << table;
-  EXPECT_THAT(text_of(source_file("docs/ci.md")), HasSubstr(table));
+  EXPECT_THAT(read_file(source_file("docs/ci.md")), HasSubstr(table));
 }
 
 }  // namespace

@@ -45,9 +45,6 @@ class KeptVariables {
   std::vector<std::pair<const char*, std::optional<std::string>>> before_;
 };
 
-/// Throws ReadError when there is no such file.
-inline std::string text_of(const std::filesystem::path& file) { return read_file(file); }
-
 /// The committed files, for tests.
 std::filesystem::path source_file(std::string_view relative);
 

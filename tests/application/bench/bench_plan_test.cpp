@@ -31,7 +31,7 @@ class BenchPlanTest : public TemporaryFolderTest {
     }
   }
 
-  std::string text_ = text_of(source_file("scenes/cloth2500.json"));
+  std::string text_ = read_file(source_file("scenes/cloth2500.json"));
   std::filesystem::path file_ = put("mine.json", text_);
   BenchOptions options_;
 };
@@ -59,7 +59,7 @@ TEST_F(BenchPlanTest, RefusesFramesOfMoreStepsThanCanBeCounted) {
 TEST_F(BenchPlanTest, ExpectsTheFramesOfAScenesAutomaticStep) {
   options_.fps = 60;
   for (const char* shipped : {"scenes/cloth2500.json", "scenes/box-small.json"}) {
-    nlohmann::json scene = nlohmann::json::parse(text_of(source_file(shipped)));
+    nlohmann::json scene = nlohmann::json::parse(read_file(source_file(shipped)));
     scene["dt_s"] = "auto";
     const auto file = put("auto.json", scene.dump());
     options_.scenes = {file.string()};

@@ -1,7 +1,6 @@
 // A check that could not fail would be none: backends that are wrong on purpose must be found.
 #include "bench/verification/verification.h"
 
-#include <fstream>
 #include <iterator>
 
 #include "backends/backends.h"
@@ -217,9 +216,8 @@ TEST(Verification, FindsTheFaultsThatTheDocumentationSaysItFinds) {
     EXPECT_GT(distance, 5) << fault.name;
     table << (distance > 1 ? " found |" : " - |") << '\n';
   }
-  std::ifstream page(source_file("docs/verification.md"));
-  const std::string text(std::istreambuf_iterator<char>(page), {});
-  EXPECT_NE(text.find(table.str()), std::string::npos) << "docs/verification.md should have\n" << table.str();
+  const std::string page = read_file(source_file("docs/verification.md"));
+  EXPECT_NE(page.find(table.str()), std::string::npos) << "docs/verification.md should have\n" << table.str();
 }
 
 TEST(SecondStretch, MeetsTheFloorAndPassesRightBackends) {

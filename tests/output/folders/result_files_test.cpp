@@ -102,7 +102,7 @@ TEST_F(ResultFiles, RenewTheFileForGithub) {
     results.go_on_with(made_up_provenance());
     rows[0].ms_per_step = 0.25;
     results.write(rows);
-    EXPECT_EQ(text_of(file), to_text(github_table(rows), ListingFormat::json));
+    EXPECT_EQ(read_file(file), to_text(github_table(rows), ListingFormat::json));
   }
   ResultFolder results = results_in(folder());
   results.replace_results();
@@ -119,7 +119,7 @@ TEST_F(ResultFiles, ThatAreReplacedTakeTheirTracesAlong) {
   results.begin();
   EXPECT_TRUE(fs::exists(folder() / (stem + ".h5"))) << "nothing new is measured yet";
   results.write(rows);
-  EXPECT_EQ(text_of(folder() / (stem + "-mine.h5")), "old") << "it is the user's";
+  EXPECT_EQ(read_file(folder() / (stem + "-mine.h5")), "old") << "it is the user's";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "traces"), {}), 1);
 }
 
@@ -213,19 +213,19 @@ TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
   ResultFolder results = results_in(folder() / "new/out");
   results.begin();
-  EXPECT_EQ(text_of(folder() / "new/out/provenance.json"), provenance_text(made_up_provenance()) + '\n');
+  EXPECT_EQ(read_file(folder() / "new/out/provenance.json"), provenance_text(made_up_provenance()) + '\n');
   EXPECT_TRUE(read_results(folder() / "new/out").empty());
   rows.clear();
   for (const ResultRow& row : table_rows()) {
     rows.push_back(row);
     results.write(rows);
-    EXPECT_EQ(text_of(folder() / "new/out/timings.csv"), timings_csv(rows));
-    EXPECT_EQ(text_of(folder() / "new/out/samples.csv"), samples_csv(rows));
-    EXPECT_EQ(text_of(folder() / "new/out/benchmark.json"), benchmark_json(rows, made_up_provenance()));
+    EXPECT_EQ(read_file(folder() / "new/out/timings.csv"), timings_csv(rows));
+    EXPECT_EQ(read_file(folder() / "new/out/samples.csv"), samples_csv(rows));
+    EXPECT_EQ(read_file(folder() / "new/out/benchmark.json"), benchmark_json(rows, made_up_provenance()));
     const ResultTable table =
         only_table(paper_tables(legend, published_tables())(rows, made_up_provenance()), "table1");
-    EXPECT_EQ(text_of(folder() / "new/out/table1.csv"), table_csv(table.data));
-    EXPECT_EQ(text_of(folder() / "new/out/table1.md"), markdown(table.page));
+    EXPECT_EQ(read_file(folder() / "new/out/table1.csv"), table_csv(table.data));
+    EXPECT_EQ(read_file(folder() / "new/out/table1.md"), markdown(table.page));
   }
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder() / "new/out"))
@@ -237,14 +237,14 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
 TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
   ResultFolder results = results_in(folder());
   results.write(rows);
-  const std::string before = text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json");
+  const std::string before = read_file(folder() / "timings.csv") + read_file(folder() / "benchmark.json");
   rows.push_back(measured_row("openmp", 0.25, 2.0));
   rows[1].energy_drift = std::numeric_limits<double>::infinity();
   EXPECT_THROW(results.write(rows), std::invalid_argument);
   rows[1].energy_drift = 0;
   rows[1].samples_ms[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(results.write(rows), std::invalid_argument);
-  EXPECT_EQ(text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json"), before);
+  EXPECT_EQ(read_file(folder() / "timings.csv") + read_file(folder() / "benchmark.json"), before);
 }
 
 TEST_F(ResultFiles, GoIntoNoFolderThatALinkLeadsTo) {

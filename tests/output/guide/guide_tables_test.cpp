@@ -154,13 +154,13 @@ Table implicit_methods(const SceneGuide& guide) {
 }
 
 TEST(GuidePage, HasTheNumbersOfItsResults) {
-  const std::string page = text_of(source_file("docs/guide.md"));
+  const std::string page = read_file(source_file("docs/guide.md"));
   const std::vector<SceneGuide> guides = measured_guides();
   for (const Table& table :
        {cheapest_methods(guides), compared_with_the_paper(guides), real_time(), implicit_methods(guides[0])})
     EXPECT_THAT(page, HasSubstr('\n' + markdown({table}) + '\n'));
   const nlohmann::json provenance =
-      nlohmann::json::parse(text_of(source_file(results + std::string("provenance.json"))));
+      nlohmann::json::parse(read_file(source_file(results + std::string("provenance.json"))));
   EXPECT_THAT(page, HasSubstr(provenance["build"]["commit"].get<std::string>().substr(0, 7)));
 }
 

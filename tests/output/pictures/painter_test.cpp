@@ -188,10 +188,10 @@ TEST_F(PicturesOfARun, AreWhatAPainterDrawsOfAllSoFar) {
   EXPECT_EQ(names_in(name),
             (std::set<std::string>{"frame-000000.png", "frame-000001.png", "frame-000002.png"}));
   painter.make_room_for(start);
-  EXPECT_EQ(decoded(text_of(name / "frame-000000.png")), painter.picture_of(start));
+  EXPECT_EQ(decoded(read_file(name / "frame-000000.png")), painter.picture_of(start));
   painter.make_room_for(far);
-  EXPECT_EQ(decoded(text_of(name / "frame-000001.png")), painter.picture_of(far));
-  EXPECT_EQ(decoded(text_of(name / "frame-000002.png")), painter.picture_of(start));
+  EXPECT_EQ(decoded(read_file(name / "frame-000001.png")), painter.picture_of(far));
+  EXPECT_EQ(decoded(read_file(name / "frame-000002.png")), painter.picture_of(start));
 }
 
 TEST_F(PicturesOfARun, NeedAFolderOfTheirOwn) {
@@ -268,7 +268,7 @@ int largest_difference(const Picture& a, const Picture& b) {
 
 void expect_golden(const Picture& drawn, const std::string& name) {
   const std::string committed = source_file("tests/output/pictures/golden/" + name);
-  const Picture golden = std::filesystem::exists(committed) ? decoded(text_of(committed)) : Picture();
+  const Picture golden = std::filesystem::exists(committed) ? decoded(read_file(committed)) : Picture();
   const bool same_size = golden.width == drawn.width && golden.height == drawn.height;
   const int difference = same_size ? largest_difference(golden, drawn) : 255;
   testing::Test::RecordProperty("largest_difference", difference);

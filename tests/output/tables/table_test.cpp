@@ -122,7 +122,7 @@ TEST(Latex, ShowsAnyTextAsItIs) {
 TEST(Latex, SpellsEveryCharacterThatTablesHave) {
   for (const char* room : {"src/output/tables", "src/output/guide", "src/garment/output", "src/report"})
     for (const auto& file : std::filesystem::directory_iterator(source_file(room))) {
-      const std::string text = text_of(file.path());
+      const std::string text = read_file(file.path());
       for (std::size_t i = 0; i < text.size(); ++i) {
         const std::string character(clipped(std::string_view(text).substr(i), 1));
         if (character.size() < 2) continue;

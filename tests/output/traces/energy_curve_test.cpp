@@ -21,7 +21,7 @@ TEST_F(EnergyCurveTest, StandsInTheFileBehindItsCommentWithTenDigits) {
   curve.append({0, {0, 1. / 3, 1e-20}});
   curve.append({0.1, {2, -5, 12345678901.}});
   curve.close();
-  EXPECT_EQ(text_of(file()),
+  EXPECT_EQ(read_file(file()),
             "# made by hand\n"
             "#\n"
             "# twice\n"
@@ -38,7 +38,8 @@ TEST_F(EnergyCurveTest, RefusesNumbersThatAreNotFiniteAndTimesThatStandStill) {
     EXPECT_THROW(curve.append({1, {}}), std::invalid_argument);
   }
   EXPECT_FALSE(std::filesystem::exists(file()));
-  EXPECT_EQ(text_of(temporary_of(file())), "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n1,0,0,0,0\n");
+  EXPECT_EQ(read_file(temporary_of(file())),
+            "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n1,0,0,0,0\n");
 }
 
 TEST_F(EnergyCurveTest, KeepsItsSamplesWhenTheProcessIsKilled) {
@@ -48,7 +49,8 @@ TEST_F(EnergyCurveTest, KeepsItsSamplesWhenTheProcessIsKilled) {
     return std::raise(SIGKILL);
   });
   ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(text_of(temporary_of(file())), "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n0,0,0,0,0\n");
+  EXPECT_EQ(read_file(temporary_of(file())),
+            "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n0,0,0,0,0\n");
 }
 
 TEST_F(EnergyCurveTest, LeavesNothingWithoutSamples) {
@@ -100,7 +102,7 @@ class CheckEnergy : public TemporaryFolderTest {
                                 source_file("scripts/check-energy").string() + "' " + arguments + " >'" +
                                 out.string() + "' 2>'" + err.string() + "'";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
   }
   Verdict check(const std::string& tolerance) const { return run("trace.h5 curve.csv " + tolerance); }
 

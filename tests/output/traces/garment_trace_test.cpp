@@ -17,7 +17,7 @@ class GarmentTrace : public Trace {
 TEST_F(GarmentTrace, HasAnXdmfWithEachPanelAndTheBodyInEachFrame) {
   constexpr int frames = 3;
   write(garment_, frames, small_tetrahedron());
-  const std::string xdmf = text_of(folder() / "run.xdmf");
+  const std::string xdmf = read_file(folder() / "run.xdmf");
   const auto count = [&](const std::string& word) {
     int found = 0;
     for (std::size_t at = xdmf.find(word); at != std::string::npos; at = xdmf.find(word, at + 1)) ++found;
@@ -52,7 +52,7 @@ TEST_F(GarmentTrace, SaysWherePanelsAreFlatAndWhatIsSewnToWhat) {
 
 TEST_F(GarmentTrace, NeedsNoBody) {
   write(garment_, 2);
-  EXPECT_THAT(text_of(folder() / "run.xdmf"), AllOf(HasSubstr("\"back\""), Not(HasSubstr("body"))));
+  EXPECT_THAT(read_file(folder() / "run.xdmf"), AllOf(HasSubstr("\"back\""), Not(HasSubstr("body"))));
   const Hdf5File h5 = open(file());
   EXPECT_EQ(H5Lexists(h5.get(), "/body", H5P_DEFAULT), 0);
   EXPECT_EQ(H5Lexists(h5.get(), "/xdmf/panel/body", H5P_DEFAULT), 0);

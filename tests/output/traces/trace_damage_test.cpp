@@ -62,7 +62,7 @@ class TraceDamage : public Trace {
 
 TEST_F(TraceDamage, IsSaidOfFilesThatEndEarly) {
   write(two_panels(), 3, small_tetrahedron());
-  const std::string bytes = text_of(file());
+  const std::string bytes = read_file(file());
   constexpr std::size_t step = 997;
   for (std::size_t length = 0; length < bytes.size(); length += step) {
     const std::string problem = problem_of(put("short.h5", std::string_view(bytes).substr(0, length)));
@@ -73,7 +73,7 @@ TEST_F(TraceDamage, IsSaidOfFilesThatEndEarly) {
 TEST_F(TraceDamage, OfAnyByteGivesASentenceOrNothingElseThanWasWritten) {
   for (const System& system : {system_, solid_block(2, 2, 2), two_panels()}) {
     write(system, 3);
-    const std::string bytes = text_of(file());
+    const std::string bytes = read_file(file());
     std::mt19937 random(1);
     for (int trial = 0; trial < 60; ++trial) {
       std::string damaged = bytes;
@@ -95,7 +95,7 @@ TEST_F(TraceDamage, OfAnyByteGivesASentenceOrNothingElseThanWasWritten) {
 
 TEST_F(TraceDamage, OfAChecksumIsSaid) {
   write(3);
-  std::string bytes = text_of(file());
+  std::string bytes = read_file(file());
   haddr_t address = 0;
   {
     const Hdf5File h5 = open(file());
