@@ -17,6 +17,9 @@ inline constexpr std::array opencl_lanes{1, 4, 8, 16};
 #endif
 inline constexpr int most_opencl_lanes = opencl_lanes.back();
 
+/// The device that a backend takes where the user names none.
+inline OpenclDevice first_opencl_device() { return choose_opencl_device(opencl_offer().devices, ""); }
+
 /// The first OpenCL device, as if host memory were no more to it, and a variant to use it.
 struct DeviceInMemory {
   const char* name;
@@ -26,7 +29,7 @@ struct DeviceInMemory {
 
 /// All that the first OpenCL device can be tested with: every driver can do less than it does.
 inline std::vector<DeviceInMemory> ways_to_memory() {
-  const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  const OpenclDevice device = first_opencl_device();
   std::vector<DeviceInMemory> variants{{"copied", device, DeviceMemory::copy}};
   for (const auto& [name, host_memory] : {std::pair{"the device's own, mapped", HostMemory::none},
                                           {"the host's, mapped", HostMemory::mapped},
@@ -45,8 +48,7 @@ struct OpenclVariant {
   int threads = 2;  ///< hybrid's
 
   std::unique_ptr<Backend> make(const System& system, const Integrator& integrator, double dt_s) const {
-    return make_in({"", choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared}, system,
-                   integrator, dt_s);
+    return make_in({"", first_opencl_device(), DeviceMemory::shared}, system, integrator, dt_s);
   }
   std::unique_ptr<Backend> make_in(const DeviceInMemory& memory, const System& system,
                                    const Integrator& integrator, double dt_s) const {

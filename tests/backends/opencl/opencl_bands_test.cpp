@@ -36,7 +36,7 @@ System pinned_cloth_on_a_floor(std::uint32_t rows, std::uint32_t columns) {
 /// On a device with that many compute units.
 std::unique_ptr<Backend> bands_of(const System& system, const Integrator& integrator, std::uint32_t units,
                                   std::size_t steps_in_a_launch, DeviceMemory memory = DeviceMemory::shared) {
-  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  OpenclDevice device = first_opencl_device();
   device.compute_units = units;
   return make_opencl_grid(system, std::get<GridPatch>(system.topology), integrator, backend_dt_s, device,
                           memory, most_opencl_lanes, steps_in_a_launch);

@@ -103,7 +103,7 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
 
 TEST(OpenclMeshes, GiveABodyTheSameBitsAloneAndBesideOthersThatAreAlike) {
   const System block = solid_block(3, 4, 3), system = alike_bodies(block, 19);
-  const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  const OpenclDevice device = first_opencl_device();
   for (const Integrator& integrator : integrators)
     for (const int lanes : opencl_lanes) {
       const double dt_s = backend_dt_of(integrator);
@@ -122,7 +122,7 @@ TEST(OpenclMeshes, GiveABodyTheSameBitsAloneAndBesideOthersThatAreAlike) {
 
 TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
   const System system = solid_block(7, 5, 6);
-  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  OpenclDevice device = first_opencl_device();
   device.max_allocation_bytes = 1000;
   const auto says_why = AllOf(HasSubstr("needs an OpenCL buffer of"), HasSubstr(device.name));
   EXPECT_THAT(

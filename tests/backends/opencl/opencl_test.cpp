@@ -137,7 +137,7 @@ TEST(OpenclBackends, GiveTheSameBitsForAnyNumberOfComputeUnitsThatShareACloth) {
   for (const Integrator& integrator : integrators) {
     std::vector<std::vector<Vec3d>> found;
     for (const std::uint32_t units : {1U, 2U, 7U, 61U}) {  // to one column a work-item
-      OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+      OpenclDevice device = first_opencl_device();
       device.compute_units = units;
       const auto backend = make_opencl(system, integrator, 2e-4, device, most_opencl_lanes);
       backend->step(31);
@@ -170,7 +170,7 @@ TEST(OpenclBackends, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
 }
 
 TEST(OpenclBackends, SayWhetherTheirMemoryIsCopied) {
-  const std::string name = choose_opencl_device(opencl_offer().devices, "").name;
+  const std::string name = first_opencl_device().name;
   for (const std::string_view backend : {"opencl", "hybrid"}) {
     const auto device = [&](DeviceMemory memory) {
       return find_backend(backend)
@@ -184,7 +184,7 @@ TEST(OpenclBackends, SayWhetherTheirMemoryIsCopied) {
 
 TEST(OpenclBackends, SayHowMuchMemoryAClothNeedsThatTheDeviceDoesNotHave) {
   const System system = rippled_cloth(9, 11);
-  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  OpenclDevice device = first_opencl_device();
   device.max_allocation_bytes = 1000;
   EXPECT_THAT(sentence_of<Unsupported>([&] { make_opencl(system, integrators.front(), 2e-4, device, 1); }),
               AllOf(HasSubstr("needs an OpenCL buffer of"), HasSubstr(device.name)));

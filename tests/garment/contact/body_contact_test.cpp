@@ -179,7 +179,7 @@ TEST_P(OpenclBodyContact, DoesTheSame) {
                                              front.y, front.z, 0.004, back.x, back.y, back.z, 0.03};
     for (std::size_t k = 0; k < inputs; ++k) in[k * points + i] = static_cast<float>(numbers[k]);
   }
-  const DeviceQueue queue(choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared);
+  const DeviceQueue queue(first_opencl_device(), DeviceMemory::shared);
   const cl::Program program =
       queue.build(program_text(GetParam(), {"lanes.h", "node_laws.h", "spring_constants.h", "parameters.h",
                                             "body_contact.h"}) +

@@ -13,8 +13,8 @@ namespace mssim {
 namespace {
 
 std::unique_ptr<DressingBackend> make(const System& system, const DressingShape& shape) {
-  return make_opencl_dressing(system, semi_euler, dressing_dt_s,
-                              choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared, shape);
+  return make_opencl_dressing(system, semi_euler, dressing_dt_s, first_opencl_device(), DeviceMemory::shared,
+                              shape);
 }
 
 /// What a CPU runs, and what GPUs would, with groups that are smaller than a row, do not divide one, and are
@@ -178,11 +178,10 @@ TEST(OpenclDressing, DrapesAtOnceWhatHasNoSeams) {
 
 TEST(OpenclDressing, RefusesWhatItCannotDo) {
   System system = two_squares();
-  EXPECT_THROW(
-      make_opencl_dressing(system, *find_integrator("rk4"), dressing_dt_s,
-                           choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared, {}),
-      Unsupported);
-  OpenclDevice small = choose_opencl_device(opencl_offer().devices, "");
+  EXPECT_THROW(make_opencl_dressing(system, *find_integrator("rk4"), dressing_dt_s, first_opencl_device(),
+                                    DeviceMemory::shared, {}),
+               Unsupported);
+  OpenclDevice small = first_opencl_device();
   small.global_memory_bytes = 1000;
   EXPECT_THROW(make_opencl_dressing(system, semi_euler, dressing_dt_s, small, DeviceMemory::shared, {}),
                Unsupported);
