@@ -314,7 +314,7 @@ TEST(BackendTable, SaysWhyADeviceBackendCannotRun) {
     const std::string reason = unavailable_reason(backend, options);
     EXPECT_EQ(reason.empty(), !backend.uses_device) << backend.name;
     if (!backend.uses_device) continue;
-    EXPECT_NE(reason.find("no such device"), std::string::npos) << reason;
+    EXPECT_THAT(reason, HasSubstr("no such device"));
     const System system = cloth_system(4, 4);
     EXPECT_THROW(backend.make(system, integrators[0], backend_dt_s, options), Unavailable);
   }

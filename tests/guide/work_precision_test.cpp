@@ -587,9 +587,9 @@ TEST(StepTheory, SaysWhyAMeasuredStepIsAnotherOne) {
   EXPECT_EQ(why_they_differ(euler, measured(0.91), theory, false), "");
   EXPECT_NE(why_they_differ(euler, measured(1.101), theory, false), "");
   EXPECT_NE(why_they_differ(euler, measured(0.909), theory, false), "");
-  EXPECT_NE(why_they_differ(euler, measured(1.5), theory, false).find("longer"), std::string::npos);
-  EXPECT_NE(why_they_differ(euler, measured(0.5), theory, false).find("shorter"), std::string::npos);
-  EXPECT_NE(why_they_differ(euler, measured(0.5), theory, true).find("floor"), std::string::npos);
+  EXPECT_THAT(why_they_differ(euler, measured(1.5), theory, false), HasSubstr("longer"));
+  EXPECT_THAT(why_they_differ(euler, measured(0.5), theory, false), HasSubstr("shorter"));
+  EXPECT_THAT(why_they_differ(euler, measured(0.5), theory, true), HasSubstr("floor"));
   EXPECT_NE(why_they_differ(euler, {}, theory, false), "");
   EXPECT_NE(why_they_differ(euler, measured(1), {}, false), "");
   EXPECT_EQ(why_they_differ(euler, {}, {}, false), "");

@@ -43,12 +43,12 @@ TEST_F(MadeUpEnergy, IsThatOfAllPackagesSinceTheLastCall) {
 TEST_F(MadeUpEnergy, IsNoneWithoutCountersOrIfTheyCannotBeRead) {
   PackageEnergy none(folder());
   EXPECT_EQ(none.joules(), std::nullopt);
-  EXPECT_NE(none.obstacle().find("sys/class/powercap"), std::string::npos);
+  EXPECT_THAT(none.obstacle(), HasSubstr("sys/class/powercap"));
   put_zone("intel-rapl:0", "package-0", "5\n");
   put_zone("intel-rapl:1", "package-1", "");  // as if only root could read it
   PackageEnergy unreadable(folder());
   EXPECT_EQ(unreadable.joules(), std::nullopt);
-  EXPECT_NE(unreadable.obstacle().find("intel-rapl:1/energy_uj"), std::string::npos);
+  EXPECT_THAT(unreadable.obstacle(), HasSubstr("intel-rapl:1/energy_uj"));
 }
 
 /// Events that Linux itself counts, so that they are there without counters of a processor.

@@ -184,20 +184,19 @@ TEST(BuildInfo, TellsTheFlagsAndTheBuildTypeThatItWasCompiledWith) {
   std::string flags(build_info().flags);
   flags.insert(0, 1, ' ').push_back(' ');
 #ifdef __OPTIMIZE__
-  EXPECT_EQ(flags.find(" -O0 "), std::string::npos) << flags;
-  EXPECT_NE(flags.find(" -O"), std::string::npos) << flags;
+  EXPECT_THAT(flags, Not(HasSubstr(" -O0 ")));
+  EXPECT_THAT(flags, HasSubstr(" -O"));
 #else
-  for (const char* level : {" -O1 ", " -O2 ", " -O3 "})
-    EXPECT_EQ(flags.find(level), std::string::npos) << flags;
+  for (const char* level : {" -O1 ", " -O2 ", " -O3 "}) EXPECT_THAT(flags, Not(HasSubstr(level)));
 #endif
 #ifdef NDEBUG
-  EXPECT_NE(flags.find(" -DNDEBUG "), std::string::npos) << flags;
+  EXPECT_THAT(flags, HasSubstr(" -DNDEBUG "));
 #else
-  EXPECT_EQ(flags.find(" -DNDEBUG "), std::string::npos) << flags;
+  EXPECT_THAT(flags, Not(HasSubstr(" -DNDEBUG ")));
 #endif
-  EXPECT_NE(flags.find(" -fopenmp"), std::string::npos) << flags;
-  EXPECT_NE(flags.find(" -ffp-contract=off "), std::string::npos) << flags;
-  EXPECT_EQ(flags.find("$<"), std::string::npos) << "an expression that CMake left unevaluated: " << flags;
+  EXPECT_THAT(flags, HasSubstr(" -fopenmp"));
+  EXPECT_THAT(flags, HasSubstr(" -ffp-contract=off "));
+  EXPECT_THAT(flags, Not(HasSubstr("$<"))) << "an expression that CMake left unevaluated";
   EXPECT_FALSE(build_info().build_type.empty());
 }
 

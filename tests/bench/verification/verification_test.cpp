@@ -86,7 +86,7 @@ TEST(Verification, RefusesScenesSoFarAwayThatItWouldShowNothing) {
   const Reference reference = run_reference(cloth_system(20, 25, 1e4), integrators[0], backend_dt_s);
   ASSERT_TRUE(reference.failure);
   for (const char* part : {"nothing can be verified", "100 steps", "nearer to the origin"})
-    EXPECT_NE(reference.failure->find(part), std::string::npos) << *reference.failure;
+    EXPECT_THAT(*reference.failure, HasSubstr(part));
 }
 
 TEST(Verification, AllowsXpbdTheDriftOfItsSmallSteps) {
@@ -336,7 +336,7 @@ TEST(SampleCheck, AllowsWhatFoldsMakeOfRoundingsAndNoMore) {
   const std::vector<std::string> reasons = check_samples(cloth, integrators[0], backend_dt_s, start, 0, ends);
   EXPECT_EQ(reasons[0], "");
   EXPECT_EQ(reasons[1], "");
-  EXPECT_NE(reasons[2].find("position error"), std::string::npos) << reasons[2];
+  EXPECT_THAT(reasons[2], HasSubstr("position error"));
 }
 
 TEST(SampleCheck, FindsASampleThatIsWrongAtItsEnd) {
@@ -348,8 +348,8 @@ TEST(SampleCheck, FindsASampleThatIsWrongAtItsEnd) {
   const std::vector<std::string> reasons = check_samples(cloth, integrators[0], backend_dt_s, start, 0, ends);
   ASSERT_EQ(reasons.size(), 4U);
   EXPECT_EQ(reasons[0], "");
-  EXPECT_NE(reasons[1].find("position error"), std::string::npos) << reasons[1];
-  EXPECT_NE(reasons[2].find("energy"), std::string::npos) << reasons[2];
+  EXPECT_THAT(reasons[1], HasSubstr("position error"));
+  EXPECT_THAT(reasons[2], HasSubstr("energy"));
   EXPECT_EQ(reasons[3], "");
 }
 
@@ -423,8 +423,8 @@ TEST(BlowUp, IsFoundAtTheFirstBadStepAndNode) {
   EXPECT_EQ(blow_up->step, first_bad);
   EXPECT_EQ(blow_up->node, *first_bad_node(slow->state()));
   const std::string text = describe(*blow_up, too_long);
-  EXPECT_NE(text.find("step " + std::to_string(first_bad)), std::string::npos) << text;
-  EXPECT_NE(text.find("node " + std::to_string(blow_up->node)), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("step " + std::to_string(first_bad)));
+  EXPECT_THAT(text, HasSubstr("node " + std::to_string(blow_up->node)));
 }
 
 TEST(Reference, EndsWhenTheUserEndsTheProgram) {
@@ -437,7 +437,7 @@ TEST(BlowUp, OfTheReferenceFailsEveryRow) {
   const System system = cloth_system(10, 10);
   const Reference reference = run_reference(system, integrators[0], 50 * backend_dt_s);
   ASSERT_TRUE(reference.failure);
-  EXPECT_NE(reference.failure->find("blew up at step"), std::string::npos) << *reference.failure;
+  EXPECT_THAT(*reference.failure, HasSubstr("blew up at step"));
   const auto backend = make_serial(system, integrators[0], 50 * backend_dt_s, {});
   const Verification found = verify(*backend, system, reference, 50 * backend_dt_s);
   EXPECT_EQ(found.failure, reference.failure);

@@ -130,13 +130,11 @@ TEST(WindowVerification, NoticesOneNodeAndOneThatIsNotFinite) {
   whole.wrong = 1e-5;
   const Verification off = verify_windows(whole, reference);
   ASSERT_TRUE(off.failure);
-  EXPECT_NE(off.failure->find("in the window that starts at row 20 and column 30"), std::string::npos)
-      << *off.failure;
+  EXPECT_THAT(*off.failure, HasSubstr("in the window that starts at row 20 and column 30"));
   whole.wrong = std::numeric_limits<double>::quiet_NaN();
   const Verification bad = verify_windows(whole, reference);
   ASSERT_TRUE(bad.failure);
-  EXPECT_NE(bad.failure->find("blew up at step 1 (t = 0.0001 s): node 1285 is"), std::string::npos)
-      << *bad.failure;
+  EXPECT_THAT(*bad.failure, HasSubstr("blew up at step 1 (t = 0.0001 s): node 1285 is"));
 }
 
 TEST(WindowReference, EndsWhereANodeMeetsTheFloor) {

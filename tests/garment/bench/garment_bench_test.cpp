@@ -323,8 +323,7 @@ TEST(GarmentVerification, FindsEveryMistake) {
     const Verification found = verify_stepping(wrong);
     ASSERT_TRUE(found.failure) << mistake.name << ": error " << *found.position_error << " of "
                                << jeans().reference.tolerance;
-    EXPECT_NE(found.failure->find(mistake.found_while), std::string::npos)
-        << mistake.name << ": " << *found.failure;
+    EXPECT_THAT(*found.failure, HasSubstr(mistake.found_while)) << mistake.name;
   }
 }
 
@@ -335,7 +334,7 @@ TEST(GarmentVerification, FindsOneNodeThatIsFartherOffThanContactMovesIt) {
   EXPECT_FALSE(verified(0.0002).failure) << "what contact may do";
   const Verification found = verified(0.006);
   ASSERT_TRUE(found.failure);
-  EXPECT_NE(found.failure->find("of one node when draped"), std::string::npos) << *found.failure;
+  EXPECT_THAT(*found.failure, HasSubstr("of one node when draped"));
 }
 
 TEST(GarmentVerification, SaysWhereASimulationBlowsUp) {
@@ -347,8 +346,7 @@ TEST(GarmentVerification, SaysWhereASimulationBlowsUp) {
   const GarmentReference blown_up =
       run_garment_reference(*exact, scene.system, semi_euler, 1e6 * scene.dt_s, scene.draped);
   ASSERT_TRUE(blown_up.failure);
-  EXPECT_NE(blown_up.failure->find("the double-precision reference blew up at step"), std::string::npos)
-      << *blown_up.failure;
+  EXPECT_THAT(*blown_up.failure, HasSubstr("the double-precision reference blew up at step"));
   EXPECT_EQ(verify_garment(*backend, scene.system, blown_up, scene.dt_s).failure, blown_up.failure);
 }
 
