@@ -52,6 +52,12 @@ inline State state_after(Backend& backend, int steps) {
   return backend.state();
 }
 
+/// How far the nodes of two backends are from each other, at most, after as many further steps of both, m.
+inline double distance_after(int steps, Backend& one, Backend& other) {
+  const State first = state_after(one, steps);
+  return largest_distance(first.position, state_after(other, steps).position);
+}
+
 /// Whether positions and velocities are the same to the last bit; else says where they are not.
 inline testing::AssertionResult same_state(const State& found, const State& expected) {
   if (found.position.size() != expected.position.size() || found.velocity.size() != expected.velocity.size())

@@ -161,11 +161,9 @@ TEST_P(OpenclKernels, TakeAFewStepsLikeTheReference) {
         alike_bodies(held_above_a_floor(solid_block(2, 2, 3)), 9)})
     for (const Integrator& integrator : integrators) {
       const auto reference = make_reference(system, integrator, backend_dt_s);
-      reference->step(few_steps);
       const auto backend = way.make_in(copied, system, integrator, backend_dt_s);
-      backend->step(few_steps);
       // Each step rounds a position of up to 1 m to float (6e-8) a few times.
-      EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6)
+      EXPECT_LT(distance_after(few_steps, *reference, *backend), 1e-6)
           << integrator.name << ", " << system.nodes() << " nodes";
     }
 }
@@ -183,12 +181,10 @@ TEST_P(BandsOpenclKernels, TakeAFewStepsLikeTheReferenceOnSeveralWorkItems) {
   for (const char* name : {"semi-euler", "rk4"}) {
     const Integrator& integrator = *find_integrator(name);
     const auto reference = make_reference(system, integrator, backend_dt_s);
-    reference->step(few_steps);
     // Two work-items of rk4, in a launch of two steps and one of one.
     const auto backend =
         make_opencl_grid(system, grid, integrator, backend_dt_s, copied.device, copied.memory, GetParam(), 2);
-    EXPECT_LT(largest_distance(state_after(*backend, few_steps).position, reference->state().position), 1e-6)
-        << name;
+    EXPECT_LT(distance_after(few_steps, *reference, *backend), 1e-6) << name;
   }
 }
 
@@ -215,14 +211,12 @@ TEST_P(DressingOpenclKernels, TakeAFewStepsLikeTheReference) {
   system.floor.height = 0.005;                        // above the lowest row
   for (Vec3d& x : system.start.position) x.y *= 1.1;  // too long, all
   round_to_single(system.start);
-  const Integrator& semi_euler = *find_integrator("semi-euler");
   const auto reference = make_reference_dressing(system, semi_euler, backend_dt_s);
-  reference->step(few_steps);
   const DeviceInMemory copied = ways_to_memory().front();
   const int lanes = GetParam();
   const auto backend = make_opencl_dressing(system, semi_euler, backend_dt_s, copied.device, copied.memory,
                                             {lanes, lanes == 1 ? std::size_t{8} : 1});
-  EXPECT_LT(largest_distance(state_after(*backend, few_steps).position, reference->state().position), 1e-6);
+  EXPECT_LT(distance_after(few_steps, *reference, *backend), 1e-6);
 }
 
 }  // namespace
