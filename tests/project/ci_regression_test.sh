@@ -3,22 +3,16 @@
 # Arguments: mssim (unused), the source folder.
 # shellcheck disable=SC2016 # the stand-ins expand what stands in single quotes
 set -euo pipefail
+. "$2/tests/support/command_line.sh"
 
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-repository=$place/repository tools=$place/tools
-mkdir -p "$repository" "$tools"
-cp -r "$2/scripts" "$2/CMakePresets.json" "$2/.gitignore" "$repository"
-repository=$(cd "$repository" && pwd -P)
-export PATH=$tools:$PATH PLACE=$place
-tool() { # NAME: a stand-in, with the script on stdin
-  { echo '#!/bin/bash' && cat; } >"$tools/$1"
-  chmod +x "$tools/$1"
-}
-tool dpkg-query <<<'printf "installed %s\n" "${@:4}"'
-tool cmake <<<'mkdir -p build/release && touch build/release/build.ninja && echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >build/release/CMakeCache.txt'
+mkdir repository tools
+cp -r "$source/scripts" "$source/CMakePresets.json" "$source/.gitignore" repository
+repository=$(cd repository && pwd -P)
+export PATH=$work/tools:$PATH PLACE=$work
+make_program tools/dpkg-query <<<'printf "installed %s\n" "${@:4}"'
+make_program tools/cmake <<<'mkdir -p build/release && touch build/release/build.ninja && echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >build/release/CMakeCache.txt'
 # The program that it "builds" shows what the source said at that time, and how it is called.
-tool ninja <<'END'
+make_program tools/ninja <<'END'
 echo "built ${2#"$PLACE"/repository/}" >>"$PLACE/notes"
 mkdir -p "$2/bin"
 printf '#!/bin/bash\nprintf "%%s\\n" "$@"\nexit 1\n' >"$2/bin/mssim"
@@ -35,26 +29,20 @@ echo new >"$repository/source"
 "${git[@]}" commit -qam new
 echo changed >"$repository/source"
 
-fail() { echo "$1"; printf 'stdout: %s\nstderr: %s\n' "$(cat "$place/out")" "$(cat "$place/err")"; exit 1; } >&2
 # runs CODE ARGUMENTS...
 runs() {
-  local expected=$1 code=0
-  shift
-  : >"$place/notes"
-  "$repository/scripts/ci-regression" "$@" >"$place/out" 2>"$place/err" || code=$?
-  [[ $code == "$expected" ]] || fail "ci-regression $*: exit code $code instead of $expected"
+  : >"$work/notes"
+  exits "$1" "$repository/scripts/ci-regression" "${@:2}"
 }
 
-runs 2
-grep -q 'name the revision' "$place/err" || fail 'it says what is missing'
+warning 'name the revision' runs 2
 runs 2 --scene cloth2500
-runs 2 no-such-revision
-grep -q 'there is no revision no-such-revision' "$place/err" || fail 'it names the revision that it does not know'
-[[ ! -s $place/notes ]] || fail 'nothing is built for a revision that is not known'
+warning 'there is no revision no-such-revision' runs 2 no-such-revision
+[[ ! -s notes ]] || fail 'nothing is built for a revision that is not known'
 
 base=$repository/build/ci-regression/$old/build/release/bin
 runs 1 HEAD~1 --threads 2
-[[ $(cat "$place/out") == "compare
+[[ $(cat out) == "compare
 --ab
 $base/mssim
 $repository/build/release/bin/mssim
@@ -66,8 +54,8 @@ cloth40k
 [[ $(cat "$repository/build/release/bin/source") == changed ]] || fail 'the present one is the tree as it is'
 
 runs 1 "$old" --scene=box-small
-[[ $(sed -n 5p "$place/out") == --scene=box-small ]] || fail 'a scene that is named replaces the default'
-[[ $(sort "$place/notes") == "built build/ci-regression/$old/build/release
+[[ $(sed -n 5p out) == --scene=box-small ]] || fail 'a scene that is named replaces the default'
+[[ $(sort notes) == "built build/ci-regression/$old/build/release
 built build/release" ]] || fail 'the worktree of a revision is used again'
 rm -rf "$repository/build/ci-regression"
 runs 1 "$old"
@@ -75,19 +63,19 @@ runs 1 "$old"
 
 # A program of the user's is compared in the folder that this is run from, which the base may lack.
 mkdir "$repository/later"
-(cd "$repository/later" && runs 2 HEAD~1 --mssim "$tools/ninja")
-grep -q 'HEAD~1 has no folder later/' "$place/err" || fail 'it says which folder is missing'
+cd "$repository/later"
+warning 'HEAD~1 has no folder later/' runs 2 HEAD~1 --mssim "$work/tools/ninja"
 
 # Two comparisons in one repository start their own programs.
 starters=()
+cd "$repository/scripts"
 for name in first second; do
-  tool "$name" <<<'printf "%s\n" "${0##*/}" "$PWD" "$@"; exit 1'
-  (cd "$repository/scripts" && runs 1 HEAD~1 --mssim="$tools/$name" --build=true --backend ./mine)
-  starters+=("$(sed -n 5p "$place/out")" "$(sed -n 6p "$place/out")")
+  make_program "$work/tools/$name" <<<'printf "%s\n" "${0##*/}" "$PWD" "$@"; exit 1'
+  runs 1 HEAD~1 --mssim="$work/tools/$name" --build=true --backend ./mine
+  starters+=("$(sed -n 5p "$work/out")" "$(sed -n 6p "$work/out")")
 done
-code=0
-"${starters[0]}" measured >"$place/out" || code=$?
-[[ $code == 1 && $(cat "$place/out") == "first
+exits 1 "${starters[0]}" measured
+[[ $(cat "$work/out") == "first
 $repository/build/ci-regression/$old/scripts
 measured" ]] || fail 'the second comparison changes what the first one starts for its base'
 [[ $("${starters[3]}" || true) == "second

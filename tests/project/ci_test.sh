@@ -3,21 +3,16 @@
 # backend that becomes slower, with mssim from an archive; and git bisect finds the commit. Arguments: mssim, the source folder, and what
 # runs a program that was built (nothing where it runs by itself).
 set -euo pipefail
-[[ $# -lt 3 || -z $3 ]] || { echo "skipped: an emulated program measures nothing" && exit 77; }
-mssim=$(realpath -e -- "$1") source=$2
+. "$2/tests/support/command_line.sh"
+[[ $# -lt 3 || -z $3 ]] || skip "an emulated program measures nothing"
+mssim=$(realpath -e -- "$mssim")
 build=${mssim%/bin/mssim}
-place=$(realpath -- "$(mktemp -d)")
-trap 'rm -rf "$place"' EXIT
-fail() { echo "$1"; [[ ! -e $place/log ]] || tail -n 60 "$place/log"; exit 1; } >&2
-mkdir -p "$place"/{tools,mssim-0,runner}
+place=$(pwd -P)
+mkdir tools mssim-0 runner
 export PATH=$place/tools:$PATH GIT_CONFIG_GLOBAL=$place/gitconfig GIT_CONFIG_NOSYSTEM=1
 printf '[user]\nname = t\nemail = t@localhost\n[advice]\ndetachedHead = false\n' >"$place/gitconfig"
-tool() { # NAME: a stand-in, with the script on stdin
-  { echo '#!/bin/bash' && cat; } >"$place/tools/$1"
-  chmod +x "$place/tools/$1"
-}
 # It keeps one comment, and its number is 5.
-tool gh <<'END'
+make_program tools/gh <<'END'
 place=${0%/tools/gh} last=${!#}
 echo "$*" >>"$place/gh"
 case " $* " in
@@ -25,18 +20,18 @@ case " $* " in
   *) cp "${last#body=@}" "$place/comment" ;;
 esac
 END
-tool apt-get <<<'echo "$*" >>'"$place"'/apt-get'
+make_program tools/apt-get <<<'echo "$*" >>'"$place"'/apt-get'
 # shellcheck disable=SC2016 # the stand-in expands it
-tool make <<<'cp mine.in "$1" && chmod +x "$1"'
+make_program tools/make <<<'cp mine.in "$1" && chmod +x "$1"'
 
-cmake --install "$build" --prefix "$place/mssim-0" >/dev/null
-tar -C "$place" -czf "$place/mssim.tar.gz" mssim-0
+cmake --install "$build" --prefix mssim-0 >/dev/null
+tar -czf mssim.tar.gz mssim-0
 # The repository of mssim, as the action and a clone have it.
-mkdir "$place/action"
-cp -r "$source"/{action.yml,CMakeLists.txt,scripts} "$place/action"
-git -C "$place/action" init --quiet --initial-branch main
-git -C "$place/action" add -A
-git -C "$place/action" commit --quiet -m mssim
+mkdir action
+cp -r "$source"/{action.yml,CMakeLists.txt,scripts} action
+git -C action init --quiet --initial-branch main
+git -C action add -A
+git -C action commit --quiet -m mssim
 
 # The user's repository: on the branch `change`, the third of four commits makes the backend slower.
 repository=$place/builds/mine
@@ -115,10 +110,8 @@ for step in steps + [step for step in steps if step["name"].startswith("Comment"
 sys.exit(failed)
 PYTHON
 acts() { # CODE JSON
-  local code=0
   rm -f "$place"/{path,summary.md,gh}
-  /usr/bin/python3 "$place/run_action.py" "$place/action" "$place" "$2" >"$place/log" 2>&1 || code=$?
-  [[ $code == "$1" ]] || fail "the action ends with $code instead of $1"
+  exits "$1" /usr/bin/python3 "$place/run_action.py" "$place/action" "$place" "$2"
 }
 acts 1 '{"archive": "'"$place"'/mssim.tar.gz", "build": "make mine", "folder": "kept/mssim-comparison",
   "options": "--backend ./mine '"$brief"'"}'
@@ -138,7 +131,7 @@ diff <(echo '<!-- mssim: kept/mssim-comparison -->' && cat "$place/summary.md") 
 # Nothing that failed before the comparison is hidden.
 rm -r kept "$place/runner/mssim"
 # shellcheck disable=SC2016
-tool curl <<<'echo "$*" >"${0%/tools/curl}/curl" && exit 22'
+make_program "$place/tools/curl" <<<'echo "$*" >"${0%/tools/curl}/curl" && exit 22'
 acts 1 '{"comment": "false", "options": "--backend ./mine", "folder": "."}'
 rm "$place/tools/curl"
 grep -qE ' https://localhost/a/mssim/releases/download/v([0-9.]+)/mssim-\1-linux-[^ ]+\.tar\.gz$' "$place/curl" ||
@@ -172,10 +165,8 @@ print("set -eo pipefail\n" + text.replace(long, brief))
 PYTHON
 /usr/bin/python3 "$place/gitlab.py" "$source" "$brief" >"$place/gitlab"
 mkdir -p ../mssim-{source,installed}/earlier
-code=0
 MSSIM_REPOSITORY=file://$place/action MSSIM_ARCHIVE=file://$place/mssim.tar.gz CI_MERGE_REQUEST_TARGET_BRANCH_NAME=main \
-  bash "$place/gitlab" >"$place/log" 2>&1 || code=$?
-[[ $code -eq 1 ]] || fail "the job of GitLab ends with $code"
+  exits 1 bash "$place/gitlab"
 grep -q slower mssim-comparison/comparison.md || fail "the job of GitLab keeps no table"
 grep -q 'install.* curl' "$place/apt-get" || fail "the job of GitLab installs nothing"
 
@@ -183,10 +174,8 @@ grep -q 'install.* curl' "$place/apt-get" || fail "the job of GitLab installs no
 awk '/^    #!\/bin\/bash/ { inside = 1 } inside && !/^    / { exit } inside { print substr($0, 5) }' "$source/docs/ci.md" |
   sed "s#/path/to/mssim#$place/action#" >"$place/tools/bisect-speed"
 chmod +x "$place/tools/bisect-speed"
-git bisect start change main >"$place/log" 2>&1
+exits 0 git bisect start change main
 # shellcheck disable=SC2086 # the options are words of their own
-git bisect run bisect-speed main --mssim "$mssim" --build 'make mine' --backend ./mine $brief >>"$place/log" 2>&1 || fail "git bisect run ends with $?"
+exits 0 git bisect run bisect-speed main --mssim "$mssim" --build 'make mine' --backend ./mine $brief
 [[ $(git rev-parse refs/bisect/bad) == "$slow" ]] || fail "git bisect names another commit than $slow"
-code=0
-bisect-speed no-such-revision >"$place/log" 2>&1 || code=$?
-[[ $code -eq 125 ]] || fail "git bisect does not skip what cannot be compared: $code"
+exits 125 bisect-speed no-such-revision # git bisect skips what cannot be compared

@@ -2,14 +2,14 @@
 # Every figure of README.md and docs/papers.md follows from what is committed in results/: the sentences and tables that it computes must
 # stand there, and no other number may, but those of `allowed`. It prints what should stand there. Arguments: mssim, the source folder.
 set -euo pipefail
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd -- "$2"
-trap 'cat "$work/err" >&2' ERR
+. "$2/tests/support/command_line.sh"
+cd -- "$source"
 suites=(table1 table3 garment)
-"$1" report "${suites[@]/#/results/}" --no-runs --out "$work/report.html" 2>"$work/err"
-for suite in "${suites[@]}"; do "$1" bench --suite "$suite" --dry-run >"$work/$suite" 2>"$work/err"; done
-trap - ERR
+ends 0 report "${suites[@]/#/results/}" --no-runs --out "$work/report.html"
+for suite in "${suites[@]}"; do
+  ends 0 bench --suite "$suite" --dry-run
+  mv "$work/out" "$work/$suite"
+done
 
 # Whoever reads a figure can look at the program that made it: the history has every commit that results/ names. A copy without it has none.
 mapfile -t commits < <(git grep -hoE '"commit": "[0-9a-f]+' -- results 2>/dev/null | grep -oE '[0-9a-f]+$' | sort -u)

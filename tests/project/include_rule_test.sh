@@ -2,6 +2,7 @@
 # The data flows one way: which room of src/ may include which others, and which of their headers. Arguments: mssim (unused), the
 # source folder.
 set -euo pipefail
+. "$2/tests/support/command_line.sh"
 
 # The rule. A room is a folder with files of its own; a row names one and the rooms that it may include beside itself,
 # all of which stand above it. Files in src/ itself are rooms of their own.
@@ -201,20 +202,18 @@ offences() {
 }
 
 # The check finds what it is there for.
-made_up=$(mktemp -d)
-trap 'rm -rf "$made_up"' EXIT
-mkdir -p "$made_up"/src/{model,output/tables,application,gadgets,bench/machine} "$made_up/kernels"
+mkdir -p src/{model,output/tables,application,gadgets,bench/machine} kernels
 printf '#include <vector>\n#include "model/b.h"\n  #  include "scene/spec/scene_spec.h"\n#include <backends/backends.h>\n' \
-  >"$made_up/src/model/a.h"
+  >src/model/a.h
 printf '#include "bench/results/result.h"\n#include "bench/job/plan.h"\n#include "../bench/plan.h"\n' \
-  >"$made_up/src/output/tables/a.cpp"
-printf '#include "text/text.h"\n#include <hwy/highway.h>\n' >"$made_up/src/bench/machine/a.cpp"
-printf '#include "scene/scene_file.h"\n#include "commands/command.h"\n' >"$made_up/src/application/a.cpp"
-printf '#include <vector>\n' >"$made_up/src/gadgets/a.h"
-mkdir -p "$made_up/src/bench/verification"
-printf '#include "text/text.h"\n#include "text/words.h"\n' >"$made_up/src/bench/verification/a.h"
-printf '#include "model/system.h"\n' >"$made_up/kernels/a.h"
-printf '#include "commands/command.h"\n' >"$made_up/src/main.cpp"
+  >src/output/tables/a.cpp
+printf '#include "text/text.h"\n#include <hwy/highway.h>\n' >src/bench/machine/a.cpp
+printf '#include "scene/scene_file.h"\n#include "commands/command.h"\n' >src/application/a.cpp
+printf '#include <vector>\n' >src/gadgets/a.h
+mkdir -p src/bench/verification
+printf '#include "text/text.h"\n#include "text/words.h"\n' >src/bench/verification/a.h
+printf '#include "model/system.h"\n' >kernels/a.h
+printf '#include "commands/command.h"\n' >src/main.cpp
 expected='kernels/a.h:1: kernels may not include model/system.h
 src/application/a.cpp:2: application may not include commands/command.h
 src/bench/verification/a.h:2: text/words.h is private to its room, which shows text.h, error.h
@@ -223,18 +222,12 @@ src/model/a.h:3: model may not include scene/spec/scene_spec.h
 src/model/a.h:4: model may not include backends/backends.h
 src/output/tables/a.cpp:2: output/tables may not include bench/job/plan.h
 src/output/tables/a.cpp:3: "../bench/plan.h" is neither written from src/ on nor a library header in <>'
-if ! diff <(printf '%s\n' "$expected") <(offences "$made_up"); then
-  echo "The check does not find the made-up offences (< expected, > found)." >&2
-  exit 1
-fi
+diff <(printf '%s\n' "$expected") <(offences .) || fail "The check does not find the made-up offences (< expected, > found)."
 
-found=$(offences "$2")
+found=$(offences "$source")
 while read -r room headers; do
   for header in $headers; do
-    [[ -e $2/src/$room/$header.h ]] || found+=$'\n'"what rooms show: there is no src/$room/$header.h"
+    [[ -e $source/src/$room/$header.h ]] || found+=$'\n'"what rooms show: there is no src/$room/$header.h"
   done
 done <<<"$shown"
-if [[ $found ]]; then
-  printf '%s\n' "$found" "The rule stands in tests/project/include_rule_test.sh." >&2
-  exit 1
-fi
+[[ ! $found ]] || fail "$found"$'\n'"The rule stands in tests/project/include_rule_test.sh."

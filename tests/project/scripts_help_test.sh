@@ -2,34 +2,27 @@
 # Each script prints its usage for --help and -h, and does nothing else: stand-ins for what it would call only note that they were
 # called. Arguments: mssim (unused), the source folder.
 set -euo pipefail
+. "$2/tests/support/command_line.sh"
 
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-mkdir "$place/repository" "$place/tools"
-cp -r "$2/scripts" "$place/repository"
+mkdir repository tools
+cp -r "$source/scripts" repository
 for program in dpkg-query apt-get sudo cmake ninja ctest git flock mkdir clang-format shellcheck h5dump; do
   # shellcheck disable=SC2016 # the stand-ins expand it
-  printf '#!/bin/sh\necho "${0##*/} $*" >>"%s/called"\n' "$place" >"$place/tools/$program"
+  make_program "tools/$program" <<<'echo "${0##*/} $*" >>'"$work/called"
 done
-chmod +x "$place"/tools/*
-export PATH="$place/tools:$PATH"
+export PATH="$work/tools:$PATH"
 
-fail() { echo "$1" && cat "$place/out" "$place/err" && exit 1; } >&2
 # helps SCRIPT ARGUMENT...: it prints its usage on stdout and ends with 0.
 helps() {
-  local script=$1 status=0
-  shift
-  "$place/repository/scripts/$script" "$@" >"$place/out" 2>"$place/err" </dev/null || status=$?
-  [[ $status == 0 ]] || fail "scripts/$script $*: exit code $status"
-  [[ ! -s $place/err ]] || fail "scripts/$script $*: a message on stderr"
-  grep -q "^  scripts/$script" "$place/out" || fail "scripts/$script $*: no usage"
-  ! grep -qE '^(#|set |$)' "$place/out" || fail "scripts/$script $*: more than its comment"
-  [[ ! -e $place/called ]] || fail "scripts/$script $*: called $(cat "$place/called")"
-  [[ ! -e $place/repository/build ]] || fail "scripts/$script $*: made a build folder"
+  saying "^  scripts/$1" exits 0 "repository/scripts/$1" "${@:2}"
+  [[ ! -s err ]] || fail "scripts/$*: a message on stderr: $(cat err)"
+  ! grep -E '^(#|set |$)' out || fail "scripts/$*: more than its comment"
+  [[ ! -e called ]] || fail "scripts/$*: called $(cat called)"
+  [[ ! -e repository/build ]] || fail "scripts/$*: made a build folder"
 }
 
 scripts=0
-for file in "$place"/repository/scripts/*; do
+for file in repository/scripts/*; do
   [[ -f $file && -x $file ]] || continue
   scripts=$((scripts + 1))
   helps "${file##*/}" --help

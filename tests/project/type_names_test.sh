@@ -2,6 +2,7 @@
 # No two headers define a type of one name: all are in one namespace, where that is undefined behaviour that no compiler
 # reports. What own backends are written with has a namespace of its own. Arguments: mssim (unused), the source folder.
 set -euo pipefail
+. "$2/tests/support/command_line.sh"
 
 # twice FOLDER: the names of types that the headers in it define more than once.
 twice() {
@@ -10,11 +11,9 @@ twice() {
 }
 
 # The check finds what it is there for.
-made_up=$(mktemp -d)
-trap 'rm -rf "$made_up"' EXIT
-printf 'struct Box {\n};\nclass Ball;\nenum class Kind { one };\n' >"$made_up/a.h"
-printf 'struct Ball {\n};\nclass Box final : public Ball {\n};\nstruct Kind { int a; };\n' >"$made_up/b.h"
-[ "$(twice "$made_up" | paste -sd ' ')" = 'Box Kind' ] || { echo "not found: a type of which two headers define one each" && exit 1; }
+printf 'struct Box {\n};\nclass Ball;\nenum class Kind { one };\n' >a.h
+printf 'struct Ball {\n};\nclass Box final : public Ball {\n};\nstruct Kind { int a; };\n' >b.h
+[ "$(twice . | paste -sd ' ')" = 'Box Kind' ] || fail "not found: a type of which two headers define one each"
 
-found=$(twice "$2/src")
-[ -z "$found" ] || { echo "types that two headers define: $found" && exit 1; }
+found=$(twice "$source/src")
+[ -z "$found" ] || fail "types that two headers define: $found"

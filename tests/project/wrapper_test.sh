@@ -3,20 +3,18 @@
 # were called. Arguments: mssim (unused), the source folder.
 # shellcheck disable=SC2016 # the stand-ins expand what stands in single quotes
 set -euo pipefail
+. "$2/tests/support/command_line.sh"
+trap 'finish $? chmod -R u+w "$work"' EXIT
 
-place=$(mktemp -d)
-trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
-repository="$place/a clone" tools="$place/tools" notes="$place/notes"
-mkdir -p "$repository" "$tools" "$place/elsewhere"
-cp -r "$2/scripts" "$2/CMakePresets.json" "$2/CMakeLists.txt" "$2/cmake" "$repository"
-mkdir "$repository/src" "$repository/kernels"
-ln -s "$repository/scripts/mssim" "$place/elsewhere/link"
-repository=$(cd "$repository" && pwd -P)
-export PATH="$tools:$PATH" MSSIM_TEST_NOTES=$notes MSSIM_TEST_PLACE=$place
+mkdir 'a clone' tools elsewhere
+cp -r "$source/scripts" "$source/CMakePresets.json" "$source/CMakeLists.txt" "$source/cmake" 'a clone'
+mkdir 'a clone/src' 'a clone/kernels'
+ln -s "$work/a clone/scripts/mssim" elsewhere/link
+repository=$(cd 'a clone' && pwd -P)
+export PATH="$work/tools:$PATH" MSSIM_TEST_PLACE=$work
 
 tool() { # NAME: a stand-in, with the script on stdin
-  { printf '#!/bin/bash\nset -eu\necho "${0##*/} $*" >>"$MSSIM_TEST_NOTES"\n' && cat; } >"$tools/$1"
-  chmod +x "$tools/$1"
+  { printf 'set -eu\necho "${0##*/} $*" >>"$MSSIM_TEST_PLACE/notes"\n' && cat; } | make_program "tools/$1"
 }
 # Packages named in `absent` are not installed.
 tool dpkg-query <<'END'
@@ -39,22 +37,18 @@ printf '#!/bin/bash\nprintf "<%%s>" "$@"\npwd\nexit 7\n' >"$2/bin/mssim"
 chmod +x "$2/bin/mssim"
 END
 
-fail() { echo "$1"; printf 'stdout: %s\nstderr: %s\n' "$(cat "$place/out")" "$(cat "$place/err")"; exit 1; } >&2
 # runs CODE ARGUMENTS...: calls the wrapper from another folder, through a link, as the user in `as_user`, and expects that exit code.
 as_user=()
 runs() {
-  local expected=$1 code=0
-  shift
-  : >"$notes"
-  (cd "$place/elsewhere" && "${as_user[@]}" ./link "$@") >"$place/out" 2>"$place/err" || code=$?
-  [[ $code == "$expected" ]] || fail "exit code $code instead of $expected"
+  : >notes
+  exits "$1" from_elsewhere "${@:2}"
 }
-noted() { grep -q -- "^$1" "$notes"; } # a stand-in was called so
-told() { grep -qF -- "$1" "$place/err"; }
+from_elsewhere() { (cd elsewhere && "${as_user[@]}" ./link "$@"); }
+noted() { grep -q -- "^$1" notes; } # a stand-in was called so
 
-: >"$place/absent"
+: >absent
 runs 7 bench --scene 'two words'
-[[ $(cat "$place/out") == "<bench><--scene><two words>$(cd "$place/elsewhere" && pwd)" ]] ||
+[[ $(cat out) == "<bench><--scene><two words>$(cd elsewhere && pwd)" ]] ||
   fail 'arguments, working directory and stdout are mssim'\''s'
 noted 'cmake --preset release' || fail 'the first call configures'
 ! noted apt-get || fail 'nothing is installed when nothing is missing'
@@ -62,7 +56,7 @@ noted 'cmake --preset release' || fail 'the first call configures'
 runs 7
 ! noted cmake || fail 'a later call does not configure again'
 noted ninja || fail 'a later call builds what changed'
-[[ ! -s $place/err ]] || fail 'a wrapper with nothing to do is silent'
+[[ ! -s err ]] || fail 'a wrapper with nothing to do is silent'
 
 touch -d '1 minute' "$repository/CMakePresets.json"
 runs 7
@@ -75,59 +69,59 @@ runs 7
 [[ ! -e /var/lib/dpkg/status ]] || { noted 'cmake --preset release' && ! noted 'cmake .*--fresh'; } ||
   fail 'a build looks for packages that came after it, and keeps its cache'
 
-mv "$repository" "$place/moved"
-ln -sfn "$place/moved/scripts/mssim" "$place/elsewhere/link"
+mv "$repository" "$work/moved"
+ln -sfn "$work/moved/scripts/mssim" elsewhere/link
 runs 7
 noted 'cmake --preset release' || fail 'a build folder that came from elsewhere is configured anew'
 
-touch "$place/broken"
+touch broken
 runs 3
-told 'b.cpp: error: nonsense' || fail 'a failed build shows why'
-! told 'Building CXX a' || fail 'a failed build shows what failed and not the rest'
-[[ ! -s $place/out ]] || fail 'stdout carries the results of mssim alone'
-rm "$place/broken"
+warns 'b.cpp: error: nonsense'
+! grep -q 'Building CXX a' err || fail 'a failed build shows what failed and not the rest'
+[[ ! -s out ]] || fail 'stdout carries the results of mssim alone'
+rm broken
 
-printf '%s\n' libhwy-dev shellcheck >"$place/absent"
+printf '%s\n' libhwy-dev shellcheck >absent
 runs 7
 noted 'apt-get .*install -y --no-install-recommends libhwy-dev$' || fail 'the missing package is installed, and none that only the lint needs'
 
-touch "$place/offline"
+touch offline
 runs 3
-told 'apt-get install -y --no-install-recommends libhwy-dev' || fail 'the command that helps is told'
+warns 'apt-get install -y --no-install-recommends libhwy-dev'
 ! noted ninja || fail 'without its packages nothing is built'
-[[ ! -s $place/out ]] || fail 'stdout carries the results of mssim alone'
-: >"$place/absent"
+[[ ! -s out ]] || fail 'stdout carries the results of mssim alone'
+: >absent
 runs 7
 
 # Of two at the same time one builds after the other.
-for i in 1 2; do { "$place/elsewhere/link" >"$place/out$i" || echo $? >"$place/code$i"; } & done 2>"$place/err"
+for i in 1 2; do { elsewhere/link >out$i || echo $? >code$i; } & done 2>err
 wait
-[[ $(cat "$place/code1" "$place/code2") == $'7\n7' ]] || fail 'two wrappers at the same time both succeed'
+[[ $(cat code1 code2) == $'7\n7' ]] || fail 'two wrappers at the same time both succeed'
 
 # Another user, to whom the folder does not belong.
-chmod -R a-w "$place/moved"
-chmod a+rx "$place"
-chmod a+rw "$notes"
+chmod -R a-w "$work/moved"
+chmod a+rx "$work"
+chmod a+rw notes
 ((EUID)) || as_user=(setpriv --reuid=65534 --regid=65534 --clear-groups)
 runs 7 list
-[[ $(cat "$place/out") == "<list>"* && ! -s $place/err ]] || fail 'a build that cannot be written is run as it is'
+[[ $(cat out) == "<list>"* && ! -s err ]] || fail 'a build that cannot be written is run as it is'
 ! noted ninja || fail 'nothing is built where nothing can be written'
-touch -d '1 minute' "$place/moved/CMakeLists.txt"
+touch -d '1 minute' "$work/moved/CMakeLists.txt"
 runs 7
-told "$place/moved/build/release cannot be written by this user: running what is built there, which is older" || fail 'an old build is named'
-chmod u+w "$place/moved/build/release/bin"
-rm "$place/moved/build/release/bin/mssim"
-chmod u-w "$place/moved/build/release/bin"
+warns "$work/moved/build/release cannot be written by this user: running what is built there, which is older"
+chmod u+w "$work/moved/build/release/bin"
+rm "$work/moved/build/release/bin/mssim"
+chmod u-w "$work/moved/build/release/bin"
 runs 3
-told "$place/moved/build/release cannot be written" || fail 'the folder that cannot be written is named'
-told "cmake --preset release -S '$place/moved' -B ELSEWHERE" || fail 'the way to build elsewhere is told'
-[[ $(wc -l <"$place/err") == 1 ]] || fail 'one message'
+warns "$work/moved/build/release cannot be written"
+warns "cmake --preset release -S '$work/moved' -B ELSEWHERE"
+[[ $(wc -l <err) == 1 ]] || fail 'one message'
 
 # Another user, who may not install.
-printf '%s\n' libhwy-dev tetgen >"$place/absent"
+printf '%s\n' libhwy-dev tetgen >absent
 tool sudo <<<'exit 1'
 runs 3
-told 'this user may not install packages' || fail 'who may not install is told so'
-told 'apt-get install -y --no-install-recommends libhwy-dev tetgen' || fail 'what to ask for is told'
-told 'runs without tetgen: cmake' || fail 'what mssim does without is told'
+warns 'this user may not install packages'
+warns 'apt-get install -y --no-install-recommends libhwy-dev tetgen'
+warns 'runs without tetgen: cmake'
 ! noted apt-get || fail 'nothing is tried that is not allowed'

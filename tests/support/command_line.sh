@@ -1,9 +1,11 @@
-# Functions of the tests at the command line, whose first argument is $mssim and second the $source folder. They run in $work, a folder
-# that goes away. A test that has called fail() goes on, and in the end exits with 1.
+# Functions of the tests that run mssim or a script, whose first argument is $mssim and second the $source folder. They run in $work, a
+# folder that goes away. A test that has called fail() goes on, and in the end exits with 1; one that has called it in a subshell does not.
 mssim=$1 source=$2 work=$(mktemp -d)
 cd "$work"
-# finish STATUS: what every test ends with. One that is skipped from somewhere on (77) has failed if anything before failed.
+# finish STATUS [COMMAND...]: what every test ends with, and before that a command of its own in a trap of its own. One that is skipped
+# from somewhere on (77) has failed if anything before failed.
 finish() {
+  "${@:2}"
   rm -rf "$work"
   if { [ "$1" -eq 0 ] || [ "$1" -eq 77 ]; } && [ "$failures" -gt 0 ]; then echo "$failures failures" && exit 1; fi
 }
@@ -16,34 +18,40 @@ fail() {
   failures=$((failures + 1))
 }
 
-# expect STATUS PATTERN ARGUMENTS...: mssim must exit with STATUS and say PATTERN on stderr, in one line, with nothing on stdout
-expect() {
-  local wanted=$1 pattern=$2 status=0
-  shift 2
-  timeout 30 "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null || status=$?
-  echo "mssim $*: $status $(cat "$work/err")"
-  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
-  grep -q -- "$pattern" "$work/err" || fail "stderr does not say \"$pattern\""
-  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "stderr has not one line"
-  [ ! -s "$work/out" ] || fail "stdout is not empty"
+# skip WHY: ends the test, which counts as skipped unless something failed before
+skip() { echo "skipped: $1" && exit 77; }
+
+# exits STATUS COMMAND...: the command must exit with STATUS; what it says is in $work/out and $work/err
+exits() {
+  local status=0
+  "${@:2}" >"$work/out" 2>"$work/err" </dev/null || status=$?
+  [ "$status" -eq "$1" ] || fail "$(printf '%q ' "${@:2}")exits with $status instead of $1: $(cat "$work/out" "$work/err")"
 }
+
+# ends STATUS ARGUMENTS...: mssim must do so
+ends() { exits "$1" "$mssim" "${@:2}"; }
+
+# refuses STATUS PATTERN COMMAND...: the command must exit with STATUS and say PATTERN on stderr, in one line, with nothing on stdout
+refuses() {
+  exits "$1" "${@:3}"
+  echo "${*:3}: $(cat "$work/err")"
+  warns "$2"
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "stderr has not one line"
+  [ ! -s "$work/out" ] || fail "stdout is not empty: $(cat "$work/out")"
+}
+
+# expect STATUS PATTERN ARGUMENTS...: mssim must do so
+expect() { refuses "$1" "$2" timeout 30 "$mssim" "${@:3}"; }
 
 # runs_limited: whether mssim runs in a limited address space, in which a sanitizer has no room
 runs_limited() { (ulimit -v 2000000 && "$mssim" --version) &>/dev/null; }
 
-# ends STATUS ARGUMENTS...: mssim must exit with STATUS; what it says is in $work/out and $work/err
-ends() {
-  local status=0
-  "$mssim" "${@:2}" >"$work/out" 2>"$work/err" </dev/null || status=$?
-  [ "$status" -eq "$1" ] || fail "mssim $(printf '%q ' "${@:2}") exits with $status instead of $1: $(cat "$work/out" "$work/err")"
-}
-
-# says PATTERN, warns PATTERN: what mssim has said on stdout, on stderr
+# says PATTERN, warns PATTERN: what the latest command has said on stdout, on stderr
 says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\": $(cat "$work/out")"; }
 warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\": $(cat "$work/err")"; }
 
-# saying PATTERN FUNCTION ARGUMENTS..., warning PATTERN FUNCTION ARGUMENTS...: runs mssim by ends, or by a test's own function, and then
-# it has said PATTERN on stdout, on stderr
+# saying PATTERN FUNCTION ARGUMENTS..., warning PATTERN FUNCTION ARGUMENTS...: a command, run by ends, exits or a test's own function, has
+# said PATTERN on stdout, on stderr
 saying() { "${@:2}"; says "$1"; }
 warning() { "${@:2}"; warns "$1"; }
 
@@ -82,11 +90,17 @@ is_gone() { ! kill -0 "$1" 2>/dev/null; }
 
 # on_full_disk KIB PATTERN ARGUMENTS...: mssim, whose files may not be larger, must exit with 4 and say PATTERN on stderr
 on_full_disk() {
-  local most=$1 pattern=$2 status=0
-  shift 2
-  (ulimit -f "$most" && exec "$mssim" "$@" >"$work/out" 2>"$work/err") || status=$?
-  [ "$status" -eq 4 ] || fail "a full disk gives exit status $status: $(cat "$work/err")"
-  warns "$pattern"
+  # shellcheck disable=SC2016 # the inner shell expands them
+  warning "$2" exits 4 bash -c 'ulimit -f "$0" && exec "$@"' "$1" "$mssim" "${@:3}"
+}
+
+# make_program FILE: a program of the commands of bash on stdin
+make_program() { { echo '#!/bin/bash' && cat; } >"$1" && chmod +x "$1"; }
+
+# make_scene FILE SCENE CHANGE: that scene of mssim's, changed by an expression of sed
+make_scene() {
+  sed "$3" "$source/scenes/$2.json" >"$1"
+  ! cmp -s "$source/scenes/$2.json" "$1" || fail "$3 changes nothing in $2"
 }
 
 # bodies_scene FILE FLOOR BODY...: makes a scene of these bodies above a floor at FLOOR
@@ -122,9 +136,19 @@ make_run() {
   done
 }
 
-# column_of FILE NAME: that column of a CSV file in which no field before it holds a comma
+# column_of FILE NAME...: these columns of a CSV file in which no field before them holds a comma, with blanks between them
 column_of() {
-  awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$1"
+  awk -F, -v names="${*:2}" '
+    NR == 1 { count = split(names, name, " "); for (i = 1; i <= NF; ++i) place[$i] = i; next }
+    { for (i = 1; i <= count; ++i) printf "%s%s", $place[name[i]], i < count ? " " : "\n" }' "$1"
+}
+
+# of_backend FILE NAME BACKEND: that column of the backend's rows
+of_backend() { column_of "$1" backend "$2" | sed -n "s/^$3 //p"; }
+
+# all_verified FOLDER COUNT: it has so many rows, and all are verified
+all_verified() {
+  [ "$(column_of "$1/timings.csv" verified | sort | uniq -c | xargs)" = "$2 true" ] || fail "not $2 verified rows: $(cat "$1/timings.csv")"
 }
 
 # names_of LIST: the first column of mssim list LIST, a line each
