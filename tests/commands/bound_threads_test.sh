@@ -8,39 +8,28 @@ set -euo pipefail
 unset OMP_WAIT_POLICY
 
 cpus=$(nproc --all)
-if [ "$cpus" -lt 2 ] || [ "$(nproc)" -ne "$cpus" ]; then
-  echo "skipped: needs a process with all of several CPUs"
-  exit 77
-fi
+[ "$cpus" -ge 2 ] && [ "$(nproc)" -eq "$cpus" ] || skip "needs a process with all of several CPUs"
 
 all=$(awk '/^Cpus_allowed_list/ { print $2 }' /proc/self/status)
 
+# are_free LEAST: at least so many threads of $process may use all CPUs
+are_free() { [ "$(cat "/proc/$process/task"/*/status | grep -xc "Cpus_allowed_list:[[:space:]]*$all")" -ge "$1" ]; }
 # expect_free LEAST ARGUMENTS...: in mssim ARGUMENTS, which runs for long, at least LEAST threads may use all CPUs
 expect_free() {
-  local least=$1 threads=0 try bench
-  shift
-  env --default-signal=INT OMP_PROC_BIND=true POCL_AFFINITY=0 "$mssim" "$@" >"$work/out" 2>"$work/err" &
-  bench=$!
-  for ((try = 0; try < 300 && threads < least; ++try)); do
-    sleep 0.1
-    kill -0 $bench 2>/dev/null || break
-    threads=$(cat /proc/$bench/task/*/status 2>/dev/null | grep -xc "Cpus_allowed_list:[[:space:]]*$all" || true)
-  done
-  kill -INT $bench 2>/dev/null || true
-  wait $bench || true
-  [ "$threads" -ge "$least" ] || fail "$*: $threads threads may use all of $all: $(cat "$work/err")"
+  OMP_PROC_BIND=true POCL_AFFINITY=0 begins "${@:2}"
+  soon 30 are_free "$1" || fail "${*:2}: not $1 threads may use all of $all: $(cat "$work/err")"
+  kill -INT "$process" 2>/dev/null || true
+  wait "$process" || true
 }
 
 # PoCL inherits what its threads may use; with POCL_AFFINITY it would narrow that again.
 expect_free 2 bench --scene cloth2500 --backend opencl --integrator semi-euler --threads 1 --rounds 2000
 
 # A program that says what it may use instead of measuring.
-cat >"$work/program" <<END
-#!/bin/sh
+make_program program <<END
 sed -n 's/^Cpus_allowed_list:[[:space:]]*//p' /proc/self/status >>"$work/allowed"
 exit 1
 END
-chmod +x "$work/program"
 OMP_PROC_BIND=true "$mssim" compare --ab "$work/program" "$work/program" --scene cloth2500 --backend openmp \
   --integrator semi-euler --threads 2 >"$work/out" 2>"$work/err" && fail "compare with a program that fails succeeds"
 [ "$(sort -u "$work/allowed")" = "$all" ] || fail "programs of compare may use $(cat "$work/allowed"), not $all"

@@ -26,7 +26,7 @@ expect 2 'serial or openmp, not "hybrid"' run --scene cloth2500 --backend hybrid
 expect 2 'garment .* --backend serial, not "openmp"' run --scene jeans1k --backend openmp --precision double
 expect 2 'implicit .* --backend serial, not "openmp:double"' run --scene cloth2500 --backend openmp:double --integrator newton-euler
 ends 0 run --scene cloth2500 --backend openmp --precision double --duration 0.01
-sed 's/"kind": "cloth",/&\n  "implicit": {"tolerance": 1e-300, "fast_springs_iterations": 10, "xpbd_substeps": 1},/' "$2/scenes/cloth2500.json" >exact.json
+make_scene exact.json cloth2500 's/"kind": "cloth",/&\n  "implicit": {"tolerance": 1e-300, "fast_springs_iterations": 10, "xpbd_substeps": 1},/'
 ends 0 run --scene ./exact.json --backend serial --integrator implicit-euler --dt 0.05 --duration 0.1
 warns 'serial: .*before its tolerance in 2 of 2 steps'
 expect 2 'precision single cannot be used with --backend openmp:double' run --scene cloth2500 --backend openmp:double --precision single
@@ -67,7 +67,7 @@ expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite t
 expect 2 'time-budget' bench --scene cloth2500 --time-budget nan
 
 # Scenes.
-sed 's/"rows": 50/"rows": 1000000/; s/"columns": 50/"columns": 4000/' "$source/scenes/cloth2500.json" >"$work/huge.json"
+make_scene huge.json cloth2500 's/"rows": 50/"rows": 1000000/; s/"columns": 50/"columns": 4000/'
 expect 2 'huge.json.*GB.*name fewer with --backend' bench --scene "$work/huge.json" --out "$work/never"
 
 # Devices and files.
@@ -77,7 +77,7 @@ expect 4 'no/such' run --scene cloth2500 --duration 0.01 --trace "$work/no/such/
 [ -z "$(find "$work" -name '*.part' -o -name never)" ] || fail "something half-written is left"
 
 # A simulation that blows up: named, and not verified.
-sed 's/"dt_s": 5e-5/"dt_s": 1e-2/' "$source/scenes/cloth2500.json" >"$work/wild.json"
+make_scene wild.json cloth2500 's/"dt_s": 5e-5/"dt_s": 1e-2/'
 expect 1 'blew up at step [0-9]* (t = .* s): node [0-9]* is not finite .* dt_s or "auto"$' run --scene "$work/wild.json"
 expect 1 'blew up at step .* --dt, or leave it out$' run --scene cloth2500 --dt 1e-2
 expect 1 'blew up before step .* --dt, or leave it out$' run --scene jeans1k --dt 1.5e-3
@@ -101,7 +101,7 @@ done
 # A list that would not use an option refuses it.
 expect 2 'list devices takes no --device' list devices --device 0
 expect 2 '--instruction-set is for backends that have vector code .*leave it out' run --scene cloth2500 --backend serial --instruction-set AVX2
-printf '#!/bin/sh\nexit 3\n' >"$work/own-program" && chmod +x "$work/own-program"
+make_program own-program <<<'exit 3'
 expect 2 'precision single cannot be used with --backend .*own-program, which chooses its precision itself' \
   run --scene cloth2500 --backend "$work/own-program" --precision single
 for arguments in "--format github" "--dry-run --format json" "--dry-run --format csv"; do

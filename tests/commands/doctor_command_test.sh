@@ -3,8 +3,8 @@
 set -euo pipefail
 . "$2/tests/support/command_line.sh"
 
-# field ITEM COLUMN: of the CSV in $work/out, whose fields before it hold no comma
-field() { awk -F, -v item="$1" -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } $1 == item { print $c }' out; }
+# state ITEM: of the CSV in $work/out
+state() { column_of out item state | sed -n "s/^$1 //p"; }
 
 # is ITEM STATE: the table says so
 is() { says "^$2  *$1\( \|\$\)"; }
@@ -21,7 +21,7 @@ awk 'length > 80 && !/\//' out >wide # a path stays whole
 [ ! -s wide ] || fail "lines of more than 80 characters: $(cat wide)"
 ends 0 doctor --format csv
 [ "$(head -n 1 out)" = item,state,found,use,remedy ] || fail "columns: $(head -n 1 out)"
-[ "$(field 'main job' state)" = ok ] || fail "main job: $(cat out)"
+[ "$(state 'main job')" = ok ] || fail "main job: $(cat out)"
 awk -F, 'NR > 1 && $2 == "ok" && $NF != "" { print }' out >surplus
 [ ! -s surplus ] || fail "remedies of what is there: $(cat surplus)"
 awk -F, 'NR > 1 && $2 != "ok" && $NF == "" { print }' out >bare
@@ -53,29 +53,30 @@ is 'temporary folder' missing
 
 # Open MPI needs leave to run as root. Other launchers do not, and stand-ins serve other users.
 mkdir launchers
-printf '#!/bin/sh\necho "mpirun (Open MPI) 4.1.4"\n' >launchers/mpirun
-chmod +x launchers/mpirun
+make_program launchers/mpirun <<<'echo "mpirun (Open MPI) 4.1.4"'
 leave='OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1'
 # mpi_as LEAVE...: what doctor says of MPI, with these variables
 mpi_as() { env -u OMPI_ALLOW_RUN_AS_ROOT -u OMPI_ALLOW_RUN_AS_ROOT_CONFIRM PATH="$work/launchers:$PATH" "$@" "$mssim" doctor --format csv >out 2>err; }
 mpi_as
-if [ "$(field MPI state)" = missing ]; then
+if [ "$(state MPI)" = missing ]; then
   echo "not tried: launchers of MPI (this build has no backend mpi)"
 else
   wanted=ok
   [ "$EUID" -ne 0 ] || wanted=limited
-  [ "$(field MPI state)" = $wanted ] || fail "MPI without leave is not $wanted: $(cat out)"
+  [ "$(state MPI)" = $wanted ] || fail "MPI without leave is not $wanted: $(cat out)"
   [ $wanted = ok ] || says "$leave"
   mpi_as OMPI_ALLOW_RUN_AS_ROOT=1
-  [ "$(field MPI state)" = $wanted ] || fail "MPI with half a leave is not $wanted: $(cat out)"
+  [ "$(state MPI)" = $wanted ] || fail "MPI with half a leave is not $wanted: $(cat out)"
   mpi_as OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-  [ "$(field MPI state)" = ok ] || fail "MPI with leave: $(cat out)"
-  printf '#!/bin/sh\necho "HYDRA build details"\n' >launchers/mpirun
+  [ "$(state MPI)" = ok ] || fail "MPI with leave: $(cat out)"
+  make_program launchers/mpirun <<<'echo "HYDRA build details"'
   mpi_as
-  [ "$(field MPI state)" = ok ] || fail "another MPI: $(cat out)"
+  [ "$(state MPI)" = ok ] || fail "another MPI: $(cat out)"
   dashes=$(printf '%76s' '' | tr ' ' -)
-  printf '#!/bin/sh\nprintf "%%s\\n" %s "mpirun has detected an attempt to run as root." "" "Running as root is strongly discouraged." %s >&2\nexit 1\n' \
-    "$dashes" "$dashes" >launchers/mpirun
+  make_program launchers/mpirun <<END
+printf "%s\\n" $dashes "mpirun has detected an attempt to run as root." "" "Running as root is strongly discouraged." $dashes >&2
+exit 1
+END
   warning "attempt to run as root; set $leave" ends 1 bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --rounds 1 \
     --launcher "$work/launchers/mpirun"
   TMPDIR=$work/nowhere expect 4 'set TMPDIR' run --scene cloth2500 --duration 0.001 --backend mpi

@@ -17,8 +17,8 @@ values() {
 }
 
 # A small cloth without pins that soon lands on the floor, sliding for its ripple.
-sed 's/"rows": 50/"rows": 10/; s/"columns": 50/"columns": 12/; s/"ceiling_height_m": [0-9.]*/"ceiling_height_m": 0.003/; /"pins"/d' \
-  "$source/scenes/cloth2500.json" >"$work/cloth.json"
+make_scene cloth.json cloth2500 \
+  's/"rows": 50/"rows": 10/; s/"columns": 50/"columns": 12/; s/"ceiling_height_m": [0-9.]*/"ceiling_height_m": 0.003/; /"pins"/d'
 
 run --scene "$work/cloth.json" --integrator rk4 --losses --trace "$work/trace.h5"
 losses=(damping friction bounce integration)

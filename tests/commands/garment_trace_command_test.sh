@@ -67,9 +67,8 @@ expect 2 '"a.xdmf" is not a name of the form NAME.h5' run --scene jeans1k --trac
 
 
 # A dressing that blows up shows how.
-sed 's/"dt_s": [0-9.e-]*/"dt_s": 1.5e-3/; s/scene.schema/none/' "$2/scenes/jeans1k.json" >wild.json
-ends 1 run --scene wild.json --threads 1 --fps 600 --trace wild.h5
-grep -q 'blew up before step [0-9]*: node [0-9]* is not finite' err || fail "a step that is too long: $(cat err)"
+make_scene wild.json jeans1k 's/"dt_s": [0-9.e-]*/"dt_s": 1.5e-3/; s/scene.schema/none/'
+warning 'blew up before step [0-9]*: node [0-9]* is not finite' ends 1 run --scene wild.json --threads 1 --fps 600 --trace wild.h5
 wild=$(numbers /particles/garment/position/step wild.h5)
 [ "$(wc -w <<<"$wild")" -ge 1 ] || fail "nothing shows how it blew up"
 ! h5dump -d /particles/garment/position/value wild.h5 | grep -i nan >/dev/null || fail "the trace holds numbers that are none"

@@ -6,24 +6,16 @@ mkdir one two
 touch begun
 let_ranks_share
 
-# nothing_left WHAT: no rank, and no folder of mssim's for one
-nothing_left() {
-  local i
-  for ((i = 0; i < 50; ++i)); do
-    [ -n "$(ranks_here)" ] || return 0
-    sleep 0.1
-  done
-  fail "$1 leaves a rank: $(ranks_here)"
-}
+no_rank() { [ -z "$(ranks_here)" ]; }
 
 # Every explicit integrator; the last bit is openmp's, for 1 to 8 ranks, parts of different widths and several threads.
 ends 0 bench --scene cloth4900 --backend openmp,mpi --integrator "$explicit" --ranks 2 --threads 1 --rounds 1 --out all
-[ "$(column_of all/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * explicit_count)) true" ] || fail "not every row is verified: $(cat all/timings.csv)"
+all_verified all $((2 * explicit_count))
 [ "$(hashes all | wc -l)" -eq "$explicit_count" ] || fail "mpi and openmp differ: $(cat all/timings.csv)"
 [ "$(column_of all/timings.csv device | sort -u | wc -l)" -eq 1 ] || fail "its instruction set is no device of mpi: $(cat all/timings.csv)"
 if [ "$(nproc)" -ge 2 ]; then
   # Four stages pass over memory once in both, so they move the same bytes per step.
-  paste -d' ' <(column_of all/timings.csv integrator) <(column_of all/timings.csv ms_per_step) <(column_of all/timings.csv gigabytes_per_second) |
+  column_of all/timings.csv integrator ms_per_step gigabytes_per_second |
     awk '$1 == "rk4" && NF == 3 { bytes = $2 * $3; if (n++ && (bytes / first > 1.001 || bytes / first < 0.999)) bad = 1; first = bytes }
          END { exit bad || n != 2 }' || fail "bytes of a step: $(cat all/timings.csv)"
   OMP_PROC_BIND=true same_bits cloth4900 2 1 semi-euler 1
@@ -35,18 +27,18 @@ grep ',mpi,' bits/timings.csv | grep -q 'not timed: 2 ranks of 2 threads on [1-3
   fail "ranks that share processors are timed: $(cat bits/timings.csv)"
 
 # Pieces that are too small for all of their threads: those that step are told and counted, and only they need processors.
-sed 's/"rows": 50/"rows": 20/; s/"columns": 50/"columns": 120/' "$2/scenes/cloth2500.json" >wide.json
+make_scene wide.json cloth2500 's/"rows": 50/"rows": 20/; s/"columns": 50/"columns": 120/'
 ends 0 bench --scene ./wide.json --backend mpi:3 --integrator rk4 --threads 2 --rounds 1 --out wide
 grep -q ', 3 ranks of 1 to 2 threads, ' wide/timings.csv || fail "threads of the ranks: $(cat wide/timings.csv)"
 [ "$(column_of wide/timings.csv threads)" -eq 5 ] || fail "threads of all ranks: $(cat wide/timings.csv)"
-sed 's/"rows": 50/"rows": 5/; s/"columns": 50/"columns": 6/' "$2/scenes/cloth2500.json" >tiny.json
+make_scene tiny.json cloth2500 's/"rows": 50/"rows": 5/; s/"columns": 50/"columns": 6/'
 ends 0 bench --scene ./tiny.json --backend mpi:1 --integrator semi-euler --threads $(($(nproc) + 1)) --rounds 1 --out tiny
 ! grep 'not timed' tiny/timings.csv || fail "one thread shares a processor"
 
 # What a step spends on messages, and copies that send none.
 ends 0 bench --scene cloth4900 --backend mpi:1,mpi:2,mpi-copies:2 --integrator semi-euler --threads 1 --rounds 2 --out costs
 sed 's/"[^"]*"//' costs/timings.csv >bare.csv  # notes have commas
-[ "$(column_of costs/timings.csv verified | xargs)" = 'true true true' ] || fail "not every row is verified: $(cat costs/timings.csv)"
+all_verified costs 3
 [ "$(hashes costs | wc -l)" -eq 1 ] || fail "copies have other bits: $(cat costs/timings.csv)"
 [ "$(column_of bare.csv messages_per_step | awk '{ printf "%s ", ($1 <= 1) }')" = '1 1 1 ' ] || fail "messages: $(cat costs/timings.csv)"
 if [ "$(nproc)" -ge 2 ]; then
@@ -63,8 +55,7 @@ grep -q 'unsupported: it has no xpbd' implicit/timings.csv || fail "xpbd: $(cat 
 expect 2 '"0" is' bench --scene cloth2500 --backend mpi --ranks 0
 
 # What launchers and ranks are told, unless the user has told them something else.
-printf '#!/bin/sh\nenv >"%s"\nexec mpirun "$@"\n' "$work/told" >one/telling
-chmod +x one/telling
+make_program one/telling <<<"env >'$work/told'; exec mpirun \"\$@\""
 SLURM_OVERLAP=0 ends 0 bench --scene cloth2500 --backend mpi:1 --integrator semi-euler --threads 1 --rounds 1 --launcher one/telling
 grep -qx 'OMPI_MCA_btl_vader_eager_limit=65536' told || fail "short messages are not told from long ones: $(cat told)"
 grep -qx 'SLURM_OVERLAP=0' told || fail "what the user has told Slurm does not go before: $(cat told)"
@@ -80,8 +71,8 @@ ends 3 bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --rounds 
 grep -q 'unavailable: ./hosts is not an executable file' hostless/timings.csv || fail "./hosts: $(cat hostless/timings.csv)"
 
 # A guide has it, and its other cloths. The smallest would start below the floor if its ripple did not count.
-sed 's/"rows": 50/"rows": 30/; s/"columns": 50/"columns": 30/; s/"ceiling_height_m": 0.441/"ceiling_height_m": 0.0075/
-     s/"height_m": 0.0005/"height_m": 0.004/' "$2/scenes/cloth2500.json" >small.json
+make_scene small.json cloth2500 's/"rows": 50/"rows": 30/; s/"columns": 50/"columns": 30/
+  s/"ceiling_height_m": 0.441/"ceiling_height_m": 0.0075/; s/"height_m": 0.0005/"height_m": 0.004/'
 ends 0 guide --scene ./small.json --backend openmp,mpi --ranks 2 --threads 1 --integrator semi-euler --horizon 0.01 --time-budget 40 --error 0.1 \
   --out guide
 [ "$(column_of guide/guide.csv backend | grep -c '^mpi$')" -ge 2 ] || fail "a guide has no points of mpi: $(cat guide/guide.csv)"
@@ -102,7 +93,7 @@ expect 2 'unknown backend "mpl:2"' bench --scene cloth2500 --backend mpl:2
 expect 2 'ranks is for backends that run in several processes, and none of these does' bench --scene cloth2500 --backend openmp --ranks 2
 expect 2 'launcher is for backends that run in several processes' run --scene cloth2500 --duration 0.01 --launcher srun
 ends 0 list backends
-grep -q '^mpi .*on one machine or several' out || fail "mssim list backends does not show mpi"
+says '^mpi .*on one machine or several'
 ends 3 bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler --launcher no-mpirun --rounds 1 --out missing
 fails_with 'unavailable: there is no no-mpirun in PATH: install Open MPI' missing
 
@@ -118,10 +109,10 @@ h5diff -q openmp.h5 mpi.h5 /particles/cloth/position/value || fail "run: mpi has
 bench=(bench --scene cloth2500 --integrator semi-euler --backend openmp,mpi --threads 1 --rounds 2)
 OMPI_MCA_rmaps_base_oversubscribe=0 ends 1 "${bench[@]}" --ranks 3 --launcher "mpirun --host localhost:1" --out slots
 fails_with 'has not started 3 ranks: .*not enough slots' slots
-printf '#!/bin/sh\necho "ssh: connect to host node7 port 22: No route to host" >&2\nexit 255\n' >one/ssh
-printf '#!/bin/sh\nsleep 100\n' >two/ssh
-printf '#!/bin/sh\nshift 2\n"$@" & "$@"\n' >one/other-mpirun
-chmod +x one/* two/*
+make_program one/ssh <<<'echo "ssh: connect to host node7 port 22: No route to host" >&2; exit 255'
+make_program two/ssh <<<'sleep 100'
+# shellcheck disable=SC2016 # the program expands it
+make_program one/other-mpirun <<<'shift 2; "$@" & "$@"'
 OMPI_MCA_plm_rsh_agent=$work/one/ssh ends 1 "${bench[@]}" --ranks 2 --launcher "mpirun --host node7,node8" --out route
 fails_with 'mpirun --host node7,node8 has not started 2 ranks: ssh: connect to host node7' route
 ends 1 "${bench[@]}" --ranks 2 --launcher "$work/one/other-mpirun" --out other
@@ -165,7 +156,7 @@ measured=$(column_of killed/timings.csv rounds | head -n 1)
 [ "$measured" -gt 3 ] || fail "the other row is not measured: $(cat killed/timings.csv)"
 ends 0 bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds $((measured + 3)) --resume --out killed
 [ "$(grep -c 'true,ok' killed/timings.csv)" -eq 2 ] || fail "--resume does not measure mpi: $(cat killed/timings.csv)"
-nothing_left "the end of all"
+soon 5 no_rank || fail "a rank is left: $(ranks_here)"
 segments=$(find /dev/shm -maxdepth 1 -name '*_segment.*' -newer begun)
 [ -z "$segments" ] || fail "ranks leave shared memory behind: $segments"
 left=$(find tmp tmp1 tmp2 tmp3 tmp4 -mindepth 1)

@@ -27,9 +27,7 @@ said out "c++ -std=c++17 -O3 'a folder/mine.cpp' \$(pkg-config --cflags --libs h
   "mssim bench --scene cloth2500 --backend 'serial,openmp,a folder/mine'"
 cmp 'a folder/mssim_backend.h' "$2/src/starters/cpp/mssim_backend.h" || fail "another header is written than is installed"
 eval "$(head -n 1 out) -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror" || fail "the C++ example does not compile"
-status=0
-'a folder/mine' 2>err || status=$?
-[ "$status" -eq 2 ] && grep -q 'mssim bench --scene' err || fail "run by hand, it exits with $status and says $(cat err)"
+warning 'mssim bench --scene' exits 2 'a folder/mine' # run by hand
 verified_everywhere 'a folder/mine' mine
 ends 0 bench --scene cloth2500 --backend './a folder/mine' --integrator semi-euler --rounds 1 --threads 2 --out one-thread
 [ "$(column_of one-thread/timings.csv threads)" = 1 ] || fail "mine has another number of threads: $(cat one-thread/timings.csv)"

@@ -37,8 +37,7 @@ grep -q $'\x1b' "$work/err" && fail "a terminal would take what is said for a co
 
 # Names that would make one file of two rows, or that no file can have.
 # shellcheck disable=SC2016 # the program expands it
-printf '#!/bin/sh\necho "${0##*/}"\nexit 3\n' >"$work/z"
-chmod +x "$work/z"
+make_program z <<<'echo "${0##*/}"; exit 3'
 cp "$work/z" "$work/y-z"
 long=$(printf 'n%.0s' $(seq 240))
 for scene in x x-y "$long"; do cp "$source/scenes/cloth2500.json" "$work/$scene.json"; done

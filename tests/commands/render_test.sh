@@ -48,8 +48,8 @@ expect_picture t-sheet.png 233x227
 ends 0 render t.h5 --sheet 2x1 --size 320x240 --colour strain --out with-legend.png
 [ "$(size_of with-legend.png | cut -dx -f1)" -gt 640 ] || fail "the legend has no place of its own"
 # Moments 1 ms apart, which look the same, have different times below them.
-sed 's/"gravity_m_per_s2": 9.81/"gravity_m_per_s2": 0/; s/"ripple": .*/"ripple": {"height_m": 0, "wavelength_m": 0.09, "speed_m_per_s": 0},/' \
-  "$2/scenes/cloth2500.json" >still.json
+make_scene still.json cloth2500 \
+  's/"gravity_m_per_s2": 9.81/"gravity_m_per_s2": 0/; s/"ripple": .*/"ripple": {"height_m": 0, "wavelength_m": 0.09, "speed_m_per_s": 0},/'
 ends 0 run --scene ./still.json --duration 0.005 --fps 1000 --trace still.h5
 for frames in 1,2 2,3; do ends 0 render still.h5 --frames $frames --sheet 2x1 --size 80x60 --out "still-$frames.png"; done
 cmp -s still-1,2.png still-2,3.png && fail "the times of 1 to 3 ms are written alike"
@@ -88,12 +88,11 @@ if unshare --mount --map-root-user mount -t tmpfs none /usr/share/fonts 2>err; t
   without_font() { unshare --mount --map-root-user sh -c 'mount -t tmpfs none /usr/share/fonts && exec "$0" "$@"' "$mssim" "$@"; }
   for with_letters in '--colour strain' '--sheet 2x2'; do
     # shellcheck disable=SC2086 # two words
-    without_font render --scene cloth350k --duration 1000 $with_letters --out no.png >out 2>err && status=0 || status=$?
-    [ "$status" -eq 3 ] || fail "$with_letters without the font: exit status $status instead of 3"
-    grep -q 'DejaVuSans.ttf: install .*fonts-dejavu-core$' err || fail "$with_letters without the font: $(cat err)"
+    exits 3 without_font render --scene cloth350k --duration 1000 $with_letters --out no.png
+    warns 'DejaVuSans.ttf: install .*fonts-dejavu-core$'
   done
   [ ! -e no.png ] || fail "a picture is left without the font"
-  without_font render t.h5 --size 200x150 --out bare.png >out 2>err || fail "without the font: $(cat err)"
+  exits 0 without_font render t.h5 --size 200x150 --out bare.png
   cmp -s t.png bare.png || fail "a picture without letters needs the font"
 else
   echo "not tried: no font ($(cat err))"

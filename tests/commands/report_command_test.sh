@@ -144,7 +144,7 @@ has 'No row .* scene of the papers'
 
 # A user's own scene is none of the papers', though it has the nodes, the springs and the name of one.
 mkdir "$work/own"
-sed 's/"stiffness_n_per_m": 200/"stiffness_n_per_m": 100/' "$2/scenes/cloth2500.json" >"$work/own/cloth2500.json"
+make_scene own/cloth2500.json cloth2500 's/"stiffness_n_per_m": 200/"stiffness_n_per_m": 100/'
 ends 0 bench --scene own/cloth2500.json --backend serial,openmp --integrator semi-euler --rounds 2 --out own/out
 ! grep -q 'ms/step.*published' "$work/out" || fail "a scene of the user's has a published time: $(cat "$work/out")"
 [ ! -e "$work/own/out/table1.md" ] || fail "a scene of the user's is in Table 1"

@@ -7,8 +7,8 @@ support=$(dirname -- "${BASH_SOURCE[0]}")
 # shellcheck source=scripts/lib/mpi.sh
 . "$support/../../scripts/lib/mpi.sh"
 
-[ -x "${mssim%/*}/../libexec/mssim/mssim-mpi" ] || { echo "mssim was built without MPI"; exit 77; }
-command -v mpirun >/dev/null || { echo "there is no mpirun"; exit 77; }
+[ -x "${mssim%/*}/../libexec/mssim/mssim-mpi" ] || skip "mssim was built without MPI"
+command -v mpirun >/dev/null || skip "there is no mpirun"
 export TMPDIR=$work/tmp
 mkdir tmp
 
@@ -45,8 +45,7 @@ explicit=$(explicit_integrators | paste -sd,) explicit_count=$(explicit_integrat
 same_bits() {
   rm -rf bits
   ends 0 bench --scene "$1" --backend openmp,mpi --integrator "$4" --ranks "$2" --threads "$3" --rounds 1 --out bits
-  [ "$(column_of bits/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * $5)) true" ] ||
-    fail "$1 with $2 ranks of $3 threads: $(cat bits/timings.csv)"
+  all_verified bits $((2 * $5))
   [ "$(hashes bits | wc -l)" -eq "$5" ] || fail "$1 with $2 ranks of $3 threads has other bits"
 }
 
@@ -60,10 +59,9 @@ fails_with() {
 mixed_processors() {
   [ "$(uname -m)" = x86_64 ] || return 0
   # The ranks but the first one have the instruction set of the variable SET.
-  # shellcheck disable=SC2016 # they are the inner shell's
-  printf '#!/bin/sh\nn=$2\nshift 2\nexec mpirun -n "$n" sh -c %s sh "$@"\n' \
-    "'[ \"\$OMPI_COMM_WORLD_RANK\" = 0 ] || export MSSIM_INSTRUCTION_SET=\$SET; exec \"\$@\"'" >mixed
-  chmod +x mixed
+  make_program mixed <<'END'
+exec mpirun -n "$2" sh -c '[ "$OMPI_COMM_WORLD_RANK" = 0 ] || export MSSIM_INSTRUCTION_SET=$SET; exec "$@"' sh "${@:3}"
+END
   ends 0 bench --scene "$1" --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
   SET=AVX2 ends 0 bench --scene "$1" --backend mpi --integrator rk4 --ranks "$2" --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
   [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"
