@@ -1,4 +1,4 @@
-# shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
+# shellcheck shell=bash disable=SC2154 # root is prepare.sh's
 # The libraries for arm64 with which scripts/test --arm64 and scripts/package --arm64 link. Sourced after prepare.sh.
 #
 # They have a folder of their own, and are not installed as packages of a second architecture: dpkg may refuse those, or remove others for
@@ -40,8 +40,7 @@ ensure_arm64_root() {
         extract_packages "$new" "$new"/apt/archives/*.deb
     } </dev/null >"$log" 2>&1 || {
       cat "$log" >&2
-      say "the libraries for arm64 could not be fetched; this needs network access and Debian's package archive"
-      exit "$exit_missing"
+      missing "the libraries for arm64 could not be fetched; this needs network access and Debian's package archive"
     }
     # The work of installation scripts.
     [[ -e $new/lib ]] || ln -s usr/lib "$new/lib"

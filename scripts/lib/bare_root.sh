@@ -1,9 +1,9 @@
-# shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
+# shellcheck shell=bash disable=SC2154 # root is prepare.sh's
 # Newly installed Debian systems, in folders. Sourced after prepare.sh.
 
 # enter_bare_roots: goes to the folder where they are made, or says why not and exits.
 enter_bare_roots() {
-  ((EUID == 0)) || { say "only root can create such systems" && exit "$exit_missing"; }
+  ((EUID == 0)) || missing "only root can create such systems"
   ensure_packages bare
   make_folder "$root/build/bare-debian"
   cd -- "$root/build/bare-debian" || exit
@@ -16,8 +16,7 @@ new_bare_root() {
   say "installing Debian $1 (log: $PWD/$2.log)"
   debootstrap --variant=minbase ${3:+"--arch=$3"} "${names[$1]}" "$2" >"$2.log" 2>&1 || {
     tail -n 3 "$2.log" >&2
-    say "Debian $1 cannot be installed; this needs network access and permission to mount${3:+; for $3 on another machine, also binfmt_misc}"
-    exit "$exit_missing"
+    missing "Debian $1 cannot be installed; this needs network access and permission to mount${3:+; for $3 on another machine, also binfmt_misc}"
   }
 }
 

@@ -1,4 +1,4 @@
-# shellcheck shell=bash disable=SC2154 # exit_missing is prepare.sh's
+# shellcheck shell=bash disable=SC2154 # root is prepare.sh's
 # The shared libraries of programs, for packs that take them along. Sourced after prepare.sh.
 
 # Parts of the C library, which only fit each other and its loader.
@@ -26,7 +26,7 @@ copy_libraries() {
   local folder=$1 name file
   shift
   while read -r name file; do
-    [[ -e $file ]] || { say "the library $name, which mssim needs, is not found here" && exit "$exit_missing"; }
+    [[ -e $file ]] || missing "the library $name, which mssim needs, is not found here"
     cp -L -- "$file" "$folder/$name"
   done < <(libraries_of "$@")
 }

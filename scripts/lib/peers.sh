@@ -1,4 +1,4 @@
-# shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
+# shellcheck shell=bash disable=SC2154 # root is prepare.sh's
 # The peers that mssim is compared with. Sourced after prepare.sh.
 # shellcheck source=scripts/lib/python_packages.sh
 . "$root/scripts/lib/python_packages.sh"
@@ -32,8 +32,7 @@ ensure_peers() {
   local log=$root/build/peers-cpp.log name
   for name in "${compiled_peers[@]}"; do
     compile_peer "$name" "$root/build/peers/$name" </dev/null >"$log" 2>&1 || {
-      say "the peer $name could not be compiled; the compiler's messages are in $log"
-      exit "$exit_missing"
+      missing "the peer $name could not be compiled; the compiler's messages are in $log"
     }
   done
 }

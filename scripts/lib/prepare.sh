@@ -16,7 +16,14 @@ readonly exit_missing=3
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
-bad_usage() { say "$*; see --help" && exit 2; }
+# refuse SENTENCE, missing SENTENCE: says it, and exits as mssim does for bad usage or input, and for what is not there.
+refuse() { say "$*" && exit 2; }
+missing() { say "$*" && exit "$exit_missing"; }
+
+bad_usage() { refuse "$*; see --help"; }
+
+# has_option NAME ARGUMENT...: whether --NAME is among them.
+has_option() { [[ " ${*:2} " == *" --$1"[\ =]* ]]; }
 
 # timed PROGRAM ARGUMENT...: runs it, prints its time, and returns its exit code.
 timed() {
@@ -41,8 +48,7 @@ measured_on() {
 # commit_of REVISION: its commit, or says that there is none here, and exits.
 commit_of() {
   git -C "$root" rev-parse --verify --quiet "$1^{commit}" && return
-  say "there is no revision $1 here; fetch it first (a shallow clone has few), or name another"
-  exit 2
+  refuse "there is no revision $1 here; fetch it first (a shallow clone has few), or name another"
 }
 
 # answer_help ARGUMENT...: if one of them is -h or --help, prints the comment at the top of the script, and exits.
@@ -84,8 +90,7 @@ can_write() {
 # make_folder FOLDER: creates a folder for a build, or reports that this user cannot, proposes another place, and exits.
 make_folder() {
   can_write "$1" && mkdir -p "$1" && return
-  say "$1 cannot be written by this user; to build elsewhere: cmake --preset release -S ${root@Q} -B ELSEWHERE && ninja -C ELSEWHERE mssim && ELSEWHERE/bin/mssim"
-  exit "$exit_missing"
+  missing "$1 cannot be written by this user; to build elsewhere: cmake --preset release -S ${root@Q} -B ELSEWHERE && ninja -C ELSEWHERE mssim && ELSEWHERE/bin/mssim"
 }
 
 # ensure_packages KIND...: installs missing packages, or names them and exits.
@@ -101,9 +106,8 @@ ensure_packages() {
     local spare
     spare=$(awk -v missing=" ${missing[*]} " '!/^#/ && $3 == "spare" && index(missing, " " $1 " ") { printf " %s", $1 }' \
       "$root/scripts/packages.txt")
-    say "these Debian packages are missing, and this user may not install packages; ask an administrator for: apt-get $install" \
+    missing "these Debian packages are missing, and this user may not install packages; ask an administrator for: apt-get $install" \
       "${spare:+(mssim builds and runs without$spare: cmake --preset release -S ${root@Q} -B ELSEWHERE -D BUILD_TESTING=OFF)}"
-    exit "$exit_missing"
   }
   make_folder "$root/build"
   say "installing ${missing[*]} (log: $log)"
@@ -115,8 +119,7 @@ ensure_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 $install && return 0
   done </dev/null >"$log" 2>&1
   local apt="${as_root[*]:+sudo }apt-get"
-  say "these Debian packages are missing and could not be installed; with network access, run: $apt update && $apt $install"
-  exit "$exit_missing"
+  missing "these Debian packages are missing and could not be installed; with network access, run: $apt update && $apt $install"
 }
 
 # Lines of ninja that show compiling or linking.
@@ -141,8 +144,7 @@ fail_build() {
   # From the first failure on; everything if CMake failed.
   awk '/^FAILED: / { found = 1 } { line[NR] = $0; if (found && !first) first = NR }
        END { for (i = first ? first : 1; i <= NR; ++i) print line[i] }' "$1" >&2
-  say "the build failed; its whole log is $1"
-  exit "$exit_missing"
+  missing "the build failed; its whole log is $1"
 }
 
 # is_configured FOLDER: whether it builds this source; a folder copied with its repository would still build the original.

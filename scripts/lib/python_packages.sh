@@ -1,4 +1,4 @@
-# shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
+# shellcheck shell=bash disable=SC2154 # root is prepare.sh's
 # Python packages of pinned versions in build folders. Sourced after prepare.sh.
 
 # ensure_python NAME WHAT: build/NAME with the packages of scripts/NAME.txt, from PyPI, or says why not and exits. WHAT: what they are.
@@ -15,7 +15,6 @@ ensure_python() {
     rm -rf "$folder"
     false
   fi </dev/null >"$log" 2>&1 || {
-    say "the Python packages of scripts/$1.txt could not be installed; with network access, run again"
-    exit "$exit_missing"
+    missing "the Python packages of scripts/$1.txt could not be installed; with network access, run again"
   }
 }
