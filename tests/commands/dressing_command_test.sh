@@ -17,7 +17,7 @@ dress 0 --scene jeans2k --backend openmp --threads 3
   fail "three threads dress otherwise than one"
 [ "$(fit rows_astray)" -eq 0 ] && [ "$(fit rows)" -ge 50 ] || fail "rows: $(cat "$work/out")"
 # The sides' largest distance from the body is said with its height, between thigh and hip.
-awk -v y="$(fit side_distance_height_m)" 'BEGIN { exit !(y >= 0.758 && y <= 0.86) }' || fail "where: $(cat "$work/out")"
+fit side_distance_height_m | are 'x >= 0.758 && x <= 0.86' || fail "where: $(cat "$work/out")"
 # Where OpenMP may not give more, there is one thread, and said to be.
 OMP_THREAD_LIMIT=1 dress 0 --scene jeans1k --backend openmp
 [ "$(value threads)" -eq 1 ] || fail "threads: $(cat "$work/out")"

@@ -10,11 +10,8 @@ run() {
   ! grep -v '^mssim: wrote ' "$work/err" || fail "stderr says $(cat "$work/err")"
 }
 
-# values DATASET: of the trace, one a line
-values() {
-  h5dump -y -w 1 -m %.17g -d "$1" "$work/trace.h5" |
-    awk '/DATA [{]/ { inside = 1; next } inside && /}/ { exit } inside { gsub(/[ \t,]/, ""); if ($0 != "") print }'
-}
+# values OBSERVABLE: of the trace, one a line
+values() { numbers_of trace.h5 "/observables/$1/value"; }
 
 # A small cloth without pins that soon lands on the floor, sliding for its ripple.
 make_scene cloth.json cloth2500 \
@@ -23,18 +20,17 @@ make_scene cloth.json cloth2500 \
 run --scene "$work/cloth.json" --integrator rk4 --losses --trace "$work/trace.h5"
 losses=(damping friction bounce integration)
 for loss in "${losses[@]}"; do
-  [ "$(values "/observables/${loss}_loss/value" | wc -l)" -eq 13 ] || fail "the trace has not 13 values of ${loss}_loss"
-  in_trace=$(values "/observables/${loss}_loss/value" | tail -1)
+  [ "$(values "${loss}_loss" | wc -l)" -eq 13 ] || fail "the trace has not 13 values of ${loss}_loss"
+  in_trace=$(values "${loss}_loss" | tail -1)
   awk -v a="$in_trace" -v b="$(value "${loss}_loss_j")" 'BEGIN { exit !(a - b <= 1e-3 * (b < 0 ? -b : b) && b - a <= 1e-3 * (b < 0 ? -b : b)) }' ||
     fail "${loss}_loss ends with $in_trace in the trace and $(value "${loss}_loss_j") in the row"
 done
 for loss in damping friction bounce; do
-  awk -v x="$(value "${loss}_loss_j")" 'BEGIN { exit !(x > 0) }' || fail "no ${loss}_loss"
+  value "${loss}_loss_j" | are 'x > 0' || fail "no ${loss}_loss"
 done
-awk -v x="$(value energy_imbalance)" 'BEGIN { exit !(x < 1e-3 && x > -1e-3) }' || fail "energy_imbalance"
-paste <(values /observables/total_energy/value) <(values /observables/damping_loss/value) \
-  <(values /observables/friction_loss/value) <(values /observables/bounce_loss/value) \
-  <(values /observables/integration_loss/value) <(values /observables/kinetic_energy/value) |
+value energy_imbalance | are 'x < 1e-3 && x > -1e-3' || fail "energy_imbalance"
+paste <(values total_energy) <(values damping_loss) <(values friction_loss) <(values bounce_loss) <(values integration_loss) \
+  <(values kinetic_energy) |
   awk '{ sum = $1 + $2 + $3 + $4 + $5
          if (NR == 1) first = sum
          off = sum - first; if (off < 0) off = -off

@@ -13,8 +13,8 @@ fit() {
   awk 'NR == 1 { for (i = 1; i <= NF; ++i) clock[i] = $i == "wall_s" || $i == "ms_per_iteration" }
        { for (i = 1; i <= NF; ++i) if (!clock[i]) printf "%s ", $i; print "" }' out
 }
-# numbers DATASET TRACE [OPTIONS...]: of a dataset, in one line
-numbers() { h5dump -y -w 0 -m %.17g -d "$1" "${@:3}" "$2" | sed -n '/DATA {/,/}/p' | grep -o '[-0-9][-+.0-9e]*' | tr '\n' ' '; }
+# steps TRACE: of its frames, in one line
+steps() { numbers_of "$1" /particles/garment/position/step | tr '\n' ' '; }
 
 dress
 fit >alone
@@ -32,8 +32,8 @@ iterations=$(value iterations) dt=$(value dt_s)
 expected=$(awk -v n="$iterations" -v dt="$dt" 'BEGIN {
   for (f = 0; (step = int(f / (60 * dt) + 0.5)) < n; ++f) printf "%d ", step
   printf "%d ", n }')
-[ "$(numbers /particles/garment/position/step jeans.h5)" = "$expected" ] ||
-  fail "frames at $(numbers /particles/garment/position/step jeans.h5)instead of $expected"
+[ "$(steps jeans.h5)" = "$expected" ] ||
+  fail "frames at $(steps jeans.h5)instead of $expected"
 frames=$(wc -w <<<"$expected")
 [ "$(grep -c '^[0-9]' jeans.csv)" -eq "$frames" ] || fail "the energy curve has other frames than $frames"
 "$2/scripts/check-energy" jeans.h5 jeans.csv 1e-9 || fail "the trace has other energies than the curve"
@@ -46,10 +46,10 @@ h5dump -d /observables/damping_loss/value jeans.h5 >/dev/null 2>&1 && fail "the 
 
 # Other frames end with the same state; the last one is it.
 # last VECTOR TRACE FRAME: of 1000 of the 1054 nodes
-last() { numbers "/particles/garment/$1/value" "$2" -s "$3,0,0" -c 1,1000,3; }
+last() { numbers_of "$2" "/particles/garment/$1/value" -s "$3,0,0" -c 1,1000,3; }
 dress --trace few.h5 --fps 7
 fit | cmp - alone || fail "other frames change the dressing"
-few=$(numbers /particles/garment/position/step few.h5)
+few=$(steps few.h5)
 [ "${few##* "$iterations" }" = "" ] && [ "$(wc -w <<<"$few")" -lt 10 ] || fail "7 frames a second are at $few"
 for vector in position velocity; do
   last "$vector" few.h5 $(($(wc -w <<<"$few") - 1)) >numbers
@@ -69,6 +69,6 @@ expect 2 '"a.xdmf" is not a name of the form NAME.h5' run --scene jeans1k --trac
 # A dressing that blows up shows how.
 make_scene wild.json jeans1k 's/"dt_s": [0-9.e-]*/"dt_s": 1.5e-3/; s/scene.schema/none/'
 warning 'blew up before step [0-9]*: node [0-9]* is not finite' ends 1 run --scene wild.json --threads 1 --fps 600 --trace wild.h5
-wild=$(numbers /particles/garment/position/step wild.h5)
+wild=$(steps wild.h5)
 [ "$(wc -w <<<"$wild")" -ge 1 ] || fail "nothing shows how it blew up"
 ! h5dump -d /particles/garment/position/value wild.h5 | grep -i nan >/dev/null || fail "the trace holds numbers that are none"

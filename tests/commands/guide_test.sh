@@ -42,7 +42,7 @@ printf '{"command": ["%s", "slow"]}' "$program" >"$work/slow.json"  # 30 ms per 
 ends 1 guide --scene "$work/tiny.json" --backend "$work/slow.json" --integrator semi-euler --horizon 0.01 --time-budget 5 --error 1e-4 \
   --out "$work/short"
 named=$(sed -n 's/^mssim: tiny: nothing is recommended.*--time-budget \([0-9.]*\) .*/\1/p' "$work/err")
-awk -v named="${named:-0}" 'BEGIN { exit !(named >= 10) }' || fail "stderr says: $(cat "$work/err")"
+are 'x >= 10' <<<"$named" || fail "stderr says: $(cat "$work/err")"
 says "^Nothing is recommended: 5 s is not enough.* semi-euler on slow.* $named s "
 grep -q "^Nothing is recommended: 5 s is not enough" "$work/short/guide.md" || fail "the page recommends $(sed -n 9p "$work/short/guide.md")"
 ! column_of "$work/short/guide.csv" recommended | grep true || fail "a point is recommended: $(cat "$work/short/guide.csv")"

@@ -42,9 +42,9 @@ all_verified costs 3
 [ "$(hashes costs | wc -l)" -eq 1 ] || fail "copies have other bits: $(cat costs/timings.csv)"
 [ "$(column_of bare.csv messages_per_step | awk '{ printf "%s ", ($1 <= 1) }')" = '1 1 1 ' ] || fail "messages: $(cat costs/timings.csv)"
 if [ "$(nproc)" -ge 2 ]; then
-  column_of bare.csv waiting_share | awk '!($1 >= 0 && $1 < 1) { bad = 1 } END { exit bad }' || fail "waiting: $(cat costs/timings.csv)"
+  column_of bare.csv waiting_share | are 'x >= 0 && x < 1' || fail "waiting: $(cat costs/timings.csv)"
   [ "$(column_of bare.csv bytes_per_step | awk '{ printf "%s ", ($1 > 0) }')" = '0 1 0 ' ] || fail "bytes: $(cat costs/timings.csv)"
-  column_of bare.csv latency_us | awk 'NR > 1 && !($1 > 0 && $1 < 1e5) { bad = 1 } END { exit bad }' || fail "latency: $(cat costs/timings.csv)"
+  column_of bare.csv latency_us | tail -n +2 | are 'x > 0 && x < 1e5' || fail "latency: $(cat costs/timings.csv)"
 fi
 
 # What it does not do is said, and what is asked for wrongly.

@@ -6,7 +6,7 @@ set -euo pipefail
 fall=(run --scene cloth2500 --threads 1)
 
 # frames TRACE: how many frames it has
-frames() { h5dump -H -d /particles/cloth/position/step "$1" | sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p'; }
+frames() { numbers_of "$1" /particles/cloth/position/step | wc -l; }
 
 # A second run into files that are being written: told so, and the first one's are whole.
 begins "${fall[@]}" --duration 10000 --fps 5 --trace tw.h5 --energy-curve tw.csv

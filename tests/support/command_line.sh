@@ -58,6 +58,12 @@ warning() { "${@:2}"; warns "$1"; }
 # value COLUMN: of the one row that mssim has printed, in which no field behind it holds a blank
 value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = NF - i } NR == 2 { print $(NF - c) }' "$work/out"; }
 
+# are CONDITION: whether every number on stdin, and there is one, satisfies this condition of awk on x
+are() { awk "{ x = \$1; if (!($1)) bad = 1 } END { exit bad || !NR }"; }
+
+# numbers_of TRACE DATASET [OPTIONS OF h5dump...]: the numbers of a dataset, one a line
+numbers_of() { h5dump -y -m %.17g -d "$2" "${@:3}" "$1" | sed -n '/DATA {/,/}/p' | grep -o '[-0-9][-+.0-9e]*'; }
+
 # begins ARGUMENTS...: mssim runs beside the test, as $process. Shells start such programs with SIGINT ignored; env puts it back.
 begins() {
   true >"$work/out" 2>"$work/err"  # nobody takes what an earlier run has said for this one's
