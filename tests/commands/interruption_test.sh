@@ -133,8 +133,7 @@ expect 2 'two scenes called mine, one/mine.json and two/mine.json; name one of t
 
 # kill -9 at any moment.
 for delay in 0.3 0.7 1.1 1.6; do
-  "$mssim" "${bench[@]}" --out killed --resume >/dev/null 2>err &
-  process=$!
+  begins "${bench[@]}" --out killed --resume
   sleep "$delay"
   kill -9 "$process" 2>/dev/null || true
   wait "$process" 2>/dev/null || true

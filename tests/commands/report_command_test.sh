@@ -82,11 +82,11 @@ order=$(grep -o '<section id="[a-z-]*"' "$work/page.html" | cut -d'"' -f2 | tr '
 [ "$order" = "verdict headline machine speed-up published scaling roofline energy pictures provenance " ] || fail "sections: $order"
 [ "$(grep -c '<h3>.*results/[a-z0-9]*/zen[45]</h3>' "$work/page.html")" -ge 36 ] || fail "not every folder is in every section"
 for outcome in held 'not held' undecided 'not testable here'; do has ">$outcome</td>"; done
-python3 - "$work/page.html" <<'EOF'
-import json, re, sys
+data_of page.html >page.json
+python3 - <<'EOF'
+import json
 
-page = open(sys.argv[1], encoding="utf-8").read()
-data = json.loads(re.search(r'id="mssim-data"[^>]*>(.*?)</script>', page, re.S).group(1))
+data = json.load(open("page.json", encoding="utf-8"))
 claims = {folder["name"].split("results/")[-1]: {claim["name"]: claim for claim in folder["claims"]} for folder in data["folders"]}
 for folder, of_folder in claims.items():
     for name, scenes in (("gpu-10-to-34", "table1"), ("gpu-before-threads", "table1"), ("gpu-and-threads-3-to-4", "table3")):

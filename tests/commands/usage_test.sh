@@ -76,7 +76,7 @@ for writer in 'report f1 --out' 'render --scene jeans4k --out' 'export fall.h5 -
   expect 2 '^mssim: cannot write -: .*\./-' $writer -
 done
 [ -z "$(find . -name '-*')" ] || fail "written: $(find . -name '-*')"
-for listing in suites columns; do
+for listing in suites columns methods; do
   "$mssim" list $listing >/dev/full 2>err && fail "a full standard output is no error"
   warns 'No space left on device.*redirect'
 done

@@ -6,6 +6,7 @@ set -euo pipefail
 cd -- "$source"
 suites=(table1 table3 garment)
 ends 0 report "${suites[@]/#/results/}" --no-runs --out "$work/report.html"
+data_of "$work/report.html" >"$work/report.json"
 for suite in "${suites[@]}"; do
   ends 0 bench --suite "$suite" --dry-run
   mv "$work/out" "$work/$suite"
@@ -64,8 +65,8 @@ def when(folder):
 
 
 # What mssim report says of the claims, by folder.
-with open(f"{work}/report.html") as file:
-    data = json.loads(re.search(r'id="mssim-data"[^>]*>(.*?)</script>', file.read(), re.DOTALL).group(1))
+with open(f"{work}/report.json") as file:
+    data = json.load(file)
 judged = {folder["name"]: {claim["name"]: claim for claim in folder["claims"]} for folder in data["folders"]}
 with open("results/published/claims.json") as file:
     claims = json.load(file)["claims"]

@@ -44,11 +44,9 @@ valid history times --lines --optional ms_per_step,ms_per_step_low,ms_per_step_h
 ends 0 history show --file times --format json
 valid listings#history-show out
 
-# data PAGE: what its element mssim-data holds
-data() { /usr/bin/python3 -c 'import re, sys; print(re.search(r"id=\"mssim-data\"[^>]*>(.*?)</script>", open(sys.argv[1]).read(), re.S).group(1))' "$1"; }
 rm next/provenance.json
 ends 0 report base "$source/results/guide/zen4" next --history times --no-runs --out page.html
-data page.html >page.json
+data_of page.html >page.json
 valid report page.json --optional guide,history,ms_per_step,ms_per_step_low,ms_per_step_high \
   --maps environment,backend_programs,scenes_fnv1a_64,scene_files_fnv1a_64 --wrong 'folders/0/claims/0/outcome="maybe"' --wrong 'folders/0/timings/0/state_hash="x"'
 

@@ -2,11 +2,10 @@
 # Every relative link of every Markdown file, and every picture in its HTML, leads to a file or folder of the repository, and an
 # anchor to a heading of its file; README.md stays a page to start from, in short sentences. Arguments: mssim (unused), the source folder.
 set -euo pipefail
-cd -- "$2"
+. "$2/tests/support/command_line.sh"
+cd -- "$source"
 
 most_readme_lines=120
-failed=0
-complain() { printf '%s\n' "$1" >&2 && failed=1; }
 
 # anchors FILE: the anchors of its headings, as GitHub makes them.
 anchors() {
@@ -24,16 +23,16 @@ for page in "${pages[@]}"; do
     [[ $target != *'#'* ]] || anchor=${target#*#}
     [[ $file ]] && path=${page%/*}/$file || path=$page
     if [[ $file == /* || ! -e $path ]]; then
-      complain "$page: there is no $target"
+      fail "$page: there is no $target"
     elif [[ $anchor ]] && ! anchors "$path" | grep -qxF -- "$anchor"; then
-      complain "$page: $path has no heading for #$anchor"
+      fail "$page: $path has no heading for #$anchor"
     fi
   done < <(grep -vE '^    ' -- "$page" | grep -oP '(\]\(|\b(src|srcset)=")\K[^)" ]+' || true)
 done
-((${#pages[@]} > 10 && links > 50)) || complain "only $links links in ${#pages[@]} pages were looked at"
+((${#pages[@]} > 10 && links > 50)) || fail "only $links links in ${#pages[@]} pages were looked at"
 
 lines=$(wc -l <README.md)
-((lines <= most_readme_lines)) || complain "README.md has $lines lines; move what is over $most_readme_lines into docs/"
+((lines <= most_readme_lines)) || fail "README.md has $lines lines; move what is over $most_readme_lines into docs/"
 # sentences PAGE: those of its paragraphs and lists, one a line, without code blocks, tables and the targets of links.
 sentences() {
   awk '/^(    |[|<#]|$)/ { print ""; next } /^ *- / { print "" } { printf "%s ", $0 }' "$1" |
@@ -43,15 +42,14 @@ most_words=30
 for page in README.md docs/papers.md; do
   while IFS= read -r sentence; do
     words=$(wc -w <<<"$sentence")
-    ((words <= most_words)) || complain "$page: $words words, of at most $most_words: $sentence"
+    ((words <= most_words)) || fail "$page: $words words, of at most $most_words: $sentence"
   done < <(sentences "$page")
 done
 for page in docs/*.md; do
-  grep -qF "]($page)" README.md || complain "README.md does not name $page"
+  grep -qF "]($page)" README.md || fail "README.md does not name $page"
 done
 # From README.md over ARCHITECTURE.md to the force law and the step loop.
-grep -qF '](ARCHITECTURE.md' README.md || complain 'README.md does not lead to ARCHITECTURE.md'
+grep -qF '](ARCHITECTURE.md' README.md || fail 'README.md does not lead to ARCHITECTURE.md'
 for place in kernels/spring_law.h src/backends/spring_list/serial.cpp; do
-  grep -qF "]($place)" ARCHITECTURE.md || complain "ARCHITECTURE.md does not lead to $place"
+  grep -qF "]($place)" ARCHITECTURE.md || fail "ARCHITECTURE.md does not lead to $place"
 done
-exit "$failed"

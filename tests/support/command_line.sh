@@ -157,6 +157,11 @@ all_verified() {
   [ "$(column_of "$1/timings.csv" verified | sort | uniq -c | xargs)" = "$2 true" ] || fail "not $2 verified rows: $(cat "$1/timings.csv")"
 }
 
+# data_of PAGE: the JSON that a report holds
+data_of() {
+  PYTHONUTF8=1 /usr/bin/python3 -c 'import re, sys; print(re.search(r"id=\"mssim-data\"[^>]*>(.*?)</script>", open(sys.argv[1]).read(), re.S).group(1))' "$1"
+}
+
 # names_of LIST: the first column of mssim list LIST, a line each
 names_of() { "$mssim" list "$1" --format csv | awk -F, 'NR > 1 { print $1 }'; }
 

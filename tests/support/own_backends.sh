@@ -9,9 +9,8 @@ bodies_scene "$work/block.json" 0 '{"shape": "box", "box": {"size_m": [0.1, 0.1,
 # verified; with every other it is said that it has none
 verified_everywhere() {
   local program=$1 name=$2 scene integrators explicit
-  "$mssim" list integrators --format csv >integrators.csv
-  integrators=$(tail -n +2 integrators.csv | wc -l)
-  explicit=$(column_of integrators.csv force_evaluations | grep -c '[0-9]')
+  integrators=$(names_of integrators | wc -l)
+  explicit=$(explicit_integrators | wc -l)
   for scene in cloth2500 block.json; do
     rm -rf results
     ends 0 bench --scene "$scene" --backend "$program" --integrator all --threads 1 --rounds 1 --format csv --out results
