@@ -40,7 +40,7 @@ echo "$(cd "${mssim%/*}/../fake_opencl" && pwd)/deviceless_driver.so" >none/fake
 OCL_ICD_VENDORS=$work/none ends 0 doctor
 is 'OpenCL driver' limited
 says 'A fake driver'
-env -u XDG_CACHE_HOME HOME=/dev/null "$mssim" doctor >out 2>err || fail "without a place for caches: $? $(cat err)"
+exits 0 env -u XDG_CACHE_HOME HOME=/dev/null "$mssim" doctor
 is 'cache of meshes' limited
 says XDG_CACHE_HOME
 
@@ -84,7 +84,7 @@ fi
 
 # The CPUs that threads may use.
 if cpus=$(taskset -pc $$ 2>/dev/null | sed 's/.*: //') && [ "$(nproc)" -gt 1 ]; then
-  OMP_PROC_BIND=true taskset -c "${cpus%%[-,]*}" "$mssim" doctor >out 2>err || fail "on one CPU: $? $(cat err)"
+  OMP_PROC_BIND=true exits 0 taskset -c "${cpus%%[-,]*}" "$mssim" doctor
   is affinity limited
   says '^limited  *affinity  *1 of '
   is threads ok

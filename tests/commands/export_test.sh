@@ -3,10 +3,7 @@
 set -euo pipefail
 . "$2/tests/support/command_line.sh"
 
-ends 0 run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5
-ends 0 run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5
-ends 0 run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies.h5
-ends 0 run --scene jeans1k --threads 1 --fps 5 --trace garment.h5
+make_traces
 for trace in cloth double bodies garment; do
   ends 0 export "$trace.h5" --format vtkhdf --frames all
   [ "$(cat err)" = "mssim: wrote ./$trace.vtkhdf" ] || fail "export says $(cat err)"

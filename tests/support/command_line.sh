@@ -100,6 +100,14 @@ on_full_disk() {
   warning "$2" exits 4 bash -c 'ulimit -f "$0" && exec "$@"' "$1" "$mssim" "${@:3}"
 }
 
+# make_traces: cloth.h5, double.h5 in double precision, bodies.h5 and garment.h5, each with its energy curve
+make_traces() {
+  ends 0 run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5 --energy-curve cloth.csv
+  ends 0 run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5 --energy-curve double.csv
+  ends 0 run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies.h5 --energy-curve bodies.csv
+  ends 0 run --scene jeans1k --threads 1 --fps 5 --trace garment.h5 --energy-curve garment.csv
+}
+
 # make_program FILE: a program of the commands of bash on stdin
 make_program() { { echo '#!/bin/bash' && cat; } >"$1" && chmod +x "$1"; }
 

@@ -4,10 +4,7 @@
 set -euo pipefail
 . "$2/tests/support/command_line.sh"
 
-ends 0 run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5 --energy-curve cloth.csv
-ends 0 run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5 --energy-curve double.csv
-ends 0 run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies.h5 --energy-curve bodies.csv
-ends 0 run --scene jeans1k --threads 1 --fps 5 --trace garment.h5 --energy-curve garment.csv
+make_traces
 ends 0 run --scene cloth2500 --threads 1 --duration 0.02 --fps 100 --trace Übung.h5 --energy-curve Übung.csv
 
 run_python "$2" output/traces/readers.py cloth double bodies garment Übung
