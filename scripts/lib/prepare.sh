@@ -184,3 +184,9 @@ build() {
     say "built mssim, $preset, in $((SECONDS - start)) s"
   exec {lock}>&-
 }
+
+# build_release TARGET...: installs the packages for it, and updates build/release.
+build_release() {
+  ensure_packages build library
+  build release "$@"
+}
