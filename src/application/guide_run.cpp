@@ -194,7 +194,7 @@ std::vector<std::string> missed(const std::vector<SceneGuide>& guides, const Gui
   return sentences;
 }
 
-void tell(const GuidePlan& plan) {
+void print_plan(const GuidePlan& plan) {
   Table table;
   for (const SceneSpec& spec : plan.scenes)
     table.add({{"scene", spec.name},
@@ -226,7 +226,7 @@ int run_guide(const GuideOptions& options) {
   request.execution = complete(options.execution);
   plan.seconds = options.time_budget_s.value_or(usual_guide_s * static_cast<double>(plan.scenes.size()));
   if (options.dry_run) {
-    tell(plan);
+    print_plan(plan);
     return exit_ok;
   }
   require_available(options, request.backends, request.execution);
@@ -235,7 +235,7 @@ int run_guide(const GuideOptions& options) {
   add_execution(provenance, choice.own(), request.execution);
   for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
   const std::unique_ptr<ResultFolder> folder = result_folder(options, provenance);
-  for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  for (const std::string& noise : provenance.noise) tell("noise: {}", noise);
   if (uses_device) tell_of_opencl();
 
   std::vector<SceneGuide> guides;
@@ -266,11 +266,11 @@ int run_guide(const GuideOptions& options) {
     if (&guide != &guides.front()) std::cout << '\n';
     print(guide);
   }
-  if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
+  if (written) tell("results are in {}", escaped(options.folder));
   if (folder && !written)
-    std::cerr << "mssim: nothing was measured yet; "
-              << (folder->has_results() ? "earlier results are still in " : "there are no results in ")
-              << escaped(options.folder) << '\n';
+    tell("nothing was measured yet; {} in {}",
+         folder->has_results() ? "earlier results are still" : "there are no results",
+         escaped(options.folder));
   stop.throw_if_requested();
   if (const std::vector<std::string> failed = failures(guides, plan.scenes.size()); !failed.empty()) {
     tell_first(failed);

@@ -17,8 +17,8 @@ completed() {
   bash -c '. "$0" && COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) && _mssim "$1" && printf "%s\n" "${COMPREPLY[@]}"' \
     "$completions/mssim.bash" "$mssim" "$@" | sort
 }
-# are WANTED WORDS...: these lines are completed
-are() {
+# completes WANTED WORDS...: these lines are completed
+completes() {
   local found
   found=$(completed "${@:2}")
   [ "$found" = "$(sort <<<"$1")" ] || fail "$(printf '%q ' "${@:2}"): $(paste -sd ' ' <<<"$found") instead of $(sort <<<"$1" | paste -sd ' ')"
@@ -30,49 +30,49 @@ options_of() { sed -nE 's/^  (-[a-zA-Z],)?(--[a-z-]+).*/\2/p' "$1"; }
 "$mssim" --help >../pages/mssim
 commands=$(sed -nE 's/^  ([a-z-]+)  +[A-Z].*/\1/p' ../pages/mssim | grep -v '^-')
 grep -qx doctor <<<"$commands" || fail "no command doctor: $commands"
-are "$commands" ""
-are "$(options_of ../pages/mssim)" --
-are "$commands" help ""
+completes "$commands" ""
+completes "$(options_of ../pages/mssim)" --
+completes "$commands" help ""
 for command in $commands; do
   "$mssim" "$command" --help >"../pages/$command"
   options=$(options_of "../pages/$command")
   grep -qx -e --help <<<"$options" || fail "no option --help of $command"
-  are "$options" "$command" --
+  completes "$options" "$command" --
 done
 
 # The names of the tables.
 scenes=$(names_of scenes)
 cloths=$(grep ^cloth2 <<<"$scenes")
-are "$cloths" run --scene cloth2
-are "$cloths" bench --suite table1 --scene cloth2
-are "${cloths//cloth/bodies3858,cloth}" bench --scene bodies3858,cloth2
-are "$cloths" check cloth2
-are "$(names_of integrators | sed 's/^/rk4,/')" guide --integrator rk4,
+completes "$cloths" run --scene cloth2
+completes "$cloths" bench --suite table1 --scene cloth2
+completes "${cloths//cloth/bodies3858,cloth}" bench --scene bodies3858,cloth2
+completes "$cloths" check cloth2
+completes "$(names_of integrators | sed 's/^/rk4,/')" guide --integrator rk4,
 names_of backends | grep -qx mine || fail "a described backend is not listed"
-are "$(names_of backends | grep ^o | sed 's/^/serial,/')" bench --backend serial,o
-are mine run --backend min
-are "$({ names_of suites && echo tables; } | grep ^t)" bench --suite t
-are "$({ names_of suites && echo tables; })" bench --suite ""
-are "$(printf '%s\n' csv json table)" list scenes --format ""
-are "$(printf '%s\n' backend-schema backends)" list back
+completes "$(names_of backends | grep ^o | sed 's/^/serial,/')" bench --backend serial,o
+completes mine run --backend min
+completes "$({ names_of suites && echo tables; } | grep ^t)" bench --suite t
+completes "$({ names_of suites && echo tables; })" bench --suite ""
+completes "$(printf '%s\n' csv json table)" list scenes --format ""
+completes "$(printf '%s\n' backend-schema backends)" list back
 
 # Files and folders where a value is one, also after a comma. bash takes = and : for words.
-are "$(printf '%s\n' few few.json fewer.json fewer-folders)" run --trace few
-are "$(printf '%s\n' few fewer-folders)" bench --out few
-are "$(printf '%s\n' few few.json fewer.json fewer-folders)" report few few
-are "$(printf '%s\n' few few.json fewer.json fewer-folders)" history add few
-are "$(printf 'cloth2500,%s\n' few few.json fewer.json fewer-folders)" bench --scene cloth2500,few
+completes "$(printf '%s\n' few few.json fewer.json fewer-folders)" run --trace few
+completes "$(printf '%s\n' few fewer-folders)" bench --out few
+completes "$(printf '%s\n' few few.json fewer.json fewer-folders)" report few few
+completes "$(printf '%s\n' few few.json fewer.json fewer-folders)" history add few
+completes "$(printf 'cloth2500,%s\n' few few.json fewer.json fewer-folders)" bench --scene cloth2500,few
 # Words are as they were typed, with quotes.
-are "$(printf 'few.json,%s\n' few few.json fewer.json fewer-folders)" bench --scene 'few.json\,few'
-are "$cloths" run --scene '"cloth2'
-are "two words" report 'two\ w'
-are "two words" bench --out = '"two w'
-are "$cloths" run --scene = cloth2
-are "$(echo "$scenes" && ls)" run --scene =
-are "" bench --backend openmp : x
-are "" bench --no-such-option=x
-are "" benhc ""
-mssim=$work/none are "" ""
+completes "$(printf 'few.json,%s\n' few few.json fewer.json fewer-folders)" bench --scene 'few.json\,few'
+completes "$cloths" run --scene '"cloth2'
+completes "two words" report 'two\ w'
+completes "two words" bench --out = '"two w'
+completes "$cloths" run --scene = cloth2
+completes "$(echo "$scenes" && ls)" run --scene =
+completes "" bench --backend openmp : x
+completes "" bench --no-such-option=x
+completes "" benhc ""
+mssim=$work/none completes "" ""
 
 # fish and zsh. (zsh completes only at a terminal; stand-ins for its own functions print what they are given.)
 if command -v fish >/dev/null; then

@@ -12,12 +12,14 @@ expect_shortage() {
   row "$1" "$1" | grep -Eq '^"?unavailable: 4 threads .* allows [1-3] .*--threads' || fail "$1 says: $(row "$1" "$1")"
 }
 
-# No thread can have such a stack.
+# No thread of OpenMP can have such a stack.
 # Two integrators: their references would take two threads.
 bench=(bench --scene cloth2500 --integrator "semi-euler,rk4" --rounds 1)
-OMP_STACKSIZE=200000G exits 3 timeout 120 "$mssim" "${bench[@]}" --threads 4 --backend serial,openmp --out openmp
-expect_shortage openmp
-warns 'OMP_STACKSIZE.*200000G'
+for backend in openmp threads-mutex; do
+  OMP_STACKSIZE=200000G exits 3 timeout 120 "$mssim" "${bench[@]}" --threads 4 --backend "serial,$backend" --out "$backend"
+  expect_shortage "$backend"
+  warns 'OMP_STACKSIZE.*200000G'
+done
 
 # Scenes are built and pictures are drawn all the same, by fewer threads.
 OMP_STACKSIZE=200000G ends 0 render --scene cloth2500 --backend serial --duration 0.001 --out picture.png

@@ -132,7 +132,7 @@ is_ended 143 TERM
 # The page sends its results to mssim.
 soon 300 test -s address || fail "mssim does not serve the page: $(<serve.log)"
 address=$(<address) port=$(grep -o '[0-9]*' address)
-(work=$(mktemp -d) && expect 2 "cannot serve on port $port.*--port" web --serve --port "$port" && rm -r "$work") || exit 1
+expect 2 "cannot serve on port $port.*--port" web --serve --port "$port"
 profile=$(mktemp -d)
 "$chromium" --headless=new --no-sandbox --user-data-dir="$profile" --remote-debugging-port=0 \
   "$address?auto=cloth2500&rounds=2&seconds=0.002&integrators=semi-euler&threads=2" >/dev/null 2>&1 &

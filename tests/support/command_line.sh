@@ -2,8 +2,8 @@
 # folder that goes away. A test that has called fail() goes on, and in the end exits with 1; one that has called it in a subshell does not.
 mssim=$1 source=$2 work=$(mktemp -d)
 cd "$work"
-# finish STATUS [COMMAND...]: what every test ends with, and before that a command of its own in a trap of its own. One that is skipped
-# from somewhere on (77) has failed if anything before failed.
+# finish STATUS [COMMAND...]: what every test ends with. A test that has more to clear away sets the trap anew, with a COMMAND that runs
+# first. One that is skipped from somewhere on (77) has failed if anything before failed.
 finish() {
   "${@:2}"
   rm -rf "$work"

@@ -42,8 +42,8 @@ MeasuredRun read_run(const std::filesystem::path& path);
 /// folder does not match, and the errors of reading it. `now`: with the scenes.
 std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now);
 
-/// Tells on stderr how many rows, if any, have samples that nothing has checked, because their run was ended
-/// before that. `folder`: where they are; empty: in memory.
+/// Tells on stderr how many rows that count, if any, have samples that nothing has checked, because their run
+/// was ended before that. `folder`: where they are; empty: in memory.
 void tell_unchecked_samples(std::span<const ResultRow> rows, const std::string& folder);
 
 /// Throws UsageError if these rows of a folder lack a combination of the scene, or its samples are not

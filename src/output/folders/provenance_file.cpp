@@ -63,7 +63,7 @@ class Place {
       fail(*file_, fmt::format("{}/{} is missing: give a provenance.json that mssim wrote", pointer_, key));
     return {value_[key], file_, fmt::format("{}/{}", pointer_, key)};
   }
-  /// Whether the document has this member, or is to have it: not all do.
+  /// Whether the document that is read has this member; for one that is written, `to_write`.
   bool has(const char* key, bool to_write = true) const {
     if (writes()) return to_write;
     require(value_.is_object(), "an object");

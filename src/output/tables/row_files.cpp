@@ -14,7 +14,7 @@ namespace {
 using nlohmann::ordered_json;
 
 /// "scene/backend/integrator", the usual form of a benchmark's name.
-std::string benchmark_name(const ResultRow& row) {
+std::string name_of_benchmark(const ResultRow& row) {
   return fmt::format("{}/{}/{}", row.scene, row.backend, row.integrator);
 }
 
@@ -175,7 +175,7 @@ ordered_json context_of(const Provenance& provenance) {
 /// The first members of every entry of a row.
 ordered_json entry_of(const ResultRow& row, std::size_t family, const std::string& suffix,
                       const std::string& run_type) {
-  const std::string name = benchmark_name(row);
+  const std::string name = name_of_benchmark(row);
   return {{"name", name + suffix}, {"family_index", family}, {"per_family_instance_index", 0},
           {"run_name", name},      {"run_type", run_type},   {"repetitions", row.samples_ms.size()}};
 }
@@ -318,7 +318,7 @@ Table github_table(std::span<const ResultRow> rows) {
   Table table;
   for (const ResultRow& row : rows) {
     if (row.status != "ok" || !row.ms_per_step) continue;
-    table.add({{"name", benchmark_name(row)},
+    table.add({{"name", name_of_benchmark(row)},
                {"unit", "ms/step"},
                {"value", *row.ms_per_step},
                {"range", has_interval(row) ? fmt::format("{} to {}", csv_number(*row.ms_per_step_low),
