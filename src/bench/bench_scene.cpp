@@ -317,8 +317,8 @@ void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, c
 /// Where the samples of a round start.
 struct RoundStart {
   const State& state;
-  std::optional<std::size_t> first_node =
-      {};  ///< the first to examine, if the ends of the samples are checked
+  /// The first node to examine, if the ends of the samples are checked.
+  std::optional<std::size_t> first_node = {};
 };
 
 /// Chooses where samples start and which are checked. Programs cannot predict this: every sample makes the

@@ -90,7 +90,7 @@ std::string why_they_differ(const Integrator& integrator, const StableStep& meas
 
 /// The reason why a method has no points, or no more.
 enum class Lack {
-  nothing,      ///< all points are measured
+  nothing,      ///< no more points are needed
   time,         ///< wall time
   stable_step,  ///< no step that was tried is stable
   unsupported,  ///< the backend does not run this method
@@ -102,7 +102,7 @@ enum class Lack {
 /// How the measurements of a method ended.
 struct Ending {
   Lack lack = Lack::nothing;
-  std::string why = {};  ///< in words; empty if all points are measured
+  std::string why = {};  ///< in words; may be empty if nothing is lacking
   /// Wall time lost with a program that did not answer in time, s; 0: it answered. A late program gets no
   /// more requests, because each would lose as much time.
   double late_s = 0;

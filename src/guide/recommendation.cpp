@@ -389,8 +389,8 @@ std::vector<const GuidedMethod*> missed_methods(const SceneGuide& guide) {
     else if (!step || method.step_seconds == 0 || method.step_seconds / *step < cheapest)
       missed.push_back(&method);
   }
-  const bool any_counts = std::ranges::any_of(guide.methods, most_accurate);
-  return missed.empty() && !any_counts ? implicit : missed;
+  const auto counts = [](const GuidedMethod& method) { return most_accurate(method) != nullptr; };
+  return missed.empty() && std::ranges::none_of(guide.methods, counts) ? implicit : missed;
 }
 
 Recommendation recommend(const SceneGuide& guide) {
@@ -417,9 +417,9 @@ Recommendation recommend(const SceneGuide& guide) {
         chosen.nearest = place_of(method);
       }
     const bool any_beyond = std::ranges::any_of(guide.methods, has_beyond_trust),
-               is_too_small = guide.wish.error < guide.trusted.least_error(),
-               any_late = std::ranges::any_of(
-                   guide.methods, [](const GuidedMethod&method) { return method.ending.lack == Lack::time; });
+               is_too_small = guide.wish.error < guide.trusted.least_error();
+    const auto is_late = [](const GuidedMethod& method) { return method.ending.lack == Lack::time; };
+    const bool any_late = std::ranges::any_of(guide.methods, is_late);
     if ((any_beyond && nearest != nullptr) || (is_too_small && (any_beyond || any_late))) {
       chosen.nearest.reset();
       chosen.sentences = {why_not_judged(guide, nearest)};

@@ -334,7 +334,7 @@ TEST(MissedMethods, AreThoseThatCouldBeTheCheapest) {
   EXPECT_EQ(missed(guide), 0U) << "more time would not help";
   guide.methods.back().ending.lack = Lack::time;
   GuidedMethod on_serial{find_integrator("rk4"), find_backend("serial")};
-  on_serial.points = {made_point("rk4", 1e-4, 1, 1.1e-3)};
+  on_serial.points.push_back(made_point("rk4", 1e-4, 1, 1.1e-3));
   guide.methods.insert(guide.methods.begin(), on_serial);
   EXPECT_EQ(missed(guide), 0U) << "its integrator comes to its end short of the error";
   // No step is longer than the longest usable one: 0.95 * 1e-4 s takes longer.

@@ -147,6 +147,8 @@ TEST(DivergingColour, IsLightestAndGreyInTheMiddleAndAsLightOnBothSides) {
 
 TEST(DivergingColour, IsThatOfAnEndBeyondItAndGreyWithoutANumber) {
   const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(diverging_colour(0), (Rgb{15, 82, 170}));
+  EXPECT_EQ(diverging_colour(1), (Rgb{158, 42, 29}));
   EXPECT_EQ(diverging_colour(-3), diverging_colour(0));
   EXPECT_EQ(diverging_colour(-infinity), diverging_colour(0));
   EXPECT_EQ(diverging_colour(infinity), diverging_colour(1));

@@ -14,7 +14,7 @@ namespace mssim {
 /// [nodes] number of springs at each node.
 std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs);
 
-/// The neighbours of every node, ascending.
+/// The neighbours of every node, ascending: `items` has two for each spring, `first` [nodes + 1] begins.
 struct Adjacency : Grouped<std::uint32_t> {
   /// `links`: springs, or others with a `first` and a `second` node.
   template <class Links>

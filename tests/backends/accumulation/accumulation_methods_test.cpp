@@ -158,10 +158,9 @@ TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsThe
                                          {.threads = 1, .instruction_set = best.instruction_set}),
                     steps);
     EXPECT_TRUE(rows < 9 || columns < 9 || has_met_floor(system, expected)) << rows << " x " << columns;
-    for (const int threads : {1, 2, 3, 7}) {
+    for (const int threads : {1, 2, 3, 7})
       EXPECT_TRUE(same_state(state_after(*make(system, threads), steps), expected))
           << rows << " x " << columns << ", " << threads;
-    }
   }
 }
 

@@ -1,6 +1,7 @@
 #include "garment/pattern/jeans.h"
 
 #include "model/system.h"
+#include "tests/support/garment_system.h"
 #include "tests/support/testing.h"
 #include "text/error.h"
 
@@ -92,8 +93,6 @@ double sharpest_turn(const Curve& curve) {
 System build_for(const JeansBody& body, std::uint32_t nodes, const PanelMaterial& cloth = {}) {
   return build_garment(body.pattern(nodes, cloth), body.depths());
 }
-
-const Garment& garment_of(const System& system) { return std::get<Garment>(system.topology); }
 
 TEST(JeansDraft, SeamsFitTogether) {
   for (const double hip : hips) {
@@ -209,14 +208,14 @@ TEST(Jeans, CellsFoldForNoHipAndNoNumberOfNodes) {
   for (const double hip : hips)
     for (const std::uint32_t nodes : node_counts) {
       const System build = build_for(JeansBody{hip}, nodes);  // throws where a cell folds
-      EXPECT_NEAR(static_cast<double>(garment_of(build).flat.size()), nodes, 0.03 * nodes);
+      EXPECT_NEAR(static_cast<double>(garment_in(build).flat.size()), nodes, 0.03 * nodes);
     }
 }
 
 TEST(Jeans, PanelsAndSeamsAreNamedByTheWearersSides) {
   const System build = build_for(JeansBody{}, 1'000);
   std::vector<std::string> names;
-  for (const GarmentPanel& panel : garment_of(build).panels) {
+  for (const GarmentPanel& panel : garment_in(build).panels) {
     names.push_back(panel.name);
     Vec3d sum{};
     for (std::uint32_t i = 0; i < panel.nodes(); ++i) sum += build.start.position[panel.first_node + i];
@@ -224,19 +223,19 @@ TEST(Jeans, PanelsAndSeamsAreNamedByTheWearersSides) {
     EXPECT_EQ(sum.z > 0, panel.name.starts_with("front")) << panel.name;
   }
   EXPECT_THAT(names, ElementsAre("front left", "back left", "front right", "back right"));
-  EXPECT_THAT(garment_of(build).seams, ElementsAre("outer left", "outer right", "inner left", "inner right",
+  EXPECT_THAT(garment_in(build).seams, ElementsAre("outer left", "outer right", "inner left", "inner right",
                                                    "centre front", "centre back"));
 }
 
 TEST(Jeans, EverythingBelongsToTheSameNodes) {
   const System build = build_for(JeansBody{}, 4'000, {.waistband = {.height = 0.035}});
   std::size_t nodes = 0, springs = 0;
-  for (const GarmentPanel& panel : garment_of(build).panels) {
+  for (const GarmentPanel& panel : garment_in(build).panels) {
     EXPECT_EQ(panel.first_node, nodes);
     nodes += panel.nodes();
     springs += count_springs(panel.rows, panel.columns);
   }
-  EXPECT_EQ(garment_of(build).flat.size(), nodes);
+  EXPECT_EQ(garment_in(build).flat.size(), nodes);
   EXPECT_EQ(build.start.position.size(), nodes);
   EXPECT_EQ(build.node_mass.size(), nodes);
   EXPECT_EQ(build.springs.size(), springs);
@@ -245,7 +244,7 @@ TEST(Jeans, EverythingBelongsToTheSameNodes) {
     ASSERT_LT(spring.second, nodes);
     ASSERT_LT(spring.kind, build.materials.size());
     EXPECT_NEAR(spring.rest_length,
-                length(garment_of(build).flat[spring.first] - garment_of(build).flat[spring.second]), 1e-7);
+                length(garment_in(build).flat[spring.first] - garment_in(build).flat[spring.second]), 1e-7);
   }
   for (const double mass : build.node_mass) EXPECT_GT(mass, 0);
 }
@@ -253,7 +252,7 @@ TEST(Jeans, EverythingBelongsToTheSameNodes) {
 TEST(Jeans, LeftAndRightAreMirrorImages) {
   const System build = build_for(JeansBody{}, 1'000);
   for (const std::size_t p : {0U, 1U}) {
-    const GarmentPanel &left = garment_of(build).panels[p], &right = garment_of(build).panels[p + 2];
+    const GarmentPanel &left = garment_in(build).panels[p], &right = garment_in(build).panels[p + 2];
     for (std::uint32_t row = 0; row < left.rows; ++row)
       for (std::uint32_t column = 0; column < left.columns; ++column) {
         const Vec3d& a = build.start.position[left.node(row, column)];
@@ -270,7 +269,7 @@ TEST(Jeans, SeamsJoinNodeToNodeAndMeetInTheCrotchPoint) {
                                      draft.front.inseam.length(), draft.front.inseam.length(),
                                      draft.front.centre.length(), draft.back.centre.length()};
   std::array<double, 6> lengths{};
-  for (const Joint& joint : garment_of(build).joints) {
+  for (const Joint& joint : garment_in(build).joints) {
     EXPECT_EQ(joint.edge_first, joint.edge_second);
     lengths.at(joint.seam) += joint.length;
     // They start at about the same height.
@@ -280,7 +279,7 @@ TEST(Jeans, SeamsJoinNodeToNodeAndMeetInTheCrotchPoint) {
   // The inner seam's last joint is a centre seam's first one on both sides.
   const auto ends = [&](std::uint32_t seam, bool last) {
     std::vector<Joint> joints;
-    for (const Joint& joint : garment_of(build).joints)
+    for (const Joint& joint : garment_in(build).joints)
       if (joint.seam == seam) joints.push_back(joint);
     return last ? joints.back() : joints.front();
   };
@@ -291,7 +290,7 @@ TEST(Jeans, SeamsJoinNodeToNodeAndMeetInTheCrotchPoint) {
 }
 
 TEST(Jeans, LieCloseBesideTheOuterSeamsFromThighToHip) {
-  const Garment garment = garment_of(build_for(JeansBody{}, 4'000));
+  const Garment garment = garment_in(build_for(JeansBody{}, 4'000));
   EXPECT_DOUBLE_EQ(garment.close.lowest, JeansBody::crotch - 0.01);
   EXPECT_DOUBLE_EQ(garment.close.highest, 0.86);
   EXPECT_TRUE(std::ranges::is_sorted(garment.close.nodes));
@@ -323,7 +322,7 @@ TEST(Jeans, LieCloseAsFarUpAsTheBodyIsWidestWhateverTheirOwnHip) {
 TEST(Jeans, HaveACrotchOfFourNodesWhateverElseIsSewn) {
   const JeansBody body;
   GarmentPattern pattern = body.pattern(1'000);
-  const Garment alone = garment_of(build_garment(pattern, body.depths()));
+  const Garment alone = garment_in(build_garment(pattern, body.depths()));
   ASSERT_EQ(alone.crotch.size(), 4U);
   for (const std::uint32_t node : alone.crotch)
     EXPECT_NEAR(alone.flat[node].y, JeansBody::crotch - body.measures().crotch_ease, 0.05);
@@ -332,16 +331,16 @@ TEST(Jeans, HaveACrotchOfFourNodesWhateverElseIsSewn) {
   pattern.panels.back().piece.name = "patch";
   pattern.seams.push_back(
       {"outer left", {"front left", PanelEdge::bottom, 0, 1}, {"patch", PanelEdge::bottom, 0, 1}});
-  const Garment patched = garment_of(build_garment(pattern, body.depths()));
+  const Garment patched = garment_in(build_garment(pattern, body.depths()));
   EXPECT_EQ(patched.crotch, alone.crotch);
   EXPECT_EQ(patched.close.nodes, alone.close.nodes);
 }
 
 TEST(Jeans, TheWaistbandsJointsPullHarder) {
   const System build = build_for(JeansBody{}, 4'000, {.waistband = {.height = 0.035}});
-  const GarmentPanel& panel = garment_of(build).panels[0];
+  const GarmentPanel& panel = garment_in(build).panels[0];
   std::size_t strong = 0;
-  for (const Joint& joint : garment_of(build).joints) {
+  for (const Joint& joint : garment_in(build).joints) {
     if (joint.strength == 1) continue;
     EXPECT_EQ(joint.strength, 4);
     EXPECT_GE((joint.node % panel.nodes()) / panel.columns + 4, joint.node < panel.nodes() ? panel.rows : 0);
