@@ -84,9 +84,9 @@ class MemoryPeak {
 /// already restarted, and if that is impossible. Programs that mssim runs do not inherit the setting.
 void start_with_short_waits(char** argv);
 
-/// Why OpenMP cannot have `threads` threads, including the calling one: the number that the system or
-/// OMP_THREAD_LIMIT allows and a remedy; nothing if it can. Tests it by creating them, because OpenMP ends
-/// the process if a thread cannot be created. A success is not repeated, because OpenMP keeps its threads.
+/// Why OpenMP cannot have `threads` threads, including the calling one: the number that the system allows and
+/// a remedy; nothing if it can. Tests it by creating them, because OpenMP ends the process if a thread cannot
+/// be created. A success is not repeated, because OpenMP keeps its threads.
 std::optional<std::string> thread_shortage(int threads);
 
 /// Why so many threads make no sense, as what follows "are": more than eight per CPU of this process, so each
