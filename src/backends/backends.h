@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "backends/interface/backend.h"
 #include "backends/process/process_backend.h"
 #include "garment/stepping/dressing_backend.h"
+#include "platform/machine.h"
 
 namespace mssim {
 
@@ -29,7 +31,8 @@ struct BackendInfo {
   std::string_view paper_configuration = {};
   std::string_view description = {};  ///< one line for `mssim list backends`
   bool uses_device = false;           ///< needs an OpenCL device
-  bool makes_threads = false;         ///< creates as many threads as requested
+  /// The stack of its threads, if it creates as many as requested.
+  std::optional<ThreadStack> makes_threads = {};
   /// For an explicit integrator. Null if a program takes its steps, or if it steps garments only.
   BackendMaker* make = nullptr;
   MemoryUse grid_memory = {};  ///< for a cloth
