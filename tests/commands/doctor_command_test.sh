@@ -91,7 +91,8 @@ if cpus=$(taskset -pc $$ 2>/dev/null | sed 's/.*: //') && [ "$(nproc)" -gt 1 ]; 
   # Where OpenMP puts all threads on one CPU, or understands nothing and lets them move.
   OMP_PROC_BIND=master saying OMP_PROC_BIND=true ends 0 doctor
   is affinity limited
-  GOMP_CPU_AFFINITY=9999 saying OMP_PROC_BIND=true ends 0 doctor
+  # clang's OpenMP then has one place, of all CPUs.
+  GOMP_CPU_AFFINITY=9999 saying 'OMP_PROC_BIND=true\|OMP_PLACES=threads' ends 0 doctor
   is affinity limited
 else
   echo "not tried: fewer CPUs (there is one, or no taskset)"
