@@ -147,6 +147,7 @@ whole killed
 # A second bench into the same folder.
 begins "${scenes[@]}" --backend serial --rounds 1000 --out shared
 soon 60 test -e shared/provenance.json || fail "no folder is begun"
+soon 60 grep -q '(1 of 2)' err || fail "no scene is begun"  # it writes nothing more into a file that another run is to write
 expect 4 'another mssim is writing into shared' "${bench[@]}" --out shared --resume
 is_ended 143 TERM
 
