@@ -12,7 +12,6 @@
 #include "application/console.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
-#include "bench/verification/energy_ledger.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "output/tables/table.h"

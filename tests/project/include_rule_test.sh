@@ -129,7 +129,7 @@ ranks                 requests
 bench/machine         provenance
 bench/results         result comparison history
 bench/roofline        roofline
-bench/verification    verification reference_cache energy_ledger
+bench/verification    verification reference_cache
 bench/windows         windows
 bench/job             job
 bench                 bench_scene estimates

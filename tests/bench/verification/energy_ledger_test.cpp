@@ -1,9 +1,8 @@
 // The balance of energies and losses, for every integrator and for cases that can be worked out by hand.
 
-#include "bench/verification/energy_ledger.h"
-
 #include "backends/backends.h"
 #include "backends/spring_list/list_backends.h"
+#include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/testing.h"
