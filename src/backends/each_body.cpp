@@ -50,7 +50,7 @@ std::vector<OneBody> split(const System& scene) {
   return bodies;
 }
 
-/// Programs of the user's are not among its backends: it leaves out what only those have.
+/// Steps only mssim's own backends, so it does not pass on the questions that only users' programs answer.
 class EachBody final : public Backend {
  public:
   EachBody(const System& scene, const MakeBackend& make) : nodes_(scene.nodes()), bodies_(split(scene)) {

@@ -3,7 +3,7 @@
 namespace mssim {
 namespace {
 
-/// Users' programs are not among its backends: it leaves out what only those have.
+/// Adapts only mssim's own backends, so it does not pass on the questions that only users' programs answer.
 class AheadBackend final : public Backend {
  public:
   AheadBackend(std::unique_ptr<Backend> backend, const System& system, double seconds)
