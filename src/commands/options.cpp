@@ -88,7 +88,7 @@ std::size_t frame_at(double time_s, const std::vector<double>& times_s) {
       times_s, {}, [&](double frame_time_s) { return std::abs(frame_time_s - time_s); });
   const double spacing = times_s.size() < 2 ? 0 : times_s.back() - times_s[times_s.size() - 2];
   if (time_s > times_s.back() + spacing)
-    throw UsageError("--time: {} s is after the last frame, at {} s", decimal(time_s),
+    throw UsageError("--time: {} s is after the last frame, at {} s; give an earlier one", decimal(time_s),
                      decimal(times_s.back()));
   return static_cast<std::size_t>(nearest - times_s.begin());
 }

@@ -165,16 +165,34 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   return png_of(pictures.front().picture);
 }
 
+double duration_s(const RenderOptions& options) {
+  return options.run.duration_s.value_or(default_duration_s);
+}
+
+/// It is unknown when a garment will have settled.
+bool ends_when_settled(const RenderOptions& options) {
+  return std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content);
+}
+
 /// Frames per simulated second that the pictures need if --fps names no others. A large scene has a large
 /// trace, so it takes no more.
 double usual_fps(const RenderOptions& options) {
   if (options.movie || options.frames.given()) return movie_fps;
-  const double duration_s = options.run.duration_s.value_or(default_duration_s);
   const std::size_t moments = moments_on_sheet(options, options.look.colour == ColourBy::strain).value_or(2);
-  // It is unknown when a garment will have settled.
-  if (sheet_size(options) && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content))
-    return movie_fps;
-  return static_cast<double>(std::max<std::size_t>(moments, 2) - 1) / duration_s;
+  if (sheet_size(options) && ends_when_settled(options)) return movie_fps;
+  return static_cast<double>(std::max<std::size_t>(moments, 2) - 1) / duration_s(options);
+}
+
+/// Throws UsageError if --time is after the last frame that the run of a scene will have. Nearer to the end,
+/// frame_at() knows.
+void require_time_within(const RenderOptions& options, const RunOptions& run) {
+  const double interval_s = 1 / run.fps.value_or(run.usual_fps);
+  if (options.frames.time_s && *options.frames.time_s > duration_s(options) + interval_s &&
+      !ends_when_settled(options))
+    throw UsageError(
+        "--time: {} s is after the end of the run, at {} s; give a longer --duration or an earlier "
+        "--time",
+        decimal(*options.frames.time_s), decimal(duration_s(options)));
 }
 
 int render(const RenderOptions& options) {
@@ -204,6 +222,7 @@ int render(const RenderOptions& options) {
   if (trace.empty()) {
     RunOptions run = options.run;
     run.usual_fps = usual_fps(options);
+    require_time_within(options, run);
     trace = temporary_folder_of_process() / "scene.h5";
     run.files.trace = trace.string();
     run.files.temporary = true;

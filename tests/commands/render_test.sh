@@ -114,6 +114,10 @@ expect 2 '"top" is not a view; give front' render t.h5 --view top
 expect 2 'up to 2048 pixels' render t.h5 --size 3000x10
 expect 2 'no frame 99; the last one is 4' render t.h5 --frames 0,99
 expect 2 '--frames names 3 frames.*--sheet or --movie' render t.h5 --frames 0-2
+# Known before anything is simulated.
+expect 2 '--time: 1001 s is after the end of the run, at 1000 s; give a longer --duration or an earlier --time' \
+  render --scene cloth350k --duration 1000 --time 1001 --out no.png
+expect 2 '--time: 1 s is after the last frame, at 0.2 s; give an earlier one' render t.h5 --time 1 --out no.png
 expect 2 '--fps .*--movie' render t.h5 --fps 5
 expect 2 '"3" is not a number of pictures' render t.h5 --sheet 3
 expect 2 'exclude each other' render t.h5 --movie --sheet 2x2
