@@ -277,6 +277,12 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;
   if (file) return add(described_by(*file));
+  const std::string before_colon = name.substr(0, name.find(':'));
+  if (before_colon != name && std::ranges::find(known_, before_colon, &BackendInfo::name) != known_.end())
+    throw UsageError(
+        "{}: \"{}\" is not a suffix; give one, or each, double or an instruction set before a number, "
+        "as in openmp:each:4",
+        printable(name), printable(name.substr(before_colon.size())));
   std::vector<std::string> broken;  // not what was asked for
   std::vector<std::string_view> names;
   for (const BackendInfo* info : known_) names.push_back(info->name);
@@ -285,6 +291,9 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   if (is_file(name))
     throw UsageError("unknown backend \"{0}\": a program of your own is a path with a slash, ./{0}",
                      printable(name));
+  if (const auto all = with_garment_backends(table_backends());
+      std::ranges::find(all, name, &BackendInfo::name) != all.end())
+    throw UsageError("backend {} does not go with this command or suite: give {}", name, listed(names, "or"));
   constexpr std::array<OtherName, 2> others{{{"gpu", "opencl"}, {"cuda", "opencl"}}};
   throw UsageError(unknown_name("backend", name, names, others));
 }

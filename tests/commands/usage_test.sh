@@ -99,6 +99,11 @@ expect 2 '^mssim: --precision: unknown precision "half": known are single and do
 expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all
 expect 2 '^mssim: unknown integrator "euler" (did you mean .*semi-euler.*explicit-euler' bench --scene cloth2500 --integrator euler
 expect 2 '^mssim: serial:doubel: unknown suffix "doubel" (did you mean double?): known are each and double$' bench --scene cloth2500 --backend serial:doubel
+expect 2 'backend hybrid does not go with this command or suite: give serial, openmp, .* or mpi-copies$' bench --suite peers --backend hybrid
+expect 2 'backend algorithm1 does not go with this command or suite: give serial, ' guide --scene cloth2500 --backend algorithm1
+for suffixes in :AVX2:x ::4 :4:each; do
+  expect 2 "openmp$suffixes: \"$suffixes\" is not a suffix; .* as in openmp:each:4" bench --scene cloth2500 --backend openmp$suffixes
+done
 expect 2 'openmp:doubel: unknown suffix "doubel" (did you mean double?): known are each, double, .* and a number from 1 to 4096$' \
   bench --scene cloth2500 --backend openmp:doubel
 expect 2 'unknown backend "gpu" (did you mean opencl?)' bench --scene cloth2500 --backend gpu
