@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "integrators/all_integrators.h"
 #include "output/tables/results.h"
 #include "platform/files.h"
 #include "report/report_internal.h"
@@ -32,8 +33,8 @@ void visit_test(FieldVisitor& fields, ClaimTest& test) {
   test.scenes = tables.at(table);
   fields.text({"fast", "The backend that is said to be faster."}, Presence::required, test.fast);
   fields.text({"slow", "The backend that it is compared with."}, Presence::required, test.slow);
-  fields.texts({"integrators", "The integrators that decide (default: the paper's three)."},
-               Presence::optional, 1, 3, longest_text, test.integrators);
+  fields.choices({"integrators", "The integrators that decide (default: the paper's three)."},
+                 mapped<std::string_view>(all_integrators, &Integrator::name), test.integrators);
   fields.text({"slow_integrator", "Integrator of `slow` (default: that of `fast`)."}, Presence::optional,
               test.slow_integrator);
   fields.text(

@@ -25,6 +25,7 @@ constexpr std::size_t most_words = 64;
 /// Longest word of a command and value of a variable, in characters: a path, or a list of them.
 constexpr std::size_t longest_word = 4096;
 constexpr std::string_view cloth = "cloth", bodies = "bodies";
+constexpr std::array<std::string_view, 2> scene_words{cloth, bodies};
 constexpr std::string_view ranks = "ranks";
 constexpr std::array<std::string_view, 2> process_words{"one", ranks};
 constexpr std::string_view windows = "windows";
@@ -47,12 +48,12 @@ void visit(FieldVisitor& fields, Description& description) {
   fields.text({"$schema", "Path of this schema, for editors; mssim ignores it."}, Presence::optional, schema);
   fields.texts(
       {"command", "The program, in PATH or with a slash relative to this file's folder, and its arguments."},
-      Presence::required, 1, most_words, longest_word, description.command);
+      most_words, longest_word, description.command);
   fields.text({"description", "One line for mssim list backends."}, Presence::optional, description.text);
-  fields.texts({"scenes", "Kinds of scenes that it steps: cloth, bodies (default: both)."},
-               Presence::optional, 1, 2, longest_text, description.scenes);
-  fields.texts({"integrators", "Supported integrators (default: all explicit ones)."}, Presence::optional, 1,
-               all_integrators.size(), longest_text, description.integrators);
+  fields.choices({"scenes", "Kinds of scenes that it steps (default: both)."}, scene_words,
+                 description.scenes);
+  fields.choices({"integrators", "Supported integrators (default: all explicit ones)."},
+                 mapped<std::string_view>(all_integrators, &Integrator::name), description.integrators);
   fields.named_texts({"environment", "Environment variables in addition to mssim's."}, most_words,
                      longest_word, description.environment);
   fields.optional_number({"time_limit_s", "Time limit of an answer, s (default: 120)."},
@@ -66,14 +67,6 @@ void visit(FieldVisitor& fields, Description& description) {
                  "windows: it can also restart a cloth by itself and return the states of some rows and "
                  "columns; with ranks only (default: whole)."},
                 Presence::optional, state_words, description.states);
-}
-
-void require_known(const fs::path& file, const std::string& list, const std::vector<std::string>& words,
-                   const std::vector<std::string_view>& known) {
-  for (std::size_t i = 0; i < words.size(); ++i)
-    if (std::ranges::find(known, words[i]) == known.end())
-      refuse(file, fmt::format("{}/{}", list, i),
-             fmt::format("is the text \"{}\": give {}", printable(words[i]), listed(known, "or")));
 }
 
 /// Sets the file to run, or why it is missing.
@@ -102,9 +95,6 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   read_fields(file, text, [&](FieldVisitor& fields) { visit(fields, description); });
   if (description.command.front().empty())
     refuse(file, "/command/0", "is empty: give the name of a program, or a path with a slash");
-  require_known(file, "/scenes", description.scenes, {cloth, bodies});
-  require_known(file, "/integrators", description.integrators,
-                mapped<std::string_view>(all_integrators, &Integrator::name));
   BackendProgram program;
   program.name = file.stem().string();
   program.description = description.text;

@@ -70,15 +70,16 @@ class FieldVisitor {
   void integer(const Field& field, std::uint32_t& target, std::uint32_t minimum, std::uint32_t maximum);
   /// One line of at most `longest_text` characters.
   void text(const Field& field, Presence presence, std::string& target);
-  /// A list of `least` to `most` lines of at most `longest` characters.
-  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most, std::size_t longest,
-             std::vector<std::string>& target);
+  /// A required list of 1 to `most` lines of at most `longest` characters.
+  void texts(const Field& field, std::size_t most, std::size_t longest, std::vector<std::string>& target);
   /// An object of at most `most` such lines, with arbitrary keys.
   void named_texts(const Field& field, std::size_t most, std::size_t longest,
                    std::vector<std::pair<std::string, std::string>>& target);
   /// One of several words; the target becomes its index.
   void choice(const Field& field, Presence presence, std::span<const std::string_view> words,
               std::uint32_t& target);
+  /// An optional list of at least one of several words.
+  void choices(const Field& field, std::span<const std::string_view> words, std::vector<std::string>& target);
   /// Three numbers, [x, y, z].
   void vector(const Field& field, Presence presence, Vec3d& target, const Range& each);
   /// A list of `least` to `most` points of a plane, each two numbers, [x, y]; z becomes 0.

@@ -232,6 +232,27 @@ std::string text_of(const PlacedJson& found, std::size_t longest) {
   refuse(found, one_text(longest));
 }
 
+std::string some_texts(std::size_t most) { return fmt::format("a list, [ ... ], of 1 to {} texts", most); }
+
+std::string one_of_texts(std::span<const std::string_view> words) {
+  return "the text " + listed(words, "or");
+}
+
+ordered_json schema_of_choice(std::span<const std::string_view> words) {
+  return {{"type", "string"}, {"enum", words}};
+}
+
+/// The index of a text in `words`.
+std::size_t choice_of(const PlacedJson& found, std::span<const std::string_view> words) {
+  const std::string wanted = one_of_texts(words);
+  if (!found.value.is_string()) refuse(found, wanted);
+  const auto& word = found.value.get_ref<const std::string&>();
+  const auto match = std::find(words.begin(), words.end(), word);
+  if (match != words.end()) return static_cast<std::size_t>(match - words.begin());
+  const std::string_view nearest = words.size() > 1 ? nearest_name(word, words) : "";
+  refuse(found, nearest.empty() ? wanted : fmt::format("{}, perhaps {}", wanted, nearest));
+}
+
 /// Writes whole numbers without a decimal point.
 ordered_json number(double value) {
   return value == std::trunc(value) ? ordered_json(static_cast<std::int64_t>(value)) : ordered_json(value);
@@ -300,13 +321,13 @@ void FieldVisitor::text(const Field& field, Presence presence, std::string& targ
         [&](const PlacedJson& found) { target = text_of(found, longest_text); });
 }
 
-void FieldVisitor::texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
-                         std::size_t longest, std::vector<std::string>& target) {
-  const std::string wanted = fmt::format("a list, [ ... ], of {} to {} texts", least, most);
-  visit(field, presence, {wanted, [&] { return array_of(texts_of(longest), least, most); }},
+void FieldVisitor::texts(const Field& field, std::size_t most, std::size_t longest,
+                         std::vector<std::string>& target) {
+  const std::string wanted = some_texts(most);
+  visit(field, Presence::required, {wanted, [&] { return array_of(texts_of(longest), 1, most); }},
         [&](const PlacedJson& list) {
           target.clear();
-          for (const PlacedJson& text : elements(list, least, most, wanted))
+          for (const PlacedJson& text : elements(list, 1, most, wanted))
             target.push_back(text_of(text, longest));
         });
 }
@@ -329,22 +350,19 @@ void FieldVisitor::named_texts(const Field& field, std::size_t most, std::size_t
 
 void FieldVisitor::choice(const Field& field, Presence presence, std::span<const std::string_view> words,
                           std::uint32_t& target) {
-  std::string wanted = "the text " + listed(words, "or");
-  visit(field, presence,
-        {wanted,
-         [&]() -> ordered_json {
-           return {{"type", "string"}, {"enum", words}};
-         }},
-        [&](const PlacedJson& found) {
-          if (!found.value.is_string()) refuse(found, wanted);
-          const auto& word = found.value.get_ref<const std::string&>();
-          const auto match = std::find(words.begin(), words.end(), word);
-          if (match == words.end()) {
-            const std::string_view nearest = nearest_name(word, words);
-            if (!nearest.empty() && words.size() > 1) wanted += ", perhaps " + std::string(nearest);
-            refuse(found, wanted);
-          }
-          target = static_cast<std::uint32_t>(match - words.begin());
+  visit(field, presence, {one_of_texts(words), [&] { return schema_of_choice(words); }},
+        [&](const PlacedJson& found) { target = static_cast<std::uint32_t>(choice_of(found, words)); });
+}
+
+void FieldVisitor::choices(const Field& field, std::span<const std::string_view> words,
+                           std::vector<std::string>& target) {
+  const std::string wanted = some_texts(words.size());
+  visit(field, Presence::optional,
+        {wanted, [&] { return array_of(schema_of_choice(words), 1, words.size()); }},
+        [&](const PlacedJson& list) {
+          target.clear();
+          for (const PlacedJson& text : elements(list, 1, words.size(), wanted))
+            target.emplace_back(words[choice_of(text, words)]);
         });
 }
 

@@ -82,9 +82,9 @@ TEST_F(BackendDescriptionTest, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(refusal(R"({"command": [""]})"), HasSubstr("/command/0 is empty"));
   EXPECT_THAT(refusal(R"({"command": ["sh", 3]})"), HasSubstr("/command/1 is 3: give one line of text"));
   EXPECT_THAT(refusal(R"({"command": ["sh"], "scenes": ["jeans"]})"),
-              HasSubstr("/scenes/0 is the text \"jeans\": give cloth or bodies"));
+              HasSubstr("/scenes/0 is the text \"jeans\": give the text cloth or bodies"));
   EXPECT_THAT(refusal(R"({"command": ["sh"], "integrators": ["euler"]})"),
-              HasSubstr("/integrators/0 is the text \"euler\": give semi-euler"));
+              HasSubstr("/integrators/0 is the text \"euler\": give the text semi-euler"));
   EXPECT_THAT(refusal(R"({"command": ["sh"], "time_limit_s": 0})"), HasSubstr("/time_limit_s is 0: give"));
   EXPECT_THAT(refusal(R"({"command": ["sh"], "environment": {"A=B": "1"}})"),
               HasSubstr("/environment has the name \"A=B\""));
