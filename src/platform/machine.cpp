@@ -18,7 +18,6 @@
 #include <sstream>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 #include "platform/process.h"
 #include "text/text.h"

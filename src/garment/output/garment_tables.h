@@ -1,10 +1,8 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "bench/results/result.h"
 #include "output/tables/results.h"

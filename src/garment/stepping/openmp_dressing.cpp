@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <vector>
 
 #include "backends/vectors/step_kernels.h"
 #include "garment/stepping/step_panels.h"
