@@ -58,7 +58,7 @@ garment/fitting       statistics laws model garment/layers garment/stepping
 ranks                 text platform integrators model scene/spec scene backends/interface backends/vectors backends/layouts backends/openmp
 
 bench/machine         text platform
-bench/results         text statistics integrators bench/machine
+bench/results         text statistics platform integrators bench/machine
 bench/roofline        platform integrators model
 bench/verification    text statistics platform laws integrators model backends/interface backends
 bench/windows         text platform integrators model backends/interface backends/layouts backends bench/verification

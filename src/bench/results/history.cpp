@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "platform/machine.h"
 #include "text/error.h"
 #include "text/text.h"
 
@@ -88,11 +89,15 @@ std::vector<MachineHistory> machines_of(std::span<const HistoryEntry> history) {
     machine->entries.push_back(&entry);
     add_rows(*machine);
   }
+  std::vector<HistorySeries*> all;
   for (MachineHistory& machine : machines)
     for (HistorySeries& series : machine.series) {
-      series.changes = change_points(series.ms);
+      all.push_back(&series);
       if (series.at.back() + 1 < machine.entries.size()) series.vanished = series.at.back() + 1;
     }
+  // Nothing throws: times are above zero (shortest_ms).
+#pragma omp parallel for num_threads(openmp_team(0)) schedule(dynamic)
+  for (std::size_t i = 0; i < all.size(); ++i) all[i]->changes = change_points(all[i]->ms);
   return machines;
 }
 
