@@ -250,7 +250,7 @@ std::function<int()> declare_render(Arguments& arguments) {
           .offers(scene_names)
           .excludes(trace);
   arguments.add("--out FILE", options->out,
-                "File to write (default: the trace's or the scene's name with .png or .webp)");
+                "File to write (default: the trace's or the scene's name with .png, -sheet.png or .webp)");
   declare_pictures(arguments, options->look,
                    fmt::format("{}, and {} on a sheet and in a movie", usual_picture_size, size_of_many));
   const Argument time = declare_frames(arguments, options->frames);

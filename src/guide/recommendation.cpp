@@ -225,10 +225,8 @@ std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
   if (!needed_s) return text + '.';
   // A longer horizon takes more time for each point, and its errors are larger.
   const bool is_cut = guide.trusted.failure.empty() && guide.trusted.short_of_s > 0;
-  const std::string seconds = decimal(*needed_s);
-  return text + (is_cut
-                     ? fmt::format(". At least {} s for this scene would be needed (--time-budget).", seconds)
-                     : fmt::format(". About {} s for this scene would suffice (--time-budget).", seconds));
+  return text + fmt::format(". About {} s for this scene {} (--time-budget).", decimal(*needed_s),
+                            is_cut ? "may be needed" : "would suffice");
 }
 
 constexpr std::array<std::string_view, 3> paper_integrators{"semi-euler", "midpoint", "rk4"};

@@ -8,7 +8,7 @@ namespace mssim {
 bool dresses(const Integrator& integrator) { return integrator.name == "semi-euler"; }
 
 void require_semi_euler(const Integrator& integrator) {
-  if (!dresses(integrator)) throw Unsupported("only semi-euler dresses garments, as published");
+  if (!dresses(integrator)) throw Unsupported("only semi-euler dresses garments");
 }
 
 void Seaming::start(const Garment& garment, const State& start) {
