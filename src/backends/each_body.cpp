@@ -18,7 +18,7 @@ struct OneBody {
 
 std::vector<OneBody> split(const System& scene) {
   const auto* mesh = std::get_if<TetrahedralMesh>(&scene.topology);
-  if (mesh == nullptr)
+  if (mesh == nullptr || mesh->tetrahedra.empty())
     throw Unsupported(
         "it steps the bodies of a scene one after the other, and this scene has none: name the backend "
         "without the suffix");

@@ -15,6 +15,7 @@
 #include "scene/builders.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
 #include "scene/spec/scene_spec.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -467,7 +468,7 @@ SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& fo
   return least_counts(own_shape(shape, folder));
 }
 
-extern const SceneKind bodies_kind{
+const SceneKind BodiesSpec::kind{
     .name = "bodies",
     .description =
         "Solid bodies cut into tetrahedra, whose edges are the springs. They fall side by side; "

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 
 #include "model/system.h"
@@ -30,11 +29,6 @@ inline constexpr std::array<std::array<double, 2>, 6> ripple_phases{
 /// spacing) plus the ripple, a standing wave of given amplitude in position and velocity. Pinned nodes are
 /// not displaced. Deterministic. Throws std::bad_alloc.
 System build_cloth(const SceneSpec& spec);
-
-/// Bytes that any run of a scene of this size needs at least: its System with the start state, the
-/// double-precision reference that every run is compared with (up to four pairs of position and velocity),
-/// and one state read back. The backend under test needs more.
-std::uint64_t memory_needed(const SceneCounts& counts);
 
 /// Lower bounds on the nodes and springs of a body of that shape, without making its mesh; zero if unknown.
 /// `folder` is the scene file's. Throws SceneError if the shape is of another scene that does not exist or

@@ -185,7 +185,7 @@ System build_cloth(const SceneSpec& spec) {
   return system;
 }
 
-extern const SceneKind cloth_kind{
+const SceneKind ClothSpec::kind{
     .name = "cloth",
     .description =
         "A regular cloth, level at first: row r, column c starts at (c spacing, ceiling height, r spacing). "

@@ -6,18 +6,17 @@
 #include <variant>
 
 #include "platform/machine.h"
-#include "scene/builders.h"
 #include "scene/fields/fields.h"
 
 namespace mssim {
 
-// Defined with their specs and builders; garment_kind in garment/scene, of which nothing else is used here.
-extern const SceneKind cloth_kind, bodies_kind, garment_kind;
-
 namespace {
 
-constexpr std::array table{&cloth_kind, &bodies_kind, &garment_kind};
-static_assert(table.size() == std::variant_size_v<decltype(SceneSpec::content)>);
+template <class... Specs>
+constexpr std::array<const SceneKind*, sizeof...(Specs)> kinds_in(std::variant<Specs...> SceneSpec::*) {
+  return {&Specs::kind...};
+}
+constexpr auto table = kinds_in(&SceneSpec::content);
 
 SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
   if (const auto per_spring = kind_of(spec).published_per_spring)

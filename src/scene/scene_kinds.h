@@ -10,8 +10,7 @@
 
 namespace mssim {
 
-/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is a row, defined
-/// next to its spec and builder, and an alternative.
+/// The kinds of the alternatives of SceneSpec::content, which are the TABLE of scene kinds, in their order.
 std::span<const SceneKind* const> scene_kinds();
 
 /// The row of the scene's kind.
@@ -25,6 +24,11 @@ SceneParts read_parts(const SceneSpec& spec);
 
 /// Nodes and springs of the scene. Reads its parts, and throws like read_parts.
 SceneCounts counts_of(const SceneSpec& spec);
+
+/// Bytes that any run of a scene of this size needs at least: its System with the start state, the
+/// double-precision reference that every run is compared with (up to four pairs of position and velocity),
+/// and one state read back. The backend under test needs more.
+std::uint64_t memory_needed(const SceneCounts& counts);
 
 /// Throws SceneError, naming both amounts, if any run of the scene, which has these counts, needs more memory
 /// than is available (memory_needed).

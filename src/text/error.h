@@ -15,7 +15,7 @@ enum ExitCode : int {
   exit_regression = 1,    ///< a row became slower, or is lost
   exit_bad_input = 2,     ///< bad usage or a bad input file
   exit_unavailable = 3,   ///< a requested device or program is missing
-  exit_file_error = 4     ///< reading or writing failed
+  exit_file_error = 4     ///< writing failed, or the system refused to read a trace
 };
 
 /// Base of the errors that a user reads: what() is one sentence (place, value, remedy), and a command that

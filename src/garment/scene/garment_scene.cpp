@@ -373,6 +373,12 @@ void check(const SceneSpec& spec) {
   check_pieces(spec);
 }
 
+std::optional<SceneCounts> stated(const SceneSpec& spec) {
+  const std::optional<MeshSize>& expected = garment_of(spec).expected;
+  if (!expected) return std::nullopt;
+  return SceneCounts{expected->nodes, expected->springs};
+}
+
 /// Measures the body and cuts the garment for it. Throws SceneError if the body cannot be measured or the
 /// pattern does not fit together.
 ///
@@ -394,17 +400,13 @@ SceneParts read(const SceneSpec& spec) {
 
 }  // namespace
 
-extern const SceneKind garment_kind{
+const SceneKind GarmentSpec::kind{
     .name = "garment",
     .description = "Panels, drawn together around a body along their seams and then draped.",
     .visit_fields = visit_fields,
     .check = check,
     .published_per_spring = {},
-    .stated = [](const SceneSpec& spec) -> std::optional<SceneCounts> {
-      const std::optional<MeshSize>& expected = garment_of(spec).expected;
-      if (!expected) return std::nullopt;
-      return SceneCounts{expected->nodes, expected->springs};
-    },
+    .stated = stated,
     .read = read,
 };
 

@@ -58,6 +58,8 @@ struct JeansSpec {
   JeansMeasures measures;
 };
 
+struct SceneKind;
+
 /// A body, a garment for it, and how it is dressed.
 struct GarmentSpec {
   std::variant<MannequinBody, BodyFile> body;
@@ -69,6 +71,8 @@ struct GarmentSpec {
   DressingSettings dressing;
   std::optional<ClothClothSettings> layers;  ///< none: they pass through each other
   std::optional<MeshSize> expected;
+
+  static const SceneKind kind;  ///< scene/spec/scene_spec.h
 };
 
 }  // namespace mssim

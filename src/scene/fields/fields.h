@@ -23,7 +23,7 @@ struct FieldValue;
 struct PlacedJson;
 
 /// Names the fields of one JSON object, each once, to a visitor: the reader sets their targets from a file,
-/// the schema writer describes them. The lists are the only place with the keys of scene files.
+/// the schema writer describes them. A program that writes a scene file names its keys again.
 using FieldList = std::function<void(FieldVisitor&)>;
 
 /// A field's key, which ends in its unit, and its description in the schema, which states the unit.
@@ -109,6 +109,7 @@ void visit_choice(FieldVisitor& fields, const Field& field, Presence presence,
   target = static_cast<Value>(number);
 }
 
+static_assert(spring_constants.front().number == &SpringMaterial::stiffness);
 inline constexpr double largest_stiffness = spring_constants.front().most;  ///< N/m
 
 /// Names the field of a constant of springs, with its target in `material`.

@@ -54,11 +54,15 @@ struct BodySpec {
   double swell_per_s = 0;
 };
 
+struct SceneKind;
+
 /// Solid bodies of one material that start apart from each other and fall.
 struct BodiesSpec {
   double density_kg_per_m3 = 0;  ///< the nodes of a body share its mass evenly
   SpringMaterial springs;
   std::vector<BodySpec> list;
+
+  static const SceneKind kind;
 };
 
 /// The pinned nodes of a cloth: every `every_columns`-th node of one row, and its last one.
@@ -87,6 +91,8 @@ struct ClothSpec {
 
   ClothRipple ripple;
   std::array<SpringMaterial, grid_spring_kinds.size()> springs;  ///< by GridSpringKind
+
+  static const SceneKind kind;
 };
 
 /// The content of a scene file.
@@ -98,10 +104,9 @@ struct SceneSpec {
   double viscous_damping_per_s = 0;
   Floor floor;
   SolverSettings solver;
-  std::variant<ClothSpec, BodiesSpec, GarmentSpec>
-      content;         ///< one alternative per scene kind, in the order of their table (scene_kinds.h)
-  std::string source;  ///< the file's text, for traces and hashes
-  std::filesystem::path file;  ///< path for messages
+  std::variant<ClothSpec, BodiesSpec, GarmentSpec> content;  ///< the TABLE of scene kinds (scene_kinds.h)
+  std::string source;                                        ///< the file's text, for traces and hashes
+  std::filesystem::path file;                                ///< path for messages
 };
 
 /// Gives a system the scene's gravity, damping, floor and solver settings.
@@ -144,8 +149,7 @@ struct SceneParts {
 
 class FieldVisitor;
 
-/// A kind of scene and its operations. The rows are defined next to their specs, in scene/cloth.cpp,
-/// scene/bodies.cpp and garment/scene/garment_scene.cpp.
+/// A kind of scene and its operations: the member `kind` of its spec, defined in the file with its builder.
 struct SceneKind {
   std::string_view name;         ///< value of the file's `kind`, and the key of its section
   std::string_view description;  ///< description of the section in the schema
