@@ -15,12 +15,6 @@
 namespace mssim {
 namespace {
 
-std::string_view read_kind(hid_t file) {
-  for (const char* name : {"cloth", "bodies", "garment"})
-    if (exists(file, std::string("/particles/") + name)) return name;
-  throw Hdf5ContentError("there is none of /particles/cloth, /particles/bodies and /particles/garment");
-}
-
 /// Reads steps and times. The shortest series counts: a run may have ended between writing two of them, or
 /// between a frame's positions and its step.
 void read_series(hid_t file, TraceContent& content) {
@@ -73,12 +67,13 @@ std::uint32_t read_extent(hid_t file, const std::string& name) {
   return static_cast<std::uint32_t>(extent);
 }
 
-NodeShape read_shape(hid_t file, const TraceContent& content) {
-  if (content.shape.kind == "cloth")
+NodeShape read_shape(hid_t file) {
+  if (exists(file, "/particles/cloth"))
     return shape_of(GridPatch{read_extent(file, "rows"), read_extent(file, "columns")});
-  if (content.shape.kind == "bodies")
+  if (exists(file, "/particles/bodies"))
     return shape_of(TetrahedralMesh{read_tuples<4>(file, tetrahedra_dataset)});
-  return {content.shape.kind, read_panels(file), {}, true};
+  if (exists(file, "/particles/garment")) return {"garment", read_panels(file), {}, true};
+  throw Hdf5ContentError("there is none of /particles/cloth, /particles/bodies and /particles/garment");
 }
 
 void read_springs(hid_t file, TraceContent& content) {
@@ -154,9 +149,8 @@ void require_file(const fs::path& file) {
 TraceContent read_trace_content(hid_t file) {
   if (!exists(file, "/h5md")) throw Hdf5ContentError("it is an HDF5 file, but not an H5MD trace");
   TraceContent content;
-  content.shape.kind = read_kind(file);
+  content.shape = read_shape(file);
   read_series(file, content);
-  content.shape = read_shape(file, content);
   require_fitting_shape(content.shape, content.nodes);
   read_springs(file, content);
   content.body = read_static_body(file);
