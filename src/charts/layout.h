@@ -36,9 +36,9 @@ PlottedValues plotted_values(const Chart& chart);
 
 /// Colours of series, each with a contrast of at least 3 to 1 on white and on near-black (WCAG 2.2, 1.4.11),
 /// so that light and dark pages have the same colours.
-inline constexpr std::array<std::string_view, 12> series_colours{"#2f7ed8", "#b8720a", "#2e8f57", "#d9534f",
-                                                                 "#9b59b6", "#12858c", "#c2508a", "#8a7a00",
-                                                                 "#808080", "#6d67e4", "#96603c", "#4f8f00"};
+inline constexpr std::array<std::string_view, 14> series_colours{
+    "#2f7ed8", "#b8720a", "#2e8f57", "#d9534f", "#9b59b6", "#12858c", "#c2508a",
+    "#8a7a00", "#808080", "#6d67e4", "#96603c", "#4f8f00", "#909860", "#a888b8"};
 
 /// The number of each series' look, which decides colour, shape, dash and pattern. Series of one origin have
 /// different looks, except for marks. The families `fixed` have the first numbers, whether or not they occur.

@@ -238,8 +238,8 @@ bool is_for_gpus(std::string_view backend, const PaperLegend& legend) {
 }
 
 std::vector<std::string> families_of_backends(const PaperLegend& legend) {
-  // There are twelve colours. Those of the paper's configurations come first, each with its row on the CPU,
-  // and leave one for another row in their charts.
+  // Those of the paper's configurations come first, each with its row on the CPU, and leave a colour for
+  // another row in their charts.
   std::vector<std::string> families, of_pages;
   for (const PaperLegend::Backend& backend : legend.backends) {
     if (backend.configuration.empty() || backend.name.find(':') != std::string::npos ||
