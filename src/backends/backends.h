@@ -27,7 +27,8 @@ enum class BackendRole : std::uint8_t {
 /// A row of the TABLE of backends, or of users' backends (own_backend).
 struct BackendInfo {
   std::string_view name;
-  /// Column of Hong et al.'s tables (`configuration` in the published CSV); or empty.
+  /// Column of Hong et al.'s tables (`configuration` in the published CSV); empty for garments' rows and
+  /// programs.
   std::string_view paper_configuration = {};
   std::string_view description = {};  ///< one line for `mssim list backends`
   bool uses_device = false;           ///< needs an OpenCL device

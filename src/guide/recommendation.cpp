@@ -229,8 +229,6 @@ std::string why_nothing(const SceneGuide& guide, std::optional<double> needed_s,
                             is_cut ? "may be needed" : "would suffice");
 }
 
-constexpr std::array<std::string_view, 3> paper_integrators{"semi-euler", "midpoint", "rk4"};
-
 /// The integrator's time per step and, if it reaches the error, its cost there.
 struct Compared {
   std::string_view integrator;

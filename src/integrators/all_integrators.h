@@ -82,6 +82,16 @@ inline constexpr auto integrators = std::to_array<Integrator>({
 static_assert(std::ranges::all_of(integrators, gathers_safely),
               "a stage writes the pair that it gathers from: OpenCL and graphs would race");
 
+/// The names of those that Hong et al. measure.
+inline constexpr auto paper_integrators = [] {
+  std::array<std::string_view, static_cast<std::size_t>(std::ranges::count_if(integrators, is_of_paper))>
+      names{};
+  auto name = names.begin();
+  for (const Integrator& integrator : integrators)
+    if (is_of_paper(integrator)) *name++ = integrator.name;
+  return names;
+}();
+
 /// The leapfrog of positions (Verlet 1967 in the form of Swope et al. 1982 with positions and velocities
 /// exchanged): half a step of drift, a kick, half a step of drift,
 ///

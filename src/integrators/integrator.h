@@ -62,7 +62,9 @@ struct Integrator {
   int order = 0;                   ///< order of convergence on smooth problems, measured by the tests
   std::size_t stage_count = 0;     ///< also the number of force evaluations; 0 for implicit ones
   std::string_view description{};  ///< one line for `mssim list integrators`
-  std::string_view paper_name{};   ///< the corresponding integrator of Hong et al.
+  /// The integrator of Hong et al. with whose published times its are compared: itself if the names are equal
+  /// (is_of_paper), else one that evaluates the forces more often; empty for none.
+  std::string_view paper_name{};
   std::array<Stage, max_stages> stages{};
   Solver solver = Solver::none;
   int damped_order = order;  ///< order of convergence if forces depend on velocities
@@ -72,6 +74,9 @@ struct Integrator {
   /// backends/interface/backend.h).
   double ahead = 0;
 };
+
+/// Whether Hong et al. measure this integrator itself.
+constexpr bool is_of_paper(const Integrator& integrator) { return integrator.paper_name == integrator.name; }
 
 /// Whether a solver computes its steps, not stages.
 constexpr bool is_implicit(const Integrator& integrator) { return integrator.solver != Solver::none; }

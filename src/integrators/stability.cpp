@@ -126,8 +126,8 @@ double largest_stable_dt(const Integrator& integrator, const ModeBound& bound) {
 double auto_dt(const ModeBound& bound, const std::function<bool(const Integrator& integrator)>& steps) {
   constexpr double safety = 0.5;
   double limit = std::numeric_limits<double>::infinity();
-  for (const Integrator& integrator : integrators)  // the paper's methods, not those that only have its costs
-    if (integrator.paper_name == integrator.name && (!steps || steps(integrator)))
+  for (const Integrator& integrator : integrators)
+    if (is_of_paper(integrator) && (!steps || steps(integrator)))
       limit = std::min(limit, largest_stable_dt(integrator, bound));
   if (std::isinf(limit))
     throw std::invalid_argument(

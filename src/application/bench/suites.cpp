@@ -51,8 +51,6 @@ constexpr std::array<std::string_view, 7> bodies_as_published{
     "serial:each", "threads-mutex:10", "threads-mutex:each", "threads-mutex:each:10",
     "openmp:each", "opencl:each",      "hybrid:each"};
 
-/// Integrators of Hong et al. under their own names.
-constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
 constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
 
 std::vector<const BackendInfo*> all_methods() {
@@ -135,7 +133,7 @@ TableMaker table_of_cluster() {
 
 TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
 
-constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
+constexpr Comparison of_backends{table_backends, paper_integrators, tables_of_the_papers};
 constexpr Comparison of_methods{all_methods, cheapest_method, table_of_races};
 constexpr Comparison of_sizes{table_backends, cheapest_method, table_of_scaling};
 constexpr Comparison of_peers{baseline_and_best, cheapest_method, peer_tables, true};
