@@ -212,6 +212,20 @@ std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
   return std::make_optional<ResultFolder>(plan.output.folder, plan.provenance, plan.tables);
 }
 
+/// Rows with the names that the plan's will have.
+std::vector<ResultRow> planned_rows(const BenchPlan& plan) {
+  std::vector<ResultRow> rows;
+  for (const PlannedScene& scene : plan.timed)
+    for (const Integrator* integrator : plan.settings.integrators)
+      for (const BackendInfo* backend : scene.backends) {
+        ResultRow& row = rows.emplace_back();
+        row.scene = scene.spec.name;
+        row.backend = backend->name;
+        row.integrator = integrator->name;
+      }
+  return rows;
+}
+
 void add_published_times(std::vector<ResultRow>& rows, const BenchPlan& plan) {
   mark_own_scenes(rows, plan.provenance);
   static const PaperLegend legend = paper_legend();
@@ -269,7 +283,9 @@ BenchResults::BenchResults(const BenchPlan& plan)
     : plan_(plan),
       folder_(folder_of(plan)),
       rows_(folder_ ? earlier_rows(*folder_, plan) : std::vector<ResultRow>()) {
-  if (folder_) folder_->begin();
+  if (!folder_) return;
+  folder_->require_free(planned_rows(plan), plan.output.trace);
+  folder_->begin();
 }
 
 std::vector<std::string> BenchResults::stems_of_scene(const std::string& name) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -62,6 +63,26 @@ std::vector<std::string> traces_of(const std::string& stem) {
   return names;
 }
 
+/// The files in the folder itself, except the provenance.
+std::vector<std::string> names_of_results() {
+  auto names = mapped<std::string>(row_files, &RowFile::name);
+  names.emplace_back(github_name);
+  for (const std::string_view table : table_names) {
+    names.push_back(csv_of(table));
+    names.push_back(markdown_of(table));
+  }
+  return names;
+}
+
+/// That of an earlier run; none if there is none, or a file of this name is somebody else's.
+std::optional<Provenance> provenance_in(const fs::path& folder) {
+  try {
+    return read_provenance(folder / provenance_name);
+  } catch (const ErrorWith<exit_bad_input>&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> file_stems(std::span<const ResultRow> rows) {
@@ -92,28 +113,51 @@ ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker ta
 bool ResultFolder::has_rows() const { return fs::exists(folder_ / timings_name); }
 
 bool ResultFolder::has_results() const {
-  return has_rows() || std::ranges::any_of(table_names, [&](std::string_view name) {
-           return fs::exists(folder_ / csv_of(name));
-         });
+  const auto is_there = [&](const std::string& name) { return fs::exists(folder_ / name); };
+  return std::ranges::any_of(names_of_results(), is_there) ||
+         (is_there(provenance_name) && !provenance_in(folder_));
 }
 
-void ResultFolder::clear() const {
+std::vector<std::string> ResultFolder::files_of_rows() const {
   std::vector<std::string> names;
+  const std::optional<Provenance> earlier = provenance_in(folder_);
+  if (!earlier) return names;
+  const bool has_programs = !fs::is_symlink(folder_ / programs_name);
+  const bool has_traces =
+      !fs::is_symlink(folder_ / traces_name) &&
+      std::ranges::find(earlier->command_line, trace_option) != earlier->command_line.end();
   try {
-    const bool own_programs = !fs::is_symlink(folder_ / programs_name);
-    for (const std::string& stem : file_stems(read_timings(CsvTable(folder_ / timings_name)))) {
-      if (own_programs) names.push_back(output_of(stem));
-      std::ranges::move(traces_of(stem), std::back_inserter(names));
+    const std::vector<ResultRow> rows = read_timings(CsvTable(folder_ / timings_name));
+    const std::vector<std::string> stems = file_stems(rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (has_programs && found_in(earlier->backend_programs, rows[i].backend, &BackendProgramRecord::name))
+        names.push_back(output_of(stems[i]));
+      if (has_traces) std::ranges::move(traces_of(stems[i]), std::back_inserter(names));
     }
   } catch (const CsvError&) {
     // Rows that cannot be read do not name their files.
   }
-  for (const RowFile& file : row_files) names.emplace_back(file.name);
-  names.emplace_back(github_name);
-  for (const std::string_view table : table_names) {
-    names.push_back(csv_of(table));
-    names.push_back(markdown_of(table));
+  return names;
+}
+
+void ResultFolder::require_free(std::span<const ResultRow> rows, bool with_traces) const {
+  if (with_traces && fs::is_symlink(folder_ / traces_name))
+    throw UsageError("{} is a link, and traces are not written through it; remove it or choose another --out",
+                     (folder_ / traces_name).string());
+  const std::vector<std::string> own = files_of_rows();
+  for (const std::string& stem : file_stems(rows)) {
+    std::vector<std::string> names = with_traces ? traces_of(stem) : std::vector<std::string>();
+    names.push_back(output_of(stem));
+    for (const std::string& name : names)
+      if (fs::exists(folder_ / name) && std::ranges::find(own, name) == own.end())
+        throw UsageError("{} is not of an earlier run here: move it, or choose another --out",
+                         (folder_ / name).string());
   }
+}
+
+void ResultFolder::clear() const {
+  std::vector<std::string> names = files_of_rows();
+  std::ranges::move(names_of_results(), std::back_inserter(names));
   for (const std::string& name : names)
     if (::unlink((folder_ / name).c_str()) != 0 && errno != ENOENT && errno != ENOTDIR)
       throw WriteError(write_failure(folder_ / name, "removing it", errno));

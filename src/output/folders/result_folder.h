@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/machine/provenance.h"
@@ -21,6 +22,8 @@ inline constexpr const char *timings_name = "timings.csv", *samples_name = "samp
 inline constexpr const char* programs_name = "programs";
 /// Subfolder with the traces of a bench, of each row one named by file_stems() and .h5, and its .xdmf.
 inline constexpr const char* traces_name = "traces";
+/// The option with which a bench writes them; in the command of its provenance.
+inline constexpr std::string_view trace_option = "--trace";
 
 /// Names of each row's files without extension: SCENE-BACKEND-INTEGRATOR, with _ in the place of characters
 /// that no trace may have in its name. If an earlier row has that name, or it is too long or not a valid file
@@ -39,8 +42,12 @@ class ResultFolder {
 
   /// Whether an earlier run left rows here.
   bool has_rows() const;
-  /// Whether an earlier run left rows or tables.
+  /// Whether the folder has a file of a name that a run writes, except the provenance of a run that was ended
+  /// before it had a row.
   bool has_results() const;
+  /// Throws UsageError if a file that these rows may write below programs/ or traces/ is there and not of an
+  /// earlier run, or, `with_traces`, if traces/ is a link.
+  void require_free(std::span<const ResultRow> rows, bool with_traces) const;
   /// Makes the first write replace the results of an earlier run, including its provenance. They stay until
   /// then.
   void replace_results() { replaces_ = true; }
@@ -66,6 +73,9 @@ class ResultFolder {
  private:
   /// Writes everything under temporary names to the disk before any file is replaced, except `programs`.
   void write_files(std::vector<FolderFile> files, const std::vector<FolderFile>& programs = {});
+  /// What the earlier run's rows have below programs/ and traces/: outputs of its programs, and traces if it
+  /// wrote any. Nothing if these are links.
+  std::vector<std::string> files_of_rows() const;
   void clear() const;
 
   std::filesystem::path folder_;

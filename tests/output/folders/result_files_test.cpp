@@ -110,9 +110,49 @@ TEST_F(ResultFiles, RenewTheFileForGithub) {
   EXPECT_FALSE(fs::exists(file));
 }
 
+TEST_F(ResultFiles, AreThereIfAnyFileHasTheNameOfOne) {
+  const std::vector<std::string> names{"timings.csv", "samples.csv",     "garment.csv", "benchmark.json",
+                                       "github.json", "table1.md",       "guide.csv",   "provenance.json",
+                                       "threads.md",  "guide-errors.csv"};
+  for (const std::string& name : names) {
+    EXPECT_FALSE(results_in(folder()).has_results());
+    put(name, "mine");
+    EXPECT_TRUE(results_in(folder()).has_results()) << name;
+    fs::remove(folder() / name);
+  }
+  results_in(folder()).begin();
+  EXPECT_FALSE(results_in(folder()).has_results()) << "a run was ended before its first row";
+}
+
+TEST_F(ResultFiles, LeaveWhatNoEarlierRunWroteInTheirPlace) {
+  const std::string stem = file_stems(rows).front();
+  const auto refused = [&](bool with_traces) {
+    const ResultFolder results = results_in(folder());
+    return sentence_of<UsageError>([&] { results.require_free(rows, with_traces); });
+  };
+  results_in(folder()).require_free(rows, true);
+  results_in(folder()).begin();
+  results_in(folder()).write(rows);  // without --trace, and of no program
+  for (const std::string& name : {"traces/" + stem + ".h5", "programs/" + stem + ".txt"}) {
+    put(name, "mine");
+    EXPECT_THAT(refused(true), AllOf(HasSubstr(name + " is not of an earlier run"), HasSubstr("move it")));
+    ResultFolder results = results_in(folder());
+    if (name.starts_with("traces")) results.require_free(rows, false);
+    results.replace_results();
+    results.write(rows);
+    EXPECT_EQ(read_file(folder() / name), "mine");
+    fs::remove_all((folder() / name).parent_path());
+  }
+  fs::create_directory_symlink(folder(), folder() / "traces");
+  EXPECT_THAT(refused(true), HasSubstr("traces is a link"));
+}
+
 TEST_F(ResultFiles, ThatAreReplacedTakeTheirTracesAlong) {
   const std::string stem = "traces/" + file_stems(rows).front();
-  results_in(folder()).write(rows);
+  Provenance traced = made_up_provenance();
+  traced.command_line.emplace_back("--trace");
+  results_in(folder(), traced).begin();
+  results_in(folder(), traced).write(rows);
   for (const char* end : {".h5", ".xdmf", ".h5.part", ".xdmf.part", "-mine.h5"}) put(stem + end, "old");
   ResultFolder results = results_in(folder());
   results.replace_results();
