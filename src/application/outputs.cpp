@@ -83,8 +83,12 @@ Provenance run_provenance(int threads, bool uses_device) {
           fmt::format("{}: {}, driver {}", device.platform, device.name, device.driver_version));
     std::ranges::copy(offer.troubles, std::back_inserter(provenance.opencl_devices));
   }
-  if (const auto tetgen = find_tetgen())
-    provenance.tetgen = fmt::format("{}, fnv1a_64 {}", tetgen->version, to_hex(tetgen->fnv1a_64));
+  try {
+    if (const auto tetgen = find_tetgen())
+      provenance.tetgen = fmt::format("{}, fnv1a_64 {}", tetgen->version, to_hex(tetgen->fnv1a_64));
+  } catch (const MissingProgram& cannot_start) {  // a scene that needs it says so itself
+    provenance.tetgen = cannot_start.what();
+  }
   return provenance;
 }
 

@@ -213,7 +213,7 @@ int run(const BenchRequest& options) {
   int code = exit_ok;
   StopRequest stop;
   if (!plan.timed.empty()) {
-    measure_scenes(plan, budget, stop, results);
+    const std::vector<std::string> lost = measure_scenes(plan, budget, stop, results);
     if (!plan.described.empty() && format == ListingFormat::table) std::cout << '\n';
     std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
     if (!format && results.folder() && !results.rows().empty())
@@ -222,7 +222,8 @@ int run(const BenchRequest& options) {
     const BenchVerdict verdict =
         verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
     tell_first(verdict.reasons);
-    code = verdict.exit_code;
+    tell_first(lost);
+    code = verdict.exit_code == exit_ok && !lost.empty() ? exit_unavailable : verdict.exit_code;
   }
   // The first write replaces earlier results, so nothing is written before there is a row.
   if (results.folder() && !structure.empty() && (plan.timed.empty() || !results.rows().empty()))

@@ -44,21 +44,25 @@ constexpr std::string_view example_name = "my_backend";
 constexpr std::array<std::string_view, 3> needed_modules{"mssim_backend", "numpy", "h5py"};
 
 /// Whether the Python in PATH has a module of that name, in its library or installed. The program's folder is
-/// searched first, so the imports of the example would find the program instead. False without Python, which
-/// could not run such a program either.
+/// searched first, so the imports of the example would find the program instead. False without a Python that
+/// runs, which could not run such a program either.
 bool is_module_of_python(const std::string& name) {
   const auto python = find_program("python3");
   if (!python || name.find('-') != std::string::npos) return false;  // `import a-b` is none
-  const ChildResult result = run({*python,
-                                  {"-I", "-c",
-                                   "import importlib.util, sys; "
-                                   "print('module', importlib.util.find_spec(sys.argv[1]) is not None)",
-                                   name},
-                                  {},
-                                  "/",
-                                  60,
-                                  60});
-  return result.output.find("module True") != std::string::npos;
+  try {
+    const ChildResult result = run({*python,
+                                    {"-I", "-c",
+                                     "import importlib.util, sys; "
+                                     "print('module', importlib.util.find_spec(sys.argv[1]) is not None)",
+                                     name},
+                                    {},
+                                    "/",
+                                    60,
+                                    60});
+    return result.output.find("module True") != std::string::npos;
+  } catch (const MissingProgram&) {
+    return false;
+  }
 }
 
 void require_usable(const std::string& name) {

@@ -24,7 +24,7 @@ namespace mssim {
 namespace {
 
 [[noreturn]] void fail(const ChildProcess& child, const std::string& why) {
-  throw std::runtime_error(fmt::format("cannot run {}: {}", child.program.string(), why));
+  throw MissingProgram("cannot run {}: {}", child.program.string(), why);
 }
 
 [[noreturn]] void fail(const ChildProcess& child, const std::string& action, int error) {

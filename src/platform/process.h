@@ -80,8 +80,8 @@ struct ChildProcess {
   std::uint64_t memory_bytes = 0;  ///< limit of its address space; 0: that of this process
 };
 
-/// Runs a program to its end: no shell, empty stdin, no core file. Throws std::runtime_error with one
-/// sentence if it cannot be started, and Interrupted if this process received an ending signal meanwhile:
+/// Runs a program to its end: no shell, empty stdin, no core file. Throws MissingProgram, with one
+/// sentence, if it cannot be started, and Interrupted if this process received an ending signal meanwhile:
 /// then the program and its descendants have been killed.
 ChildResult run(const ChildProcess& child);
 

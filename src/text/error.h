@@ -49,7 +49,7 @@ struct NotVerified : ErrorWith<exit_not_verified> {
   using ErrorWith::ErrorWith;
 };
 
-/// A required program is missing. what() says how to get it.
+/// A required program is missing or cannot be started. what() says why, or how to get it.
 struct MissingProgram : ErrorWith<exit_unavailable> {
   using ErrorWith::ErrorWith;
 };

@@ -138,6 +138,13 @@ PATH=$other:$PATH ends 0 run --scene torus-small --duration 0.001
 warns 'torus-small: the mesh of /bodies/list/0 has 620 nodes and .* where the scene states 620 and 3690'
 
 # Programs that are no TetGen.
+# One that cannot be started concerns only scenes that need it.
+mkdir "$work/broken"
+echo '#!/no/such/sh' >"$work/broken/tetgen"
+chmod +x "$work/broken/tetgen"
+PATH=$work/broken:$PATH ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out "$work/without"
+grep -q '"tetgen": "cannot run .*broken/tetgen: its interpreter /no/such/sh' "$work/without/provenance.json" ||
+  fail "$(grep tetgen "$work/without/provenance.json")"
 PATH=$(tetgen_that 'echo no licence >&2; exit 7'):$PATH expect 2 \
   'torus-small.json: /bodies/list/0 has no mesh: .*ended with exit code 7 after writing "no licence"' run --scene torus-small --duration 0.001
 PATH=$(tetgen_that 'echo garbage >body.1.node; echo garbage >body.1.ele'):$PATH expect 2 \

@@ -13,6 +13,7 @@
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "platform/process.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
@@ -163,7 +164,9 @@ std::optional<TimeBudget::Clock::time_point> TimeBudget::first_round_done() {
   return deadline();
 }
 
-void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
+std::vector<std::string> measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop,
+                                        BenchResults& results) {
+  std::vector<std::string> lost;
   const double rounds = expected_rounds(plan);
   const auto seconds =
       mapped<double>(times_of(plan.timed), [&](const ExpectedTime& time) { return time.with(rounds); });
@@ -188,7 +191,16 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
       planned.parts = {};
       continue;
     }
-    const PreparedScene scene = planned.windows.empty() ? planned.prepare() : outline_of(planned);
+    PreparedScene scene;
+    try {
+      scene = planned.windows.empty() ? planned.prepare() : outline_of(planned);
+    } catch (
+        const ErrorWith<exit_bad_input>& error) {  // other programs may have taken the memory that was there
+      if (plan.timed.size() == 1) throw;
+      lost.emplace_back(error.what());
+      progress.skip_scene();
+      continue;
+    }
     warn_of_note(scene);
     SceneJob job = job_of(plan.settings, planned, scene);
     job.deadline = deadline;
@@ -216,8 +228,9 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
       // An interrupted wait for a program; the completed rounds are kept.
       note_ending_signal(interrupted.signal);
     }
-    if (stop.requested()) return;
+    if (stop.requested()) break;
   }
+  return lost;
 }
 
 }  // namespace mssim

@@ -240,12 +240,17 @@ std::string failure_of(const DriverTrial& trial, const OpenclDevice& device) {
     if (listener) listener(fmt::format("{}is compiling {}, which takes some drivers minutes", driver, what));
   });
   // CPU time counts all threads.
-  const ChildResult result = run({mssim_program(),
-                                  arguments_of(trial, device),
-                                  {},
-                                  ".",
-                                  most_minutes * minute_s * device.compute_units,
-                                  most_minutes * minute_s});
+  ChildResult result;
+  try {
+    result = run({mssim_program(),
+                  arguments_of(trial, device),
+                  {},
+                  ".",
+                  most_minutes * minute_s * device.compute_units,
+                  most_minutes * minute_s});
+  } catch (const MissingProgram& cannot_start) {
+    return fmt::format("{}cannot be tried: {}", driver, cannot_start.what());
+  }
   if (result.out_of_time)
     return fmt::format("{}had not compiled {} after {} minutes", driver, what, most_minutes);
   const std::string end = failed_end(result, "it compiled " + what);

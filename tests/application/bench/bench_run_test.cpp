@@ -167,6 +167,28 @@ TEST(TimeBudget, IsRefusedWhereItIsTooShortForARoundOfEach) {
   EXPECT_NO_THROW(TimeBudget(44, {{10, 1}, {30, 3}}));
 }
 
+TEST(MeasuredScenes, GoOnWhereOneCannotBeBuiltAnyMore) {
+  BenchOptions options;
+  options.scenes = {"cloth2500", "cloth4900"};
+  options.backends = {"serial"};
+  options.integrators = {"semi-euler"};
+  options.rounds = 1;
+  BenchPlan plan = plan_of(options);
+  plan.timed.front().parts.counts.nodes = 1'000'000'000'000'000;  // as if the memory had gone
+  BenchResults results(plan);
+  TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
+  EXPECT_THAT(measure_scenes(plan, budget, StopRequest(), results),
+              ElementsAre(AllOf(HasSubstr("cloth2500.json"), HasSubstr("needs at least"))));
+  ASSERT_EQ(results.rows().size(), 1U);
+  EXPECT_EQ(results.rows().front().scene, "cloth4900");
+
+  plan = plan_of(options);
+  plan.timed.pop_back();
+  plan.timed.front().parts.counts.nodes = 1'000'000'000'000'000;
+  TimeBudget of_one(plan.time_budget_s, times_of(plan.timed));
+  EXPECT_THROW(measure_scenes(plan, of_one, StopRequest(), results), ErrorWith<exit_bad_input>);
+}
+
 class BenchTraceTest : public TemporaryFolderTest {};
 
 TEST_F(BenchTraceTest, HasTheProvenanceOfTheBench) {
@@ -181,7 +203,7 @@ TEST_F(BenchTraceTest, HasTheProvenanceOfTheBench) {
   BenchPlan plan = plan_of(options);
   BenchResults results(plan);
   TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
-  measure_scenes(plan, budget, StopRequest(), results);
+  EXPECT_THAT(measure_scenes(plan, budget, StopRequest(), results), IsEmpty());
   const std::string expected = provenance_text(plan.provenance);
   EXPECT_EQ(read_file(folder() / "out/provenance.json"), expected + '\n');
   for (const std::string& scene : options.scenes)
