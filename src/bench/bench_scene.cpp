@@ -348,6 +348,13 @@ class SampleSecrets {
     return {of_round_, first_};
   }
 
+  /// Begins frames, of which every row's are checked if samples are: at the start of the checked round.
+  RoundStart begin_frames() {
+    if (!checked_) return {start_};
+    of_round_ = sample_start(*job_.system, *checked_);
+    return {of_round_, first_};
+  }
+
   /// Whether a round is still to be checked.
   bool is_due() const { return checks_ && !checked_; }
 
@@ -359,11 +366,11 @@ class SampleSecrets {
       std::vector<Combination*> checked;
       std::vector<SampleEnd> ends;
       for (Combination& combination : combinations)
-        if (combination.integrator == job_.integrators[i] && combination.row.status == "ok" &&
-            combination.checked) {
-          checked.push_back(&combination);
-          ends.push_back(*std::exchange(combination.checked, std::nullopt));
-        }
+        if (combination.integrator == job_.integrators[i] && combination.row.status == "ok")
+          for (SampleEnd& end : std::exchange(combination.checked, {})) {
+            checked.push_back(&combination);
+            ends.push_back(std::move(end));
+          }
       const std::vector<std::string> reasons =
           check_samples(*job_.system, *job_.integrators[i], job_.dt_s, start, first_, ends);
       for (std::size_t j = 0; j < reasons.size(); ++j)
@@ -395,7 +402,7 @@ Clock::duration expected_check(const SceneJob& job, const std::vector<Combinatio
     int steps = 0;
     for (const Combination& combination : combinations)
       if (combination.integrator == job.integrators[i] && combination.backend)
-        steps = std::max(steps, combination.steps);
+        steps = std::max(steps, job.fps ? combination.most_steps : combination.steps);
     const double seconds = both_references * steps * references[i].step_seconds;
     all += seconds;
     longest = std::max(longest, seconds);
@@ -504,12 +511,15 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   // The deadline allowed fewer rounds than expected, or an earlier run took all of them: take one more, whose
   // times do not count.
   if (!stopped && (!measured_any || secrets.is_due())) stopped = !take(job.rounds - 1, false);
-  for (Combination& combination : all) {
+  for (Combination& combination : all)
     if (combination.backend) require_prompt_steps(combination, job);
+  const RoundStart of_frames = secrets.begin_frames();
+  for (Combination& combination : all) {
     if (combination.backend && !stopped) count_events(combination, job);
     if (job.fps && combination.backend && !stopped) {
       watch.progress(fmt::format("frames: {} {}", combination.row.integrator, combination.row.backend), 1);
-      time_frames(combination, job, watch.stop);
+      combination.start = &of_frames.state;
+      time_frames(combination, job, of_frames.first_node, watch.stop);
     }
     end(combination);
   }

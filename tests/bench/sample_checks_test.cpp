@@ -12,6 +12,8 @@ enum class Cheat : std::uint8_t {
   grows,      ///< is right until it has been asked for some states, and then gives huge ones
   remembers,  ///< steps from the scene's start, whatever state it is given, which it need not do twice
   reverses,   ///< gives velocities of the opposite sign
+  idles,      ///< takes no step of a request of `frame` steps
+  lags,       ///< takes the steps of such requests when it is asked for the state
   nothing     ///< is right, but slow to give a state
 };
 
@@ -24,9 +26,14 @@ class Cheating final : public Backend {
         weak_(find_backend("serial")->make(weakened(weak_system_), integrator, dt_s, options)) {}
   void set_state(const State& state) override {
     present_.reset();
+    lagging_ = 0;
     right_->set_state(cheat == Cheat::remembers ? start_ : state);
   }
   void step(int count) override {
+    if (count == frame && (cheat == Cheat::idles || cheat == Cheat::lags)) {
+      if (cheat == Cheat::lags) lagging_ += count;
+      return;
+    }
     const int known = std::min(count, 100), more = count - known;
     if (cheat != Cheat::stops && cheat != Cheat::drifts) {
       right_->step(count);
@@ -39,6 +46,7 @@ class Cheating final : public Backend {
     }
   }
   State state() const override {
+    if (lagging_ > 0) right_->step(std::exchange(lagging_, 0));
     if (cheat == Cheat::nothing) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     State state = present_ ? *present_ : right_->state();
     if (cheat == Cheat::grows && ++states_ > 2)
@@ -50,6 +58,7 @@ class Cheating final : public Backend {
   std::string device() const override { return "made up"; }
   int threads() const override { return 1; }
 
+  static constexpr int frame = 7;
   inline static Cheat cheat;
 
  private:
@@ -62,7 +71,7 @@ class Cheating final : public Backend {
   System weak_system_;
   std::unique_ptr<Backend> right_, weak_;
   std::optional<State> present_;
-  mutable int states_ = 0;
+  mutable int states_ = 0, lagging_ = 0;
 };
 
 std::unique_ptr<Backend> cheating(const System& system, const Integrator& integrator, double dt_s,
@@ -102,6 +111,22 @@ TEST_F(BenchScene, FindsAProgramThatPostponesItsStepsHoweverFewSamplesThereAre) 
     EXPECT_EQ(rows[0].status, "ok") << rounds;
     EXPECT_THAT(rows[1].status, HasSubstr("reports steps before they are done")) << rounds;
     EXPECT_FALSE(rows[1].verified) << rounds;
+  }
+}
+
+TEST_F(BenchScene, FindsAProgramThatIsRightExceptInFrames) {
+  system_ = solid_block(5, 4, 3);
+  take_only({find_backend("serial"), &cheat});
+  job_.fps = 1 / (Cheating::frame * job_.dt_s);
+  for (const auto& [what, sentence] :
+       {std::pair(Cheat::idles, "position error"), {Cheat::lags, "reports steps before they are done"}}) {
+    Cheating::cheat = what;
+    const std::vector<ResultRow> rows = run();
+    EXPECT_EQ(rows[0].status, "ok");
+    EXPECT_GT(rows[0].frame_p50_ms, 0);
+    EXPECT_THAT(rows[1].status, HasSubstr(sentence));
+    EXPECT_FALSE(rows[1].verified);
+    EXPECT_EQ(rows[1].frame_p50_ms, std::nullopt);
   }
 }
 

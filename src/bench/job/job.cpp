@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <random>
 #include <utility>
 
 #include "backends/devices/drivers.h"
@@ -66,6 +67,15 @@ std::string subject_of(const ResultRow& row) {
 void drop(Combination& combination, const std::string& status) {
   combination.row.status = status;
   end(combination);
+}
+
+/// Readings of states from which on they decide whether steps were postponed: a busy machine delays single
+/// ones.
+constexpr std::size_t fewest_readings = 3;
+
+/// Whether reading the states took longer than their steps (require_prompt_steps).
+bool are_postponed(std::span<const double> step_seconds, std::span<const double> postponed_seconds) {
+  return median_interval(postponed_seconds).low > median(step_seconds);
 }
 
 /// Smallest observable step of the steady clock among a thousand in a row, s.
@@ -146,6 +156,7 @@ void end(Combination& combination) {
 
 void fail(Combination& combination, const std::string& status) {
   combination.row.verified = false;
+  static_cast<FrameTimes&>(combination.row) = {};
   drop(combination, status);
 }
 
@@ -261,7 +272,7 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
       fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s) + std::string(unless_alone)
                                               : std::string(finite_in_the_next)));
     } else {
-      if (first) combination.checked = sample_end(*job.system, end.state, combination.steps, *first);
+      if (first) combination.checked = {sample_end(*job.system, end.state, combination.steps, *first)};
       combination.backend->rest();
       if (combination.compare_windows)
         if (const auto wrong =
@@ -275,28 +286,51 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
   return ms;
 }
 
-void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop) {
+void time_frames(Combination& combination, const SceneJob& job, std::optional<std::size_t> first,
+                 const std::function<bool()>& stop) {
   const int steps = steps_of_frame(job.fps.value(), job.dt_s);
   const int at_a_stretch = combination.most_steps / steps;
   if (at_a_stretch == 0)
     return append_sentence(combination.row.note,
                            fmt::format("{}: samples of this row end after {}", untimed_frames(steps),
                                        pluralize(combination.most_steps, "step")));
-  std::vector<double> frames_ms;
+  const std::string after = fmt::format(", in frames of {}", pluralize(steps, "step"));
+  std::vector<double> frames_ms, stretch_seconds, postponed_seconds;
+  std::optional<SampleEnd> checked;
+  std::random_device random;
   attempt(combination, [&] {
-    while (frames_ms.size() < timed_frames) {
+    const auto is_enough = [&] { return frames_ms.size() >= timed_frames; };
+    while (!is_enough() ||
+           (stretch_seconds.size() < fewest_readings && are_postponed(stretch_seconds, postponed_seconds))) {
       restart(combination);
       combination.backend->step(1);  // wakes threads and caches up
       restart(combination);
-      for (int frame = 0; frame < at_a_stretch && frames_ms.size() < timed_frames; ++frame) {
+      double seconds = 0;
+      int frame = 0;
+      for (; frame < at_a_stretch && (frame == 0 || !is_enough()); ++frame) {
         if (stop()) return;
         frames_ms.push_back(1000 * seconds_of([&] { combination.backend->step(steps); }));
+        seconds += frames_ms.back() / 1000;
       }
+      const TimedState end = job.windowed ? TimedState{combination.backend->state()}
+                                          : read_state(*combination.backend, *combination.start, seconds);
+      stretch_seconds.push_back(seconds);
+      postponed_seconds.push_back(end.postponed_s);
+      if (first_bad_node(end.state)) return fail(combination, "failed: not finite" + after);
+      if (combination.compare_windows)
+        if (const auto wrong =
+                combination.compare_windows(*combination.backend, end.state, frame * steps).failure)
+          return fail(combination, "failed: " + *wrong + after);
+      if (first && random() % stretch_seconds.size() == 0)  // each is as likely to be the one in the end
+        checked = sample_end(*job.system, end.state, frame * steps, *first);
     }
-    if (first_bad_node(combination.backend->state()))
-      return fail(combination,
-                  fmt::format("failed: not finite after frames of {}", pluralize(steps, "step")));
+    if (are_postponed(stretch_seconds, postponed_seconds))
+      return fail(combination, "failed: " +
+                                   describe_postponed(steps, median(stretch_seconds),
+                                                      median_interval(postponed_seconds).low) +
+                                   after);
     combination.backend->rest();
+    if (checked) combination.checked.push_back(std::move(*checked));
     static_cast<FrameTimes&>(combination.row) = {static_cast<std::uint64_t>(steps), quantile(frames_ms, 0.5),
                                                  quantile(frames_ms, 0.95), quantile(frames_ms, 0.99)};
   });
@@ -320,15 +354,12 @@ void count_events(Combination& combination, const SceneJob& job) {
 }
 
 void require_prompt_steps(Combination& combination, const SceneJob& job) {
-  // Because a busy machine delays single readings.
-  constexpr std::size_t fewest_samples = 3;
   if (combination.steps == 1 || combination.sample_seconds.empty()) return;
-  for (;;) {
-    const double sample = median(combination.sample_seconds);
-    const double postponed = median_interval(combination.postponed_seconds).low;
-    if (postponed <= sample) return;
-    if (combination.sample_seconds.size() >= fewest_samples)
-      return fail(combination, "failed: " + describe_postponed(combination.steps, sample, postponed));
+  while (are_postponed(combination.sample_seconds, combination.postponed_seconds)) {
+    if (combination.sample_seconds.size() >= fewest_readings)
+      return fail(combination,
+                  "failed: " + describe_postponed(combination.steps, median(combination.sample_seconds),
+                                                  median_interval(combination.postponed_seconds).low));
     sample_ms(combination, job, std::nullopt);
     if (!combination.backend) return;
   }

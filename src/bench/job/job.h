@@ -126,7 +126,7 @@ struct Combination {
   double step_seconds = 0;                   ///< found by calibrate; 0 before
   std::vector<double> sample_seconds;        ///< wall time of each sample of this run
   std::vector<double> postponed_seconds;     ///< for each sample of this run (TimedState); 0 in windows
-  std::optional<SampleEnd> checked;          ///< end of the sample that is to be checked
+  std::vector<SampleEnd> checked;            ///< ends that are to be checked: of a sample, and of frames
   /// Compares the backend's state after this number of steps in the windows; empty if the cloth is not in
   /// windows or was verified by an earlier process.
   std::function<Verification(Backend& backend, const State& state, int steps)> compare_windows;
@@ -170,9 +170,12 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
 
 /// Times timed_frames frames of 1 / job.fps s of simulated time one after the other, each by itself. Returns
 /// to the start of samples before a frame would simulate further than samples may; if even the first one
-/// would, the row has a note instead. Ends without a result if `stop` returns true. The row fails if the
-/// result is not finite, or if the backend's program fails.
-void time_frames(Combination& combination, const SceneJob& job, const std::function<bool()>& stop);
+/// would, the row has a note instead. `first`: if the end of one of these stretches, chosen at random, is to
+/// be checked, the first node to examine (sample_end). Ends without a result if `stop` returns true. The row
+/// fails if a stretch's end is not finite, or wrong in a window; if the stretches show that steps are not
+/// taken while the clock runs (require_prompt_steps); or if the backend's program fails.
+void time_frames(Combination& combination, const SceneJob& job, std::optional<std::size_t> first,
+                 const std::function<bool()>& stop);
 
 /// Counts the events of job.events in the steps of one more sample, which is not timed because counting takes
 /// time, if the system can count them and this process takes the steps.
