@@ -218,7 +218,7 @@ std::vector<NamedFile> files_read(const PreparedScene& scene, const BackendInfo&
 }
 
 /// Throws UsageError if two of these are the same file: the files, the XDMF of the trace, and those that are
-/// read.
+/// read; and for an extension of the energy curve that is not CSV's.
 void require_distinct(const RunFiles& files, const std::vector<NamedFile>& read) {
   std::vector<NamedFile> written;
   if (!files.trace.empty()) {
@@ -229,6 +229,7 @@ void require_distinct(const RunFiles& files, const std::vector<NamedFile>& read)
   if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
   if (files.later) written.push_back(*files.later);
   require_distinct(written, read);
+  if (!files.energy_curve.empty()) require_extension({"--energy-curve", files.energy_curve}, "CSV", {".csv"});
 }
 
 /// Throws UsageError if the backend is to step in double precision and does not do so here.

@@ -132,7 +132,7 @@ double auto_dt(const ModeBound& bound, const std::function<bool(const Integrator
   if (std::isinf(limit))
     throw std::invalid_argument(
         "dt_s \"auto\" needs a system with springs or damping, which bound it: give a number");
-  return safety * limit;
+  return std::min(safety * limit, longest_dt_s);
 }
 
 }  // namespace mssim

@@ -42,13 +42,16 @@ double largest_amplification(const Integrator& integrator, double dt_s, const Mo
 /// implicit integrators and if neither stiffness nor damping bounds it, 0 if every dt is unstable.
 double largest_stable_dt(const Integrator& integrator, const ModeBound& bound);
 
+/// Longest time step that a scene file may have, s.
+inline constexpr double longest_dt_s = 1;
+
 /// The dt in s of scenes with "auto": half of the smallest limit over the methods of Hong et al., so all can
 /// be compared at one dt. The rows that only repeat a method's published cost with a frozen acceleration
 /// (`-frozen`) and explicit Euler are excluded: with little damping, no useful dt keeps them from growing.
 /// Half, because the limit is valid for small motions about the rest shape: a strained spring also resists
 /// sideways, without damping. Half the dt leaves room for four times the stiffness; the floor's impulses are
-/// not modes at all. `steps`: whether the scene can be stepped with a method; others are left out. Throws
-/// std::invalid_argument if nothing bounds dt.
+/// not modes at all. `steps`: whether the scene can be stepped with a method; others are left out. At
+/// most longest_dt_s. Throws std::invalid_argument if nothing bounds dt.
 double auto_dt(const ModeBound& bound, const std::function<bool(const Integrator& integrator)>& steps = {});
 
 }  // namespace mssim

@@ -25,6 +25,7 @@ is_ended 130 INT
 expect 2 '--trace and --energy-curve are the same file, ./x.h5; give them different names' \
   "${fall[@]}" --trace ./x.h5 --energy-curve x.h5
 expect 2 'the XDMF beside --trace and --energy-curve are the same file' "${fall[@]}" --trace x.h5 --energy-curve x.xdmf
+expect 2 '--energy-curve is curve.png, .*CSV: give curve.csv' "${fall[@]}" --energy-curve curve.png
 cp "$source/scenes/cloth2500.json" mine.json
 expect 2 '--energy-curve and a file of the scene are the same file' run --scene ./mine.json --energy-curve mine.json
 cmp -s mine.json "$source/scenes/cloth2500.json" || fail "a scene was overwritten"

@@ -133,6 +133,8 @@ TEST(AutoDt, IsHalfOfTheSmallestLimitOfTheRealMethods) {
   EXPECT_GT(limit("semi-euler", bound), smallest);
 }
 
+TEST(AutoDt, IsNoLongerThanASceneMayHave) { EXPECT_EQ(auto_dt({1e-9, 0, 1}), 1); }
+
 TEST(AutoDt, RefusesASystemThatDoesNotBoundIt) { EXPECT_THROW(auto_dt({}), std::invalid_argument); }
 
 }  // namespace

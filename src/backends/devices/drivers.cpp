@@ -1,6 +1,7 @@
 #include "backends/devices/drivers.h"
 
 #include <CL/cl_ext.h>
+#include <sys/resource.h>
 
 #include <CL/opencl.hpp>
 #include <algorithm>
@@ -185,7 +186,18 @@ void take_survivors(const std::vector<RegisteredDriver>& drivers, const std::str
     take_devices(std::move(answer), pocl_failure, offer);
 }
 
+/// PoCL ends the process if it cannot allocate. It needs about 0.35 GB of address space.
+void require_address_space() {
+  constexpr rlim_t least_bytes = rlim_t{512} << 20;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur < least_bytes)
+    throw std::runtime_error(
+        fmt::format("they need {} MiB of address space, and ulimit -v leaves {}; raise that limit",
+                    least_bytes >> 20, limit.rlim_cur >> 20));
+}
+
 OpenclOffer ask() {
+  require_address_space();
   OpenclOffer offer;
   const std::vector<RegisteredDriver> drivers = registered_drivers();
   bind_pocl_threads();

@@ -74,9 +74,10 @@ CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {
+  constexpr double largest = 1e300;  // what is computed from it, such as a percentage, is finite as well
   const auto value = number_in<double>(text(record, column));
-  if (!value || !std::isfinite(*value))
-    throw complaint(record, column, "is not a number; write a finite one");
+  if (!value || !(std::abs(*value) <= largest))
+    throw complaint(record, column, "is not a number; write a finite one, of at most 1e300");
   return *value;
 }
 
