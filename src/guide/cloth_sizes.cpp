@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "backends/backends.h"
+#include "bench/verification/verification.h"
 #include "guide/guide.h"
 #include "text/text.h"
 
@@ -27,6 +29,29 @@ double where_one(double x_a, double y_a, double x_b, double y_b) {
   return x_a * std::pow(x_b / x_a, t);
 }
 
+/// Throws BackendFailure if a state after `steps` of a cloth is far from that of mssim's own backend: a
+/// program that is right on the scene may step other cloths wrongly, or not at all. Allows a tenth of the
+/// longest way of a node, or a hundredth of a rest length, because roundings of many short steps may be that
+/// large.
+void require_near_own(const SizeCurve& curve, const FamilyCloth& cloth, const ExecutionOptions& execution,
+                      int steps, const State& found) {
+  constexpr double of_way = 0.1, of_rest_length = 0.01;
+  const BackendInfo& own = best_host_backend();
+  if (curve.backend->name == own.name) return;
+  const auto backend = make_backend(own, cloth.system, *curve.integrator, curve.dt_s, execution);
+  backend->set_state(cloth.system.start);
+  backend->step(steps);
+  const State expected = backend->state();
+  const double off = position_deviation(cloth.system, expected, found);
+  const double way = position_deviation(cloth.system, cloth.system.start, expected);
+  if (!(off <= std::max(of_way * way, of_rest_length)))
+    throw BackendFailure(
+        fmt::format("a node of a cloth of {} nodes is {:.3g} rest lengths away from where {} "
+                    "has it after {}",
+                    cloth.system.nodes(), off, own.name, pluralize(steps, "step")),
+        "");
+}
+
 /// A sample of this cloth; none if the backend does not run, and curve.status gives the reason.
 std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& cloth,
                                            ExecutionOptions execution) {
@@ -37,9 +62,11 @@ std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& 
   const int steps = std::min(most_steps, steps_a_frame(curve.dt_s, frame_rates.front()));
   SizeCurve::Sample sample{cloth.system.nodes(), 0};
   const Ending ending = ending_of([&] {
-    const auto backend =
-        make_timed_backend(*curve.backend, cloth.system, *curve.integrator, curve.dt_s, execution);
+    auto backend = make_timed_backend(*curve.backend, cloth.system, *curve.integrator, curve.dt_s, execution);
     sample.seconds_a_step = time_steps(*backend, cloth.system, steps, enough_s).seconds;
+    const State found = backend->state();
+    backend.reset();
+    require_near_own(curve, cloth, execution, steps, found);
   });
   if (ending.lack == Lack::nothing) return sample;
   curve.status = ending.status();

@@ -72,6 +72,36 @@ TEST(ClothSizes, AreMeasuredUntilAFrameTakesTooLong) {
   EXPECT_TRUE(curves[1].samples.empty());
 }
 
+/// Steps nothing.
+class Idle final : public Backend {
+ public:
+  explicit Idle(const System& system) : state_(system.start) {}
+  void set_state(const State& state) override { state_ = state; }
+  void step(int /*count*/) override {}
+  State state() const override { return state_; }
+  int threads() const override { return 1; }
+
+ private:
+  State state_;
+};
+
+TEST(ClothSizes, AreNotThoseOfABackendThatTakesOtherSteps) {
+  BackendInfo idle{.name = "idle"};
+  idle.make = [](const System& system, const Integrator&, double,
+                 const ExecutionOptions&) -> std::unique_ptr<Backend> {
+    return std::make_unique<Idle>(system);
+  };
+  std::vector<SizeCurve> curves{size_curve({}), size_curve({})};
+  curves[1].backend = &idle;
+  measure_sizes(
+      curves, [](std::uint32_t side) { return FamilyCloth{cloth_system(side, side)}; }, {.threads = 1},
+      [](const std::string&) { return true; });
+  EXPECT_FALSE(curves[0].samples.empty());
+  EXPECT_EQ(curves[0].status, "");
+  EXPECT_TRUE(curves[1].samples.empty());
+  EXPECT_THAT(curves[1].status, AllOf(HasSubstr("256 nodes"), HasSubstr("openmp"), HasSubstr("10 steps")));
+}
+
 TEST(ClothSizes, SayThatTheTimeWasOver) {
   std::vector<SizeCurve> curves{size_curve({})};
   measure_sizes(
