@@ -75,8 +75,11 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
         ledger->step(backend);
       }
     } else {
-      watch.on_progress(done, steps);
-      backend.step(count);
+      for (int taken = 0, part = 0; taken < count; taken += part) {
+        watch.on_progress(done + taken, steps);
+        part = std::min(count - taken, most_steps_at_once);
+        backend.step(part);
+      }
     }
     State state = backend.state();
     if (const auto node = first_bad_node(state)) {
@@ -376,18 +379,19 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
     ProgressLine progress({1}, ProgressLine::Log::nothing);
     progress.begin_scene(scene.spec.name);
     progress.update("closing seams", 0);
-    result = dress(
-        *backend, scene.system, scene.dt_s, rule,
-        [&](const State& state, std::int64_t iterations) {
-          require_finite(state, iterations);
-          stop.throw_if_requested();
-          const auto activity = fmt::format("{}, {:.2f} s simulated of at most {:.2f}",
-                                            backend->progress().draping ? "draping" : "closing seams",
-                                            static_cast<double>(iterations) * scene.dt_s, rule.longest_s);
-          progress.update(activity, 0);  // the time of settling is unknown
-          return true;
-        },
-        options.files.any() ? DressingFrames{frames, record} : DressingFrames{});
+    result = dress(*backend, scene.system, scene.dt_s, rule,
+                   [&](const State& state, std::int64_t iterations) {
+                     require_finite(state, iterations);
+                     stop.throw_if_requested();
+                     const auto activity =
+                         fmt::format("{}, {:.2f} s simulated of at most {:.2f}",
+                                     backend->progress().draping ? "draping" : "closing seams",
+                                     static_cast<double>(iterations) * scene.dt_s, rule.longest_s);
+                     progress.update(activity, 0);  // the time of settling is unknown
+                     return true;
+                   },
+                   {frames, options.files.any() ? std::function(record) : nullptr,
+                    [&stop] { stop.throw_if_requested(); }});
     seconds = watch.seconds();
   });
   tell_note(options, *backend);

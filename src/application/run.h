@@ -35,11 +35,15 @@ struct Frame {
   std::optional<EnergyLosses> losses;  ///< since the start, if the plan requests them
 };
 
+/// Steps between two looks at signals, within a frame too.
+inline constexpr int most_steps_at_once = 240;
+
 /// Callbacks of a simulation.
 struct SimulationWatch {
   /// Called with the start and then with every frame.
   std::function<void(const Frame& frame)> on_frame;
-  /// Called between steps with the finished and the total number; an exception ends the simulation.
+  /// Called at least before every most_steps_at_once steps, with the finished and the total number; an
+  /// exception ends the simulation.
   std::function<void(std::int64_t done, std::int64_t steps)> on_progress = [](std::int64_t /*done*/,
                                                                               std::int64_t /*steps*/) {};
 };

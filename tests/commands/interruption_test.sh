@@ -180,8 +180,15 @@ is_ended 130 INT 60 test -e dress.h5.part
 frames=$(numbers_of dress.h5 /particles/garment/position/step | wc -l)
 [ "$frames" -ge 1 ] && [ "$(grep -c '^[0-9]' dress.csv)" -eq "$frames" ] || fail "$frames frames, energies: $(cat dress.csv)"
 
-# A second signal ends it at once, also one of another kind and within a frame, which takes half a minute here.
-begins run --scene cloth40k --backend serial --duration 100 --fps 1 --trace twice.h5
+# One signal ends it within a long frame, too: it looks for signals every 240 steps.
+begins run --scene cloth40k --backend openmp --duration 1000 --fps 0.002 --trace long-frame.h5
+is_ended 130 INT 60 test -e long-frame.h5.part
+make_scene tiny-steps.json jeans1k 's/"dt_s": [^,]*/"dt_s": 1e-9/'
+begins run --scene ./tiny-steps.json --backend openmp --trace long-window.h5
+is_ended 143 TERM 60 test -e long-window.h5.part
+
+# A second signal ends it at once, also one of another kind and between these looks, half a minute apart here.
+begins run --scene cloth350k --backend serial --integrator rk4 --duration 100 --fps 1 --trace twice.h5
 soon 60 test -e twice.h5.part || fail "no trace is begun"
 # Before the first step, one signal would end it. Field 14 is its time in user code, in hundredths of a second: the first frame takes less.
 begun=$(awk '{ print $14 }' "/proc/$process/stat")

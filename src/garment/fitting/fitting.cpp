@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -47,9 +46,10 @@ struct FrameDelivery {
 void step_through(DressingBackend& backend, std::int64_t done, std::int64_t end, FrameDelivery& frames) {
   const auto step_to = [&](std::int64_t step) {
     while (done < step) {
-      const auto count = std::min<std::int64_t>(step - done, std::numeric_limits<int>::max());
+      const auto count = std::min<std::int64_t>(step - done, 240);
       backend.step(static_cast<int>(count));
       done += count;
+      if (frames.frames.on_steps) frames.frames.on_steps();
     }
   };
   for (auto due = frames.due(); due && *due < end; due = frames.due()) {

@@ -37,7 +37,9 @@ using OnWindow = std::function<bool(const State& state, std::int64_t iterations)
 struct DressingFrames {
   FrameGrid grid;
   /// Called with the state and the number of steps; none: no frames.
-  std::function<void(const State& state, std::int64_t iterations)> on_frame;
+  std::function<void(const State& state, std::int64_t iterations)> on_frame = {};
+  /// Called at least every 240 steps; an exception ends the dressing. None: not called.
+  std::function<void()> on_steps = {};
 };
 
 /// Dresses from the system's start until the seams are closed and the garment has settled, or until the
