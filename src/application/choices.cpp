@@ -92,6 +92,10 @@ BackendProgram program_at(const std::string& path) {
   if (!is_file(path))
     throw MissingProgram("there is no program " + escaped(path) +
                          ": give the path of a program, or a name (see mssim list backends)");
+  const std::string extension = to_lower(fs::path(path).extension().string());
+  if (extension == ".c" || extension == ".cc" || extension == ".cpp")
+    throw MissingProgram("{} is the source of a program: compile it, and give the path of the program",
+                         escaped(path));
   if (::access(path.c_str(), X_OK) != 0)
     throw MissingProgram(escaped(path) + " may not be executed; chmod +x it, or describe how it is run");
   BackendProgram program;

@@ -114,7 +114,8 @@ std::string warning_of_memory(const SceneSize& size) {
   const BenchSettings settings = usual_settings(comparison_of_suite("").backends(), usual_integrators());
   const auto shortage = memory_shortage(bench_memory_needed(settings, size));
   if (!shortage) return "";
-  return fmt::format("a bench of all backends {}: name fewer with --backend or --integrator", *shortage);
+  return fmt::format("a bench of all backends {}: name fewer with bench --backend or --integrator",
+                     *shortage);
 }
 
 struct CheckOptions {

@@ -263,11 +263,11 @@ std::function<int()> declare_render(Arguments& arguments) {
                           "Write an animated WebP of the frames, to this file or that of --out")
       .excludes(sheet)
       .excludes(time);
-  declare_stepping(
-      arguments, options->run,
-      "Frames per simulated second of a scene (default: as many as are drawn, 30 for a movie), and per "
-      "second of a movie (default: as simulated; browsers slow down more than 90)",
-      scene);
+  declare_stepping(arguments, options->run,
+                   "Frames per simulated second of a scene (default: as many as are drawn; 30 for a movie, "
+                   "with --time and with --frames), and per "
+                   "second of a movie (default: as simulated; browsers slow down more than 90)",
+                   scene);
   return [options] { return render(*options); };
 }
 

@@ -365,7 +365,7 @@ TetMesh surface_mesh(const SurfaceFile& body) {
   if (tetrahedra > 1e7)
     throw InputError(
         "{}: tetrahedra of at most {} m^3 in a body of {} m^3 would be more than ten million; give a larger "
-        "volume",
+        "volume, or check unit_m",
         name, decimal(body.largest_tetrahedron_m3), shown(volume));
   const auto nodes = std::max(std::uint64_t{surface.points.size()},
                               static_cast<std::uint64_t>(tetrahedra / tetrahedra_a_node));

@@ -29,9 +29,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// Length from which on the beginning of a name tells which is meant.
+constexpr std::size_t telling_length = 4;
+
 /// Whether `name` may be typed by a user who remembers half of `candidate`.
 bool are_akin(std::string_view name, std::string_view candidate) {
-  constexpr std::size_t telling_length = 4;
   return candidate.starts_with(name) || (candidate.size() >= telling_length && name.starts_with(candidate)) ||
          ('-' + std::string(candidate) + '-').find('-' + std::string(name) + '-') != std::string::npos;
 }
@@ -42,6 +44,11 @@ std::vector<std::string_view> likely_names(std::string_view name,
   constexpr std::size_t most = 4;
   for (const OtherName& other : others)
     if (edit_distance(name, other.typed) == 0) return {other.meant};
+  // A name that was begun is meant before a whole one that is as near.
+  std::vector<std::string_view> begun;
+  for (const std::string_view candidate : candidates)
+    if (name.size() >= telling_length && candidate.starts_with(name)) begun.push_back(candidate);
+  if (begun.size() == 1) return begun;
   if (const std::string_view nearest = nearest_name(name, candidates); !nearest.empty()) return {nearest};
   std::vector<std::string_view> akin;
   for (const std::string_view candidate : candidates)

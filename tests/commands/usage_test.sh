@@ -101,6 +101,11 @@ expect 2 '^mssim: unknown integrator "euler" (did you mean .*semi-euler.*explici
 expect 2 '^mssim: serial:doubel: unknown suffix "doubel" (did you mean double?): known are each and double$' bench --scene cloth2500 --backend serial:doubel
 expect 2 'backend hybrid does not go with this command or suite: give serial, openmp, .* or mpi-copies$' bench --suite peers --backend hybrid
 expect 2 'backend algorithm1 does not go with this command or suite: give serial, ' guide --scene cloth2500 --backend algorithm1
+expect 2 '^mssim: --fps times frames for the result folder: give --out too$' bench --scene cloth2500 --fps 60
+expect 2 '^mssim: --fps 1e+09 makes frames shorter than a step of 5e-05 s on cloth2500: give 20000 or less$' \
+  bench --scene cloth2500 --fps 1e9 --out never
+cp "$source/src/starters/examples/"*.cpp mine.cpp
+expect 3 'mine.cpp is the source of a program: compile it' bench --scene cloth2500 --backend ./mine.cpp
 for suffixes in :AVX2:x ::4 :4:each; do
   expect 2 "openmp$suffixes: \"$suffixes\" is not a suffix; .* as in openmp:each:4" bench --scene cloth2500 --backend openmp$suffixes
 done

@@ -229,6 +229,7 @@ TEST(FindScene, FindsByNameAndByPath) {
 TEST(FindScene, SaysWhatAnUnknownNameMayMean) {
   for (const auto& [name, hint] :
        std::vector<std::pair<std::string, std::string>>{{"cloth35k", "did you mean cloth350k?"},
+                                                        {"cloth25", "did you mean cloth2500?"},
                                                         {"CLOTH2500", "did you mean cloth2500?"},
                                                         {"teapot", "no scene is named \"teapot\": give"},
                                                         {"", "no scene is named \"\""},

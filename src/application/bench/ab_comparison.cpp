@@ -45,7 +45,7 @@ class AbProgram {
   AbProgram(const std::string& file, const AbOptions& options) : file_(file), options_(options) {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || ::access(file.c_str(), X_OK) != 0)
-      throw MissingProgram("cannot run {}: give the path of an mssim program", file);
+      throw MissingProgram("cannot run {}: give the path of an mssim program, such as ./mssim", file);
     child_.program = fs::absolute(file);
     child_.folder = fs::current_path();  // scenes may be files named from here
     limit(verification_limit * (options.time_budget_s + 60));

@@ -65,6 +65,9 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings,
       throw UsageError("--fps {:.6g} makes frames of more than {} steps of {:.6g} s on {}: give more",
                        *settings.fps, grouped(static_cast<std::uint64_t>(most_frame_steps)), dt_s,
                        scene.spec.name);
+    if (*settings.fps * dt_s > 1)
+      throw UsageError("--fps {:.6g} makes frames shorter than a step of {:.6g} s on {}: give {:.6g} or less",
+                       *settings.fps, dt_s, scene.spec.name, 1 / dt_s);
     size.frame_steps = steps_of_frame(*settings.fps, dt_s);
   }
   std::uint64_t memory_bytes = bench_memory_needed(settings, size);
@@ -142,8 +145,11 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   return settings;
 }
 
-void require_folder_where_needed(const BenchOutput& output) {
+void require_folder_where_needed(const BenchOptions& options) {
+  const BenchOutput& output = options.output;
   if (!output.folder.empty()) return;
+  if (options.fps && !options.dry_run)
+    throw UsageError("--fps times frames for the result folder: give --out too");
   if (output.trace) throw UsageError("--trace writes into the result folder: give --out too");
   if (output.resume || output.overwrite)
     throw UsageError(std::string(output.resume ? "--resume" : "--overwrite") +
@@ -215,7 +221,7 @@ BenchPlan plan_of(const BenchOptions& options) {
   const std::vector<std::string> described_ones = scenes_of_suite(options.suite, false);
   if (timed_ones.empty() && described_ones.empty())
     throw UsageError("there is nothing to measure: name a --scene or a --suite");
-  require_folder_where_needed(options.output);
+  require_folder_where_needed(options);
   plan.published = published_tables();
   plan.tables = with_thread_table(comparison.tables());
 

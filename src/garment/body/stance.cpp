@@ -214,8 +214,13 @@ StanceGuess guess_stance(const Surface& body, const GivenStance& given) {
   const auto best = std::ranges::max_element(all, {}, &Candidate::apartness);
   std::vector<std::string> doubts;
   if (best->gaps.empty() && !(given.up && given.facing))
-    doubts.emplace_back(
-        "up and facing: it has no two legs side by side to find them by; give them with --up and --facing");
+    doubts.push_back(fmt::format("{}: it has no two legs side by side to find it by; give {}",
+                                 given.facing ? "up"
+                                 : given.up   ? "facing"
+                                              : "up and facing",
+                                 given.facing ? "--up"
+                                 : given.up   ? "--facing"
+                                              : "--up and --facing"));
   find_facing(*best, body, given, doubts);
   const Box<double> box = box_of(best->body.points);
   BodyStance stance = best->stance;
