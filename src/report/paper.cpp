@@ -292,6 +292,24 @@ std::string breakable_code(const std::string& words) {
   return text;
 }
 
+/// What the commands need and mssim does not have, with the hashes of provenance.json: scenes and programs.
+std::vector<std::string> own_files_of(const ReportFolder& folder) {
+  std::vector<std::string> files;
+  for (const SceneHash& scene : folder.provenance->scenes) {
+    const auto names_its_file = [&](const std::string& word) {
+      return word.find(scene.name + ".json") != std::string::npos;
+    };
+    if (std::ranges::any_of(folder.provenance->command_line, names_its_file))
+      files.push_back(fmt::format("the scene {} ({})", code(scene.name), code(to_hex(scene.fnv1a_64))));
+  }
+  for (const BackendProgramRecord& program : folder.provenance->backend_programs)
+    for (const FileHash& file : program.files)
+      if (!file.name.ends_with("mssim-mpi"))
+        files.push_back(fmt::format("{} of the backend {} ({})", code(file.name), code(program.name),
+                                    code(to_hex(file.fnv1a_64))));
+  return files;
+}
+
 /// How to measure again.
 std::string commands_of(const ReportFolder& folder) {
   const BuildInfo& build = folder.provenance->build;
@@ -317,6 +335,9 @@ std::string commands_of(const ReportFolder& folder) {
       has_commit ? code("git checkout " + build.commit) + "\\\\\n" : "", breakable_code(command));
   if (!settings.empty())
     text += "The page measures at once if its address ends in " + breakable_code(settings) + ".\n";
+  if (const std::vector<std::string> own = own_files_of(folder); !own.empty())
+    text += fmt::format("First copy there what is not part of mssim, here with FNV-1a hashes: {}.\n",
+                        listed(own));
   if (minutes > 0)
     text += fmt::format(
         "The timed samples alone took \\qty{{{}}}{{\\minute}}; warm-up and verification come on top.",
