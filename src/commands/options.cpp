@@ -282,7 +282,7 @@ void declare_stepping(Arguments& arguments, RunOptions& options, const std::stri
                            positive_number()));
   arguments.add_number("--fps N", options.fps, about_fps, positive_number());
   of_a_simulation(arguments.add_number("--dt SECONDS", options.dt_s, "Time step (default: the scene's)",
-                                       positive_number()));
+                                       number_between(1e-12, 1)));
   for (const Argument& argument : declare_execution(arguments, options.execution)) of_a_simulation(argument);
 }
 

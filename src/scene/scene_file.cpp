@@ -43,7 +43,7 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
       {"dt_s",
        "Length of a time step, s; \"auto\" is half of the smallest stability limit of those "
        "integrators of Hong et al. that can step the scene."},
-      spec.dt_s, above(0, 1));
+      spec.dt_s, from(1e-12, 1));
   fields.number({"gravity_m_per_s2", "Gravitational acceleration, downwards, m/s^2."}, spec.gravity_m_per_s2,
                 from(0, 1000));
   fields.number(
