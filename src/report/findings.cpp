@@ -199,4 +199,16 @@ Table times_of(RowPointers rows, const ReportFolder& folder) {
   return table;
 }
 
+void add_notes_of_programs(Document& page, const ReportFolder& folder) {
+  const Provenance provenance = folder.where_from();
+  BulletList list;
+  for (const ResultRow& row : folder.rows) {
+    const bool of_program =
+        found_in(provenance.backend_programs, row.backend, &BackendProgramRecord::name) != nullptr;
+    if (of_program && counts(row) && !row.note.empty())
+      add_once(list.items, fmt::format("`{}`: {}", row.backend, row.note));
+  }
+  if (!list.items.empty()) page.insert(page.end(), {Heading{2, "Notes of the programs"}, std::move(list)});
+}
+
 }  // namespace mssim

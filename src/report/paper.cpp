@@ -39,6 +39,7 @@ Document times_page(const ReportFolder& folder) {
     page.emplace_back(times_of(its, folder));
   }
   add_sentence(page, legend_of_ratios(page));
+  add_notes_of_programs(page, folder);
   add_rows_without_a_time(page, rows);
   return page;
 }

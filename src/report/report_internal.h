@@ -81,6 +81,10 @@ bool is_from_page(const ReportFolder& folder);
 /// The table of times: one line per row. Times are the second column, so that a narrow screen shows them.
 Table times_of(RowPointers rows, const ReportFolder& folder);
 
+/// Adds the notes of rows of programs: their precision, versions and settings, each once. Nothing without
+/// any.
+void add_notes_of_programs(Document& page, const ReportFolder& folder);
+
 /// Explains the columns of times_of(), with the marks of a Document.
 inline constexpr std::string_view how_to_read_times =
     "*ms per step* are medians over the rounds. Intervals contain the true median in 95 % of all cases; "

@@ -294,6 +294,7 @@ std::string headline_section(const ReportInput& input) {
     const Table all = times_of(rows, folder), headlines = times_of(headline_rows(rows), folder);
     Document below;
     add_sentence(below, legend_of_ratios({all}));
+    add_notes_of_programs(below, folder);
     add_rows_without_a_time(below, rows);
     return noise_note(folder) +
            (headlines.rows.empty() ? paragraph("No row has a verified time.") : html_of(headlines)) +

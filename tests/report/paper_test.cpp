@@ -72,6 +72,15 @@ TEST_F(PaperTest, NamesWhatItsCommandsNeedBesidesMssim) {
                     Not(HasSubstr("0000000000000def")), Not(HasSubstr("mssim-mpi"))));
 }
 
+TEST_F(PaperTest, HasTheNotesOfPrograms) {
+  folder.provenance->backend_programs = {{.name = folder.rows.back().backend}};
+  EXPECT_THAT(text_in(folder, "times.tex"), Not(HasSubstr("Notes of the programs")));
+  for (ResultRow& row : folder.rows) row.note = "double precision";
+  EXPECT_THAT(text_in(folder, "times.tex"),
+              AllOf(HasSubstr("Notes of the programs"),
+                    HasSubstr("\\texttt{" + folder.rows.back().backend + "}: double precision")));
+}
+
 TEST_F(PaperTest, KeepsABacktickInItsPlace) {
   for (ResultRow& row : folder.rows) {
     row.scene = "a`b'c";
