@@ -100,7 +100,7 @@ def outcomes(claim, machine):
 def held(machine):
     found = [all[0][1]["outcome"] for all in (outcomes(claim, machine) for claim in testable) if all]
     undecided = found.count("undecided")
-    return f"{found.count('held')} of {len(found)} held" + (f" ({undecided} undecided)" if undecided else "")
+    return f"{found.count('held')} of {len(found)}" + (f" ({undecided} undecided)" if undecided else "")
 
 
 def published(claim):
@@ -180,8 +180,8 @@ without_gpu = [machine for machine in machines if machine != gpu]
 assert {cpus(f"results/table1/{machine}") for machine in without_gpu} == {2}
 readme.append(f"Of {len(claims)} claims that we count in both papers, {len(testable)} can be decided by a ratio of times.")
 by_machine = [f"{held(machine)} on {machines[machine]}" for machine in without_gpu]
-readme.append("Each machine's rows test some of these. Without a GPU, on 2 CPUs, " + ", ".join(by_machine[:-1]) + f" and {by_machine[-1]}.")
-readme.append(f"On {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100, {held(gpu)};")
+readme.append("Each machine's rows test some of these. On 2 CPUs without a GPU these held: " + ", ".join(by_machine[:-1]) + f" and {by_machine[-1]}.")
+readme.append(f"On {cpus(f'results/table1/{gpu}')} CPUs of an Intel Xeon (Emerald Rapids) with an NVIDIA H100, {held(gpu)} held;")
 busy = sum(all[0][0].startswith("busy") and all[0][1]["outcome"] == "held" for all in (outcomes(claim, gpu) for claim in testable) if all)
 readme.append(f"{busy} of these {'was' if busy == 1 else 'were'} measured only while the machine was busy.")
 locks = next(claim for claim in testable if claim["name"] == "threads-before-cpu")
