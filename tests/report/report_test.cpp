@@ -336,18 +336,18 @@ bool has(const std::string& page, const std::string& text) { return page.find(te
 
 TEST_F(ReportFolderTest, TrustsNoAbsurdTime) {
   std::vector<ResultRow> bad = rows;
-  bad[0].samples_ms[0] = 1e308;
+  bad[0].samples_ms[0] = 1e299;
   bad[0].ms_per_step_high = 1e13;
   bad[1].ms_per_step_low = 1e-300;
   bad[1].speedup_vs_serial = 1e200;
   put_run(timings_csv(bad), samples_csv(bad));
   const ReportFolder found = read();
   EXPECT_THAT(found.problems, ElementsAre(HasSubstr("ms_per_step_high of cloth2500, serial"),
-                                          HasSubstr("round 1 of cloth2500, serial, semi-euler is 1e+308"),
+                                          HasSubstr("round 1 of cloth2500, serial, semi-euler is 1e+299"),
                                           HasSubstr("ms_per_step_low of cloth2500, openmp"),
                                           HasSubstr("speedup_vs_serial of cloth2500, openmp")));
   for (const ResultRow& row : found.rows) EXPECT_TRUE(counts(row));
-  EXPECT_TRUE(has(report_page(input_of(found)), "is 1e+308, not between"));
+  EXPECT_TRUE(has(report_page(input_of(found)), "is 1e+299, not between"));
 }
 
 TEST(ReportPage, EscapesNamesOfScenesAndFolders) {

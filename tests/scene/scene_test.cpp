@@ -102,7 +102,7 @@ const BadScene bad_scenes[]{
     {rows, "\"rows\": 99999999999999999999", "/cloth/rows", "is 1e+20", "give an integer"},
     {rows, "\"rows\": 4294967346", "/cloth/rows", "is 4294967346", "give an integer"},
     {dt, "\"dt_s\": 0", "/dt_s", "is 0", "a number from 1e-12 to 1, or \"auto\""},
-    {dt, "\"dt_s\": 1.5", "/dt_s", "is 1.5", "up to 1"},
+    {dt, "\"dt_s\": 1.5", "/dt_s", "is 1.5", "from 1e-12 to 1"},
     {dt, "\"dt_s\": 1e999", "/dt_s", "is 1e999", "overflows to infinity: give a finite number"},
     {dt, "\"dt_s\": NaN", "/dt_s, line 5, column", "last read: '\"dt_s\": N'",
      "expected an object, a number"},

@@ -48,6 +48,7 @@ TEST_F(BenchPlanTest, HoldsWhatABenchOfItsScenesTakes) {
 }
 
 TEST_F(BenchPlanTest, RefusesFramesOfMoreStepsThanCanBeCounted) {
+  options_.output.folder = "out";
   options_.fps = 1e-5;  // 2e9 steps of 5e-5 s
   const std::string sentence = sentence_of<UsageError>([&] { plan_of(options_); });
   for (const char* part : {"--fps 1e-05", "1,000,000,000 steps of 5e-05 s", "mine", "give more"})
@@ -56,7 +57,19 @@ TEST_F(BenchPlanTest, RefusesFramesOfMoreStepsThanCanBeCounted) {
   EXPECT_EQ(plan_of(options_).timed.front().size.frame_steps, 200'000'000);
 }
 
+TEST_F(BenchPlanTest, RefusesFramesThatNoFolderKeepsOrThatAreShorterThanAStep) {
+  options_.fps = 60;
+  const auto refusal = [&] { return sentence_of<UsageError>([&] { plan_of(options_); }); };
+  EXPECT_THAT(refusal(), HasSubstr("give --out"));
+  options_.dry_run = true;
+  plan_of(options_);
+  options_.fps = 20001;
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("--fps 20001"), HasSubstr("5e-05 s on mine"), HasSubstr("give 20000")));
+}
+
 TEST_F(BenchPlanTest, ExpectsTheFramesOfAScenesAutomaticStep) {
+  options_.output.folder = "out";
   options_.fps = 60;
   for (const char* shipped : {"scenes/cloth2500.json", "scenes/box-small.json"}) {
     nlohmann::json scene = nlohmann::json::parse(read_file(source_file(shipped)));
