@@ -12,6 +12,7 @@
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/list_backends.h"
 #include "garment/stepping/published_dressing.h"
+#include "platform/machine.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -61,7 +62,7 @@ constexpr auto table = std::to_array<BackendInfo>({
     {.name = "threads-mutex",
      .paper_configuration = "multi-thread-cpu",
      .description = "as published: spring groups per thread, a lock around the accumulation",
-     .makes_threads = ThreadStack::usual,
+     .makes_threads = true,
      .make = make_threads_mutex,
      .grid_memory = spring_list_memory,
      .mesh_memory = spring_list_memory,
@@ -69,7 +70,7 @@ constexpr auto table = std::to_array<BackendInfo>({
     {.name = "openmp",
      .paper_configuration = "multi-thread-cpu",
      .description = "vectorised and race-free: the same bits at every thread count",
-     .makes_threads = ThreadStack::openmp,
+     .makes_threads = true,
      .make = make_openmp,
      .grid_memory = bands,
      .mesh_memory = slices,
@@ -95,7 +96,7 @@ constexpr auto table = std::to_array<BackendInfo>({
      .paper_configuration = "gpu+multi-thread-cpu",
      .description = "OpenCL computes spring forces into shared memory, OpenMP sums and integrates",
      .uses_device = true,
-     .makes_threads = ThreadStack::openmp,
+     .makes_threads = true,
      .make = make_hybrid,
      .grid_memory = packed,
      .mesh_memory = packed,
@@ -115,8 +116,7 @@ void require_threads(const BackendInfo& backend, const ExecutionOptions& options
     if (const auto excess = thread_excess(backend.threads))
       throw Unavailable(fmt::format("{} are {}", pluralize(backend.threads, "thread"), *excess));
   if (!backend.makes_threads) return;
-  if (const auto shortage = thread_shortage(options.threads, *backend.makes_threads))
-    throw Unavailable(*shortage);
+  if (const auto shortage = thread_shortage(options.threads)) throw Unavailable(*shortage);
 }
 
 }  // namespace
@@ -143,14 +143,13 @@ std::span<const BackendInfo> garment_backends() {
     constexpr MemoryUse loops{.node = 72, .spring = 28};
     std::vector<BackendInfo> of_garments;
     for (const PublishedDressing& dressing : published_dressings)
-      of_garments.push_back(
-          {.name = dressing.name,
-           .description = dressing.description,
-           .makes_threads = dressing.parallel ? std::optional(ThreadStack::openmp) : std::nullopt,
-           .grid_memory = loops,
-           .mesh_memory = loops,
-           .make_dressing = maker_of(dressing),
-           .make_dressing_reference = make_published_reference});
+      of_garments.push_back({.name = dressing.name,
+                             .description = dressing.description,
+                             .makes_threads = dressing.parallel,
+                             .grid_memory = loops,
+                             .mesh_memory = loops,
+                             .make_dressing = maker_of(dressing),
+                             .make_dressing_reference = make_published_reference});
     return of_garments;
   }();
   return rows;
@@ -200,17 +199,8 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   if (backend.each_body) {
     BackendInfo of_one = backend;
     of_one.each_body = false;
-    int bodies = 0;
-    auto each = make_for_each_body(system, [&](const System& body) {
-      ++bodies;
-      return make_backend(of_one, body, integrator, dt_s, asked);
-    });
-    // OpenMP has one team for all bodies; other teams live side by side.
-    if (backend.makes_threads == ThreadStack::usual)
-      if (const auto shortage =
-              thread_shortage(1 + bodies * (execution_of(backend, asked).threads - 1), ThreadStack::usual))
-        throw Unavailable(*shortage);
-    return each;
+    return make_for_each_body(
+        system, [&](const System& body) { return make_backend(of_one, body, integrator, dt_s, asked); });
   }
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, asked);
   const ExecutionOptions options = execution_of(backend, asked);

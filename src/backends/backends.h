@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,7 +11,6 @@
 #include "backends/interface/backend.h"
 #include "backends/process/process_backend.h"
 #include "garment/stepping/dressing_backend.h"
-#include "platform/machine.h"
 
 namespace mssim {
 
@@ -32,8 +30,7 @@ struct BackendInfo {
   std::string_view paper_configuration = {};
   std::string_view description = {};  ///< one line for `mssim list backends`
   bool uses_device = false;           ///< needs an OpenCL device
-  /// The stack of its threads, if it creates as many as requested.
-  std::optional<ThreadStack> makes_threads = {};
+  bool makes_threads = false;         ///< creates as many threads as requested
   /// For an explicit integrator. Null if a program takes its steps, or if it steps garments only.
   BackendMaker* make = nullptr;
   MemoryUse grid_memory = {};  ///< for a cloth

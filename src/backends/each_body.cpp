@@ -97,9 +97,6 @@ class EachBody final : public Backend {
       if (all.find(note) == std::string::npos) append_sentence(all, note);
     return all;
   }
-  void rest() override {
-    for (const OneBody& body : bodies_) body.backend->rest();
-  }
 
  private:
   const Backend& first() const { return *bodies_.front().backend; }

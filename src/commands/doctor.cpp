@@ -90,7 +90,7 @@ std::string tried_main_job() {
 Checkup threads_finding(int threads) {
   Checkup finding{
       "threads", ok, std::to_string(threads), "openmp, threads-mutex, and whatever runs in parallel", {}};
-  if (const auto shortage = thread_shortage(threads, ThreadStack::openmp)) {
+  if (const auto shortage = thread_shortage(threads)) {
     finding.state = limited;
     finding.remedy = *shortage;
   }

@@ -250,12 +250,12 @@ struct Trial {
   int error = 0;
 };
 
-Trial make_threads(int wanted, ThreadStack stack) {
+/// Of OpenMP's stack size.
+Trial make_threads(int wanted) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   // libgomp also ignores a size that is refused.
-  if (const auto bytes = openmp_stack_bytes(); stack == ThreadStack::openmp && bytes)
-    pthread_attr_setstacksize(&attributes, *bytes);
+  if (const auto bytes = openmp_stack_bytes()) pthread_attr_setstacksize(&attributes, *bytes);
   std::atomic<bool> may_end{false};
   std::deque<Waiter> waiters;
   Trial trial;
@@ -276,13 +276,13 @@ Trial make_threads(int wanted, ThreadStack stack) {
   return trial;
 }
 
-Trial try_threads(int wanted, ThreadStack stack) {
+Trial try_threads(int wanted) {
   static std::mutex one_at_a_time;  // concurrent trials would count each other's threads
   static int openmp_has_made = 1;
   const std::lock_guard lock(one_at_a_time);
-  if (stack == ThreadStack::openmp && wanted <= openmp_has_made) return {wanted};
-  const Trial trial = make_threads(wanted, stack);
-  if (stack == ThreadStack::openmp) openmp_has_made = std::max(openmp_has_made, trial.made);
+  if (wanted <= openmp_has_made) return {wanted};
+  const Trial trial = make_threads(wanted);
+  openmp_has_made = std::max(openmp_has_made, trial.made);
   return trial;
 }
 
@@ -357,15 +357,15 @@ void start_with_short_waits(char** argv) {
   unsetenv(spin_variable);
 }
 
-std::optional<std::string> thread_shortage(int threads, ThreadStack stack) {
-  const Trial trial = try_threads(threads, stack);
+std::optional<std::string> thread_shortage(int threads) {
+  const Trial trial = try_threads(threads);
   if (trial.made >= threads) return std::nullopt;
   const char* size = std::getenv("OMP_STACKSIZE");
   return fmt::format(
       "{} were requested; the system allows {} ({}): request fewer with --threads, raise the limit of "
       "processes (ulimit -u, or pids.max of a container){}",
       pluralize(threads, "thread"), trial.made, std::generic_category().message(trial.error),
-      stack == ThreadStack::openmp && size ? fmt::format(", or lower OMP_STACKSIZE, which is {}", size) : "");
+      size ? fmt::format(", or lower OMP_STACKSIZE, which is {}", size) : "");
 }
 
 std::optional<std::string> thread_excess(int threads) {
@@ -378,7 +378,7 @@ std::optional<std::string> thread_excess(int threads) {
 
 int openmp_team(int wanted) {
   const int threads = wanted > 0 ? wanted : omp_get_max_threads();
-  return std::min(threads, try_threads(threads, ThreadStack::openmp).made);
+  return std::min(threads, try_threads(threads).made);
 }
 
 Terminal terminal_with(const StreamFacts& facts) {

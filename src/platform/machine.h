@@ -84,13 +84,10 @@ class MemoryPeak {
 /// already restarted, and if that is impossible. Programs that mssim runs do not inherit the setting.
 void start_with_short_waits(char** argv);
 
-/// The stack of threads: the default of the system, or the one of OpenMP (OMP_STACKSIZE).
-enum class ThreadStack : std::uint8_t { usual, openmp };
-
-/// Why the system cannot create `threads` threads, including the calling one: the number it allows and a
-/// remedy; nothing if it can. Tests it by creating them, because OpenMP ends the process if a thread cannot
-/// be created. A success for OpenMP is not repeated, because OpenMP keeps its threads.
-std::optional<std::string> thread_shortage(int threads, ThreadStack stack);
+/// Why OpenMP cannot have `threads` threads, including the calling one: the number that the system allows and
+/// a remedy; nothing if it can. Tests it by creating them, because OpenMP ends the process if a thread cannot
+/// be created. A success is not repeated, because OpenMP keeps its threads.
+std::optional<std::string> thread_shortage(int threads);
 
 /// Why so many threads make no sense, as what follows "are": more than eight per CPU of this process, so each
 /// step would take as long as the system needs to run them all. Nothing if they do.

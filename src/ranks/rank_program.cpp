@@ -200,8 +200,7 @@ void work(Session& session, bool copies) {
     std::vector<int> threads(session.hosts().size(), job.threads);
     std::string crowded = take_processors(session, threads);
     session.share_processors(!crowded.empty());
-    const std::string shortage =
-        first_of(session.gather(thread_shortage(job.threads, ThreadStack::openmp).value_or("")));
+    const std::string shortage = first_of(session.gather(thread_shortage(job.threads).value_or("")));
     if (!shortage.empty()) throw Unavailable(shortage);
     const std::unique_ptr<Piece> piece = make_piece(session, job);
     std::ranges::transform(session.gather(std::to_string(piece->threads())), threads.begin(),

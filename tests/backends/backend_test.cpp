@@ -320,32 +320,5 @@ TEST(BackendTable, SaysWhyADeviceBackendCannotRun) {
   }
 }
 
-/// Ids of this process's threads.
-std::set<std::string> thread_ids() {
-  std::set<std::string> ids;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task"))
-    ids.insert(entry.path().filename());
-  return ids;
-}
-
-TEST(ThreadsMutex, KeepsItsThreadsFromSetStateToRest) {
-  const System system = cloth_system(5, 5);
-  std::thread([] {}).join();  // with the first thread the thread sanitizer starts one of its own
-  const std::set<std::string> before = thread_ids();
-  const auto backend =
-      make_backend(*find_backend("threads-mutex"), system, *find_integrator("rk4"), 1e-4, {.threads = 4});
-  backend->set_state(system.start);
-  const std::set<std::string> during = thread_ids();
-  EXPECT_EQ(during.size(), before.size() + 3);
-  for (int call = 0; call < 3; ++call) {
-    backend->step(2);
-    EXPECT_EQ(thread_ids(), during) << "call " << call;
-  }
-  backend->rest();
-  EXPECT_EQ(thread_ids(), before);
-  backend->step(1);
-  EXPECT_EQ(thread_ids().size(), before.size() + 3) << "made again";
-}
-
 }  // namespace
 }  // namespace mssim

@@ -89,7 +89,6 @@ class NotedBackend final : public Backend {
   }
   bool runs_on_host() const override { return false; }
   std::string note() const override { return "slow here"; }
-  void rest() override { steps_.push_back(-1); }
 
  private:
   State state_;
@@ -116,9 +115,6 @@ TEST(EachBody, StepsThemInTurnAndAnswersForAll) {
   EXPECT_EQ(each->device(), "a device");
   EXPECT_FALSE(each->runs_on_host());
   EXPECT_EQ(each->note(), "slow here") << "once";
-  steps.clear();
-  each->rest();
-  EXPECT_THAT(steps, ElementsAre(-1, -1));
   EXPECT_TRUE(same_state(each->state(), system.start));
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Where OpenMP binds its threads, which a noise warning advises, other threads (PoCL's, those of threads-mutex) and the
-# processes that mssim starts still have all the process's CPUs, and the provenance names them all.
+# Where OpenMP binds its threads, which a noise warning advises, PoCL's threads and the processes that mssim starts
+# still have all the process's CPUs, and the provenance names them all.
 set -euo pipefail
 . "$2/tests/support/command_line.sh"
 
@@ -24,11 +24,6 @@ expect_free() {
 
 # PoCL inherits what its threads may use; with POCL_AFFINITY it would narrow that again.
 expect_free 2 bench --scene cloth2500 --backend opencl --integrator semi-euler --threads 1 --rounds 2000
-
-# The references, which have threads of their own, come from a folder.
-bench=(bench --scene cloth2500 --backend threads-mutex --integrator semi-euler --threads 2)
-ends 0 "${bench[@]}" --rounds 1 --out "$work/verified"
-expect_free 1 "${bench[@]}" --rounds 2000 --verified "$work/verified"
 
 # A program that says what it may use instead of measuring.
 make_program program <<END

@@ -39,7 +39,7 @@ backends/vectors      laws integrators backends/interface
 backends/threads
 backends/layouts      integrators model backends/interface backends/vectors backends/threads
 backends/devices      text platform integrators backends/interface
-backends/spring_list  platform laws integrators model backends/interface
+backends/spring_list  laws integrators model backends/interface backends/threads
 backends/implicit/nodes        geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/implicit/newton       text geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
 backends/implicit/local_global platform geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes

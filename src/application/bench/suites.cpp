@@ -178,7 +178,7 @@ PaperLegend paper_legend() {
   for (const BackendInfo* backend : with_garment_backends(table_backends())) {
     const auto add = [&](std::string_view name) {
       legend.backends.push_back(
-          {std::string(name), std::string(backend->paper_configuration), backend->makes_threads.has_value()});
+          {std::string(name), std::string(backend->paper_configuration), backend->makes_threads});
     };
     add(backend->name);
     for (const std::string_view variant : variants)

@@ -12,68 +12,10 @@
 #include "backends/accumulation/gather_vectors.h"
 #include "backends/layouts/spring_graph.h"
 #include "backends/spring_list/list_backends.h"
-#include "backends/spring_list/spring_list.h"
-#include "backends/threads/spin_barrier.h"
+#include "backends/spring_list/list_method.h"
 
 namespace mssim {
 namespace {
-
-/// The plain spring list stepped by several threads. All methods on it against the data race of Hong et al.'s
-/// Figure 1 share this step and SpringList's layout, force and update, so they differ only in the
-/// accumulation. A Method is constructed from (SpringList<float>&, std::size_t threads), and in every stage
-/// each thread calls, with its Team:
-/// - prepare(team), while others may still be in the previous stage's `finish` and update: it writes only
-///   data that no other thread accesses there, and reads no node;
-/// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
-/// - finish(team), after all have added: completes the forces of this thread's slice of the nodes.
-template <class Method>
-class ListMethod final : public Backend {
- public:
-  ListMethod(const System& system, const Integrator& integrator, double dt_s, int threads)
-      : list_(system, integrator, dt_s),
-        integrator_(integrator),
-        threads_(threads),
-        accumulation_(list_, static_cast<std::size_t>(threads)) {}
-
-  void set_state(const State& state) override { list_.set_state(state); }
-  State state() const override { return list_.state(); }
-  int threads() const override { return threads_; }
-
-  void step(int count) override {
-    with_integrator(integrator_, [&](auto method) {
-      with_team(static_cast<std::size_t>(threads_), [&](const Team& team) {
-        for (int step = 0; step < count; ++step) take_step<method>(team);
-      });
-    });
-  }
-
- private:
-  template <std::size_t method>
-  void take_step(const Team& team) {
-    for_each_stage<method>([&](auto stage) {
-      accumulation_.prepare(team);
-      team.meet();
-      accumulation_.add(team, integrators[method].stages[stage].gather);
-      team.meet();
-      accumulation_.finish(team);
-      list_.template update_nodes<method, stage>(team.begin(list_.nodes()), team.end(list_.nodes()));
-    });
-    team.meet();
-    if (team.thread == 0) list_.end_step();  // visible to all after the next stage's first barrier
-  }
-
-  SpringList<float> list_;
-  const Integrator& integrator_;
-  const int threads_;
-  Method accumulation_;
-};
-
-/// Data of an accumulation for the table of methods.
-template <class Method>
-std::unique_ptr<Backend> make_list_method(const System& system, const Integrator& integrator, double dt_s,
-                                          const ExecutionOptions& options) {
-  return std::make_unique<ListMethod<Method>>(system, integrator, dt_s, options.threads);
-}
 
 /// A spinlock of one byte: the guarded work, three additions, is done before a thread could be put to sleep,
 /// and a std::mutex would take 40 bytes per node of 24. Two threads rarely meet at a node, but the holder may
@@ -88,24 +30,6 @@ class ByteLock {
 
  private:
   std::atomic_flag taken_;
-};
-
-/// An accumulation without prepare and finish.
-class Accumulation {
- public:
-  Accumulation(SpringList<float>& list, std::size_t /*threads*/) : list_(list) {}
-  void prepare(const Team& /*team*/) {}
-  void finish(const Team& /*team*/) {}
-
- protected:
-  SpringList<float>& list_;
-};
-
-/// An accumulation that adds to the forces of the list.
-class AddingAccumulation : public Accumulation {
- public:
-  using Accumulation::Accumulation;
-  void prepare(const Team& team) { list_.clear_forces(team.begin(list_.nodes()), team.end(list_.nodes())); }
 };
 
 class LockPerNode : public AddingAccumulation {
@@ -226,11 +150,10 @@ constexpr MemoryUse in_padded_rows{.pair_node = 24, .storage = Storage::separate
 /// A method that uses the plain list.
 constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, BackendMaker* make,
                                      const MemoryUse& memory, std::string_view extra_memory,
-                                     std::string_view springs_computed, Repeatable repeatable,
-                                     ThreadStack stack = ThreadStack::openmp) {
+                                     std::string_view springs_computed, Repeatable repeatable) {
   return {{.name = name,
            .description = description,
-           .makes_threads = stack,
+           .makes_threads = true,
            .make = make,
            .grid_memory = memory,
            .mesh_memory = memory},
@@ -251,8 +174,7 @@ std::span<const AccumulationMethod> accumulation_methods() {
       {baseline_backend(), "none", "once", Repeatable::always},
       of_list("mutex-per-group",
               "one lock for all nodes, taken to add the forces of 512 springs (threads-mutex)",
-              make_threads_mutex, spring_list_memory, "6 KiB a thread", "once", Repeatable::never,
-              ThreadStack::usual),
+              make_threads_mutex, spring_list_memory, "6 KiB a thread", "once", Repeatable::never),
       of_list("lock-per-node", "a spinning lock of one byte a node, taken for each end of a spring",
               make_list_method<LockPerNode>, spring_list_memory, "1 byte a node", "once", Repeatable::never),
       of_list("atomic", "atomic additions, three for each end of a spring", make_list_method<Atomic>,
@@ -267,7 +189,7 @@ std::span<const AccumulationMethod> accumulation_methods() {
               "32 bytes a spring, 8 a node", "twice", Repeatable::always),
       {{.name = "gather-vectors",
         .description = "vectors of a cloth's nodes sum their own springs, from rows of a layout of its own",
-        .makes_threads = ThreadStack::openmp,
+        .makes_threads = true,
         .make = make_gather_vectors,
         .grid_memory = in_padded_rows,
         .has_vectors = true},

@@ -24,7 +24,6 @@ class AheadBackend final : public Backend {
   std::optional<std::uint64_t> stored_springs() const override { return backend_->stored_springs(); }
   bool runs_on_host() const override { return backend_->runs_on_host(); }
   std::string note() const override { return backend_->note(); }
-  void rest() override { backend_->rest(); }
 
  private:
   std::unique_ptr<Backend> backend_;

@@ -137,8 +137,6 @@ class Backend {
   virtual bool runs_on_host() const { return true; }
   /// Caveats for readers of its times, for example iteration limits that its steps have reached; or empty.
   virtual std::string note() const { return {}; }
-  /// Called before an idle period. The backend must not consume CPU time until its next call.
-  virtual void rest() {}
 
   // Only users' programs answer these otherwise: a backend that steps with another of mssim's own need not
   // pass them on.
@@ -153,6 +151,8 @@ class Backend {
   /// Costs of communication since the last call; nothing if there is only one process or a program does not
   /// report them.
   virtual std::optional<Communication> communication() { return std::nullopt; }
+  /// Called before an idle period. The backend must not consume CPU time until its next call.
+  virtual void rest() {}
   /// Ends the backend's program, if it has one, and returns its last output. Only end() may be called
   /// afterwards.
   virtual std::string end() { return {}; }
