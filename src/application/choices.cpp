@@ -284,7 +284,8 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   const std::string before_colon = name.substr(0, name.find(':'));
   if (before_colon != name && std::ranges::find(known_, before_colon, &BackendInfo::name) != known_.end())
     throw UsageError(
-        "{}: \"{}\" is not a suffix; give one, or each, double or an instruction set before a number, "
+        "{}: \"{}\" is not a suffix; give one suffix, or each, double or an instruction set and then a "
+        "number, "
         "as in openmp:each:4",
         printable(name), printable(name.substr(before_colon.size())));
   std::vector<std::string> broken;  // not what was asked for

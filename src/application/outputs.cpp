@@ -86,8 +86,8 @@ Provenance run_provenance(int threads, bool uses_device) {
   try {
     if (const auto tetgen = find_tetgen())
       provenance.tetgen = fmt::format("{}, fnv1a_64 {}", tetgen->version, to_hex(tetgen->fnv1a_64));
-  } catch (const MissingProgram& cannot_start) {  // a scene that needs it says so itself
-    provenance.tetgen = cannot_start.what();
+  } catch (const MissingProgram&) {  // a scene that needs it says why
+    provenance.tetgen = "cannot be started";
   }
   return provenance;
 }

@@ -169,7 +169,7 @@ State prompt_state(Backend& backend, const System& system, int steps, double run
       backend.set_state(system.start);
       const Stopwatch watch;
       backend.step(steps);
-      run_s = std::max(run_s, watch.seconds());
+      run_s = watch.seconds();
     }
     TimedState end = read_state(backend, system.start, run_s);
     postponed_s = std::min(postponed_s, end.postponed_s);

@@ -56,7 +56,7 @@ void require_meshing_memory(std::uint64_t points);
 /// Runs TetGen, as a process in a folder of its own, to fill a surface with tetrahedra. `switches` are
 /// TetGen's, beginning "-p"; `interior` points become nodes (the switch i is added for them). Throws
 /// InputError if TetGen cannot fill the surface: triangles cross each other (both are named), one closed part
-/// lies inside another, it crashes or runs out of time or memory; std::runtime_error if it cannot be run.
+/// lies inside another, it crashes or runs out of time or memory; MissingProgram if it cannot be started.
 TetMesh run_tetgen(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior,
                    const std::string& switches);
 

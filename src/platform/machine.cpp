@@ -358,6 +358,9 @@ void start_with_short_waits(char** argv) {
 }
 
 std::optional<std::string> thread_shortage(int threads) {
+  if (const int limit = omp_get_thread_limit(); threads > limit)
+    return fmt::format("{} were requested, and OMP_THREAD_LIMIT allows {}: request fewer, or unset it",
+                       pluralize(threads, "thread"), limit);
   const Trial trial = try_threads(threads);
   if (trial.made >= threads) return std::nullopt;
   const char* size = std::getenv("OMP_STACKSIZE");

@@ -168,9 +168,9 @@ void judge_ratios(JudgedClaim& judged, const ClaimTest& test, const std::vector<
   judged.outcome = below > 0                     ? ClaimOutcome::not_held
                    : above == std::ssize(tested) ? ClaimOutcome::held
                                                  : ClaimOutcome::undecided;
-  // Ratios without an interval decide nothing, and would widen the range.
+  // Ratios without an interval decide nothing, and would widen the range; a mean has them all.
   std::vector<RatioInterval> shown = all;
-  if (std::ranges::any_of(all, &RatioInterval::covers))
+  if (!test.of_average && std::ranges::any_of(all, &RatioInterval::covers))
     std::erase_if(shown, [](const RatioInterval& one) { return !one.covers; });
   const auto [least, most] = std::ranges::minmax(shown, {}, &RatioInterval::ratio);
   judged.measured = range_of(least.ratio, most.ratio);

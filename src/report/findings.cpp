@@ -202,12 +202,9 @@ Table times_of(RowPointers rows, const ReportFolder& folder) {
 void add_notes_of_programs(Document& page, const ReportFolder& folder) {
   const Provenance provenance = folder.where_from();
   BulletList list;
-  for (const ResultRow& row : folder.rows) {
-    const bool of_program =
-        found_in(provenance.backend_programs, row.backend, &BackendProgramRecord::name) != nullptr;
-    if (of_program && counts(row) && !row.note.empty())
+  for (const ResultRow& row : folder.rows)
+    if (is_of_program(provenance, row.backend) && counts(row) && !row.note.empty())
       add_once(list.items, fmt::format("`{}`: {}", row.backend, row.note));
-  }
   if (!list.items.empty()) page.insert(page.end(), {Heading{2, "Notes of the programs"}, std::move(list)});
 }
 

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <sstream>
 
 #include "bench/verification/verification.h"
 #include "output/tables/results.h"
@@ -298,14 +300,17 @@ std::vector<std::string> own_files_of(const ReportFolder& folder) {
   std::vector<std::string> files;
   for (const SceneHash& scene : folder.provenance->scenes) {
     const auto names_its_file = [&](const std::string& word) {
-      return word.find(scene.name + ".json") != std::string::npos;
+      std::istringstream parts(word);
+      for (std::string part; std::getline(parts, part, ',');)
+        if (std::filesystem::path(part).filename() == scene.name + ".json") return true;
+      return false;
     };
     if (std::ranges::any_of(folder.provenance->command_line, names_its_file))
       files.push_back(fmt::format("the scene {} ({})", code(scene.name), code(to_hex(scene.fnv1a_64))));
   }
   for (const BackendProgramRecord& program : folder.provenance->backend_programs)
     for (const FileHash& file : program.files)
-      if (!file.name.ends_with("mssim-mpi"))
+      if (file.name.find('/') != std::string::npos && !file.name.ends_with("mssim-mpi"))  // no interpreter
         files.push_back(fmt::format("{} of the backend {} ({})", code(file.name), code(program.name),
                                     code(to_hex(file.fnv1a_64))));
   return files;

@@ -117,6 +117,7 @@ TEST_F(BenchScene, FindsAProgramThatPostponesItsStepsHoweverFewSamplesThereAre) 
 TEST_F(BenchScene, FindsAProgramThatIsRightExceptInFrames) {
   system_ = solid_block(5, 4, 3);
   take_only({find_backend("serial"), &cheat});
+  job_.sample_seconds = 0.05;
   job_.fps = 1 / (Cheating::frame * job_.dt_s);
   for (const auto& [what, sentence] :
        {std::pair(Cheat::idles, "position error"), {Cheat::lags, "reports steps before they are done"}}) {

@@ -211,7 +211,7 @@ def gpu_wins(nodes):
 
 
 winning = [nodes for nodes in sorted(set(sizes)) if all(gpu_wins(n) for n in set(sizes) if n >= nodes)]
-readme.append(f"From {winning[0]:,} nodes on it is faster than those with every integrator ({when(f'results/table1/{gpu}')}).")
+readme.append(f"From {winning[0]:,} nodes on it is faster than these CPUs with every integrator ({when(f'results/table1/{gpu}')}).")
 
 # On openmp, which of the paper's integrators has the fastest step, and which is the cheapest at the wished error.
 named = ("semi-euler", "midpoint", "rk4")

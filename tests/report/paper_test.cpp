@@ -63,13 +63,15 @@ TEST_F(PaperTest, NamesWhatItsCommandsNeedBesidesMssim) {
   const auto artifact = [&] { return text_in(folder, "artifact.tex"); };
   EXPECT_THAT(artifact(), Not(HasSubstr("not part of mssim")));
   folder.provenance->scenes = {{"mine", 0xabc}, {"cloth2500", 0xdef}};
-  folder.provenance->command_line = {"mssim", "bench", "--scene", "cloth2500,./mine.json"};
-  folder.provenance->backend_programs = {{.name = "own", .files = {{"./own.py", 0x123}}},
+  folder.provenance->command_line = {"mssim", "bench", "--scene",
+                                     "cloth2500,./mine.json,./not-cloth2500.json"};
+  folder.provenance->backend_programs = {{.name = "own", .files = {{"./own.py", 0x123}, {"python3", 0x789}}},
                                          {.name = "mpi", .files = {{"libexec/mssim/mssim-mpi", 0x456}}}};
-  EXPECT_THAT(artifact(),
-              AllOf(HasSubstr("not part of mssim"), HasSubstr("\\texttt{mine} (\\texttt{0000000000000abc})"),
-                    HasSubstr("\\texttt{./own.py} of the backend \\texttt{own}"),
-                    Not(HasSubstr("0000000000000def")), Not(HasSubstr("mssim-mpi"))));
+  EXPECT_THAT(
+      artifact(),
+      AllOf(HasSubstr("not part of mssim"), HasSubstr("\\texttt{mine} (\\texttt{0000000000000abc})"),
+            HasSubstr("\\texttt{./own.py} of the backend \\texttt{own}"), Not(HasSubstr("0000000000000def")),
+            Not(HasSubstr("mssim-mpi")), Not(HasSubstr("python3"))));
 }
 
 TEST_F(PaperTest, HasTheNotesOfPrograms) {

@@ -66,8 +66,9 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings,
                        *settings.fps, grouped(static_cast<std::uint64_t>(most_frame_steps)), dt_s,
                        scene.spec.name);
     if (*settings.fps * dt_s > 1)
-      throw UsageError("--fps {:.6g} makes frames shorter than a step of {:.6g} s on {}: give {:.6g} or less",
-                       *settings.fps, dt_s, scene.spec.name, 1 / dt_s);
+      throw UsageError(
+          "--fps {:.6g} makes frames shorter than a step of {:.6g} s on {}: give a smaller number",
+          *settings.fps, dt_s, scene.spec.name);
     size.frame_steps = steps_of_frame(*settings.fps, dt_s);
   }
   std::uint64_t memory_bytes = bench_memory_needed(settings, size);

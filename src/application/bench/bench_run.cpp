@@ -13,6 +13,7 @@
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "platform/process.h"
+#include "scene/scene_kinds.h"
 #include "text/error.h"
 
 namespace mssim {
@@ -191,16 +192,15 @@ std::vector<std::string> measure_scenes(BenchPlan& plan, TimeBudget& budget, con
       planned.parts = {};
       continue;
     }
-    PreparedScene scene;
-    try {
-      scene = planned.windows.empty() ? planned.prepare() : outline_of(planned);
-    } catch (
-        const ErrorWith<exit_bad_input>& error) {  // other programs may have taken the memory that was there
+    try {  // other programs may have taken the memory that was there
+      if (planned.windows.empty()) require_memory(planned.spec, planned.parts.counts);
+    } catch (const ErrorWith<exit_bad_input>& error) {
       if (plan.timed.size() == 1) throw;
       lost.emplace_back(error.what());
       progress.skip_scene();
       continue;
     }
+    const PreparedScene scene = planned.windows.empty() ? planned.prepare() : outline_of(planned);
     warn_of_note(scene);
     SceneJob job = job_of(plan.settings, planned, scene);
     job.deadline = deadline;
@@ -219,11 +219,12 @@ std::vector<std::string> measure_scenes(BenchPlan& plan, TimeBudget& budget, con
       std::vector<ResultRow> measured = finished ? std::vector<ResultRow>() : bench_scene(job, watch);
       if (!measured.empty()) results.keep(name, std::move(measured));
       std::vector<ResultRow> rows = results.of_scene(name);
-      if (plan.output.trace && !stop.requested() &&
-          write_bench_traces(job, scene, rows, results.stems_of_scene(name), plan.provenance,
-                             std::filesystem::path(plan.output.folder) / traces_name, plan.output.resume,
-                             watch))
-        results.keep(name, std::move(rows));
+      if (plan.output.trace && !stop.requested()) {
+        write_bench_traces(job, scene, rows, results.stems_of_scene(name), plan.provenance,
+                           std::filesystem::path(plan.output.folder) / traces_name, plan.output.resume,
+                           watch);
+        results.keep(name, std::move(rows));  // the provenance then says that there are traces
+      }
     } catch (const Interrupted& interrupted) {
       // An interrupted wait for a program; the completed rounds are kept.
       note_ending_signal(interrupted.signal);

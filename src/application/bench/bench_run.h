@@ -70,8 +70,8 @@ class TimeBudget {
 
 /// Builds and measures the plan's timed scenes one by one, except for rounds that the results already have,
 /// and keeps the rows after every round. With --trace, traces each scene after its measurement. Stops early
-/// on request. Returns a sentence for each scene that could not be built; if it is the only one, throws like
-/// UnbuiltScene::prepare. Throws like BenchResults::keep and write_bench_traces.
+/// on request. Returns a sentence for each scene for which there is no memory any more; if it is the only
+/// one, throws SceneError. Throws like UnbuiltScene::prepare, BenchResults::keep and write_bench_traces.
 std::vector<std::string> measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop,
                                         BenchResults& results);
 

@@ -192,14 +192,14 @@ void require_address_space() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur < least_bytes)
     throw std::runtime_error(
-        fmt::format("they need {} MiB of address space, and ulimit -v leaves {}; raise that limit",
+        fmt::format("PoCL needs {} MiB of address space, and ulimit -v allows {}; raise that limit",
                     least_bytes >> 20, limit.rlim_cur >> 20));
 }
 
 OpenclOffer ask() {
-  require_address_space();
   OpenclOffer offer;
   const std::vector<RegisteredDriver> drivers = registered_drivers();
+  if (std::ranges::any_of(drivers, is_pocl)) require_address_space();
   bind_pocl_threads();
   PoclCache cache;
   if (std::ranges::any_of(drivers, is_pocl)) cache = provide_pocl_cache();

@@ -75,7 +75,8 @@ class SpinBarrier {
   /// Some microseconds: about the imbalance of a balanced step. None for more threads than CPUs: the one that
   /// others wait for may need their CPU.
   static int spins_of(std::size_t threads) {
-    return threads > static_cast<std::size_t>(omp_get_num_procs()) ? 0 : 300;
+    static const auto processors = static_cast<std::size_t>(omp_get_num_procs());
+    return threads > processors ? 0 : 300;
   }
 
   struct Arrival {

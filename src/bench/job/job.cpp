@@ -289,11 +289,19 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
 void time_frames(Combination& combination, const SceneJob& job, std::optional<std::size_t> first,
                  const std::function<bool()>& stop) {
   const int steps = steps_of_frame(job.fps.value(), job.dt_s);
-  const int at_a_stretch = combination.most_steps / steps;
+  // A window is compared after certain numbers of steps only.
+  const auto is_compared = [&](int frames) {
+    return !combination.compare_windows ||
+           std::ranges::find(window_looks, frames * steps) != window_looks.end();
+  };
+  int at_a_stretch = combination.most_steps / steps;
+  while (at_a_stretch > 0 && !is_compared(at_a_stretch)) --at_a_stretch;
   if (at_a_stretch == 0)
-    return append_sentence(combination.row.note,
-                           fmt::format("{}: samples of this row end after {}", untimed_frames(steps),
-                                       pluralize(combination.most_steps, "step")));
+    return append_sentence(
+        combination.row.note,
+        fmt::format("{}: samples of this row end after {}{}", untimed_frames(steps),
+                    pluralize(combination.most_steps, "step"),
+                    combination.compare_windows ? ", or windows are not compared then" : ""));
   const std::string after = fmt::format(", in frames of {}", pluralize(steps, "step"));
   std::vector<double> frames_ms, stretch_seconds, postponed_seconds;
   std::optional<SampleEnd> checked;
@@ -317,7 +325,7 @@ void time_frames(Combination& combination, const SceneJob& job, std::optional<st
       stretch_seconds.push_back(seconds);
       postponed_seconds.push_back(end.postponed_s);
       if (first_bad_node(end.state)) return fail(combination, "failed: not finite" + after);
-      if (combination.compare_windows)
+      if (combination.compare_windows && is_compared(frame))  // the last stretch may be shorter
         if (const auto wrong =
                 combination.compare_windows(*combination.backend, end.state, frame * steps).failure)
           return fail(combination, "failed: " + *wrong + after);

@@ -122,7 +122,8 @@ struct Provenance {
   /// instruction set, if one was requested; empty from older versions.
   std::string device_memory, roots, instruction_set;
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
-  std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
+  std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here, or that it cannot be
+                       ///< started; or empty
   std::vector<std::string> noise;  ///< conditions that make times longer or less certain
   std::vector<SceneHash> scenes;
   std::vector<BackendProgramRecord> backend_programs;  ///< by name
@@ -160,6 +161,13 @@ inline AskedProcessors asked_processors(const Provenance& provenance, std::strin
   const std::optional<int> threads = number_in<int>(row_name.substr(colon + 1));
   return threads ? AskedProcessors{row_name.substr(0, colon), *threads}
                  : AskedProcessors{row_name, provenance.threads};
+}
+
+/// Whether a row is of a program that is a backend, from the row's name and the provenance.
+inline bool is_of_program(const Provenance& provenance, std::string_view row_name) {
+  const std::string_view backend = asked_processors(provenance, row_name).backend;
+  return std::ranges::find(provenance.backend_programs, backend, &BackendProgramRecord::name) !=
+         provenance.backend_programs.end();
 }
 
 /// Adds `record`, a program that is a backend, with the hashes of its files: of an argument's file above 64

@@ -95,7 +95,7 @@ std::vector<MachineHistory> machines_of(std::span<const HistoryEntry> history) {
       all.push_back(&series);
       if (series.at.back() + 1 < machine.entries.size()) series.vanished = series.at.back() + 1;
     }
-  // Nothing throws: times are above zero (shortest_ms).
+    // No time is refused: they are above zero (shortest_ms).
 #pragma omp parallel for num_threads(openmp_team(0)) schedule(dynamic)
   for (std::size_t i = 0; i < all.size(); ++i) all[i]->changes = change_points(all[i]->ms);
   return machines;

@@ -41,10 +41,11 @@ void summarise(ResultRow& row, const ResultRow* serial) {
 void require_finite(ResultRow& row) {
   for (const ResultColumn& column : result_columns) {
     const auto* value = std::get_if<std::optional<double> ResultRow::*>(&column.value);
-    if (!value || !(row.**value) || std::isfinite(*(row.**value))) continue;
+    if (!value || !(row.**value) || std::abs(*(row.**value)) <= largest_number) continue;
+    const char* why = std::isfinite(*(row.**value)) ? "is beyond 1e300" : "is not finite";
     (row.**value).reset();
     row.verified = false;
-    if (row.status == "ok") row.status = fmt::format("failed: {} is not finite", column.name);
+    if (row.status == "ok") row.status = fmt::format("failed: {} {}", column.name, why);
   }
 }
 

@@ -329,8 +329,11 @@ inline bool is_wrong(const ResultRow& row) {
 /// integrator, or null.
 void summarise(ResultRow& row, const ResultRow* serial);
 
-/// Removes numbers from the row that are not finite. They arise if a program reports such numbers, or takes
-/// less time than the clock resolves. The first one makes a row fail that was ok.
+/// Largest number of a result. What is computed from it, such as a percentage, is finite as well.
+inline constexpr double largest_number = 1e300;
+
+/// Removes numbers from the row that are not finite or larger than that. They arise if a program reports such
+/// numbers, or takes less time than the clock resolves. The first one makes a row fail that was ok.
 void require_finite(ResultRow& row);
 
 /// Whether its steps took more processors than the `threads` that were requested. An OpenCL device does so if

@@ -214,7 +214,7 @@ StanceGuess guess_stance(const Surface& body, const GivenStance& given) {
   const auto best = std::ranges::max_element(all, {}, &Candidate::apartness);
   std::vector<std::string> doubts;
   if (best->gaps.empty() && !(given.up && given.facing))
-    doubts.push_back(fmt::format("{}: it has no two legs side by side to find it by; give {}",
+    doubts.push_back(fmt::format("{}: it has no two legs side by side to tell by; give {}",
                                  given.facing ? "up"
                                  : given.up   ? "facing"
                                               : "up and facing",

@@ -46,7 +46,7 @@ struct FrameDelivery {
 void step_through(DressingBackend& backend, std::int64_t done, std::int64_t end, FrameDelivery& frames) {
   const auto step_to = [&](std::int64_t step) {
     while (done < step) {
-      const auto count = std::min<std::int64_t>(step - done, 240);
+      const auto count = std::min(step - done, most_dressing_steps_at_once);
       backend.step(static_cast<int>(count));
       done += count;
       if (frames.frames.on_steps) frames.frames.on_steps();

@@ -33,12 +33,16 @@ struct DressingResult {
 /// Called after every window with the state and the number of steps; returns whether to continue.
 using OnWindow = std::function<bool(const State& state, std::int64_t iterations)>;
 
+/// Steps of a dressing between two calls of on_steps.
+inline constexpr std::int64_t most_dressing_steps_at_once = 240;
+
 /// Frames of a dressing: the start, those of the grid, and the end. They do not change the result.
 struct DressingFrames {
   FrameGrid grid;
   /// Called with the state and the number of steps; none: no frames.
   std::function<void(const State& state, std::int64_t iterations)> on_frame = {};
-  /// Called at least every 240 steps; an exception ends the dressing. None: not called.
+  /// Called at least every most_dressing_steps_at_once steps; an exception ends the dressing. None: not
+  /// called.
   std::function<void()> on_steps = {};
 };
 

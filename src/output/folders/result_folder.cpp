@@ -123,15 +123,16 @@ std::vector<std::string> ResultFolder::files_of_rows() const {
   const std::optional<Provenance> earlier = provenance_in(folder_);
   if (!earlier) return names;
   const bool has_programs = !fs::is_symlink(folder_ / programs_name);
+  // A run that was continued may have begun with it.
   const bool has_traces =
       !fs::is_symlink(folder_ / traces_name) &&
-      std::ranges::find(earlier->command_line, trace_option) != earlier->command_line.end();
+      (!earlier->earlier_starts_utc.empty() ||
+       std::ranges::find(earlier->command_line, trace_option) != earlier->command_line.end());
   try {
     const std::vector<ResultRow> rows = read_timings(CsvTable(folder_ / timings_name));
     const std::vector<std::string> stems = file_stems(rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (has_programs && found_in(earlier->backend_programs, rows[i].backend, &BackendProgramRecord::name))
-        names.push_back(output_of(stems[i]));
+      if (has_programs && is_of_program(*earlier, rows[i].backend)) names.push_back(output_of(stems[i]));
       if (has_traces) std::ranges::move(traces_of(stems[i]), std::back_inserter(names));
     }
   } catch (const CsvError&) {

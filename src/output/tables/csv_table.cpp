@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/results/result.h"
 #include "output/tables/table.h"
 #include "platform/files.h"
 #include "text/text.h"
@@ -74,9 +75,8 @@ CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {
-  constexpr double largest = 1e300;  // what is computed from it, such as a percentage, is finite as well
   const auto value = number_in<double>(text(record, column));
-  if (!value || !(std::abs(*value) <= largest))
+  if (!value || !(std::abs(*value) <= largest_number))
     throw complaint(record, column, "is not a number; write a finite one, of at most 1e300");
   return *value;
 }

@@ -40,6 +40,10 @@ TEST(RequireFinite, FailsARowByAnyNumberOfItsColumns) {
       ++numbers;
     }
   EXPECT_GE(numbers, 18U);
+  ResultRow row;
+  row.position_error = 1e301;
+  require_finite(row);
+  EXPECT_EQ(row.status, "failed: position_error is beyond 1e300");
 }
 
 }  // namespace
