@@ -55,15 +55,16 @@ class SpinBarrier {
       }
       change_and_notify(phase_, mine.phase + 1);
     }
-    const unsigned now =
-        mine.is_last ? wait_for_change(phase_, mine.phase + 1, spins_) : wait_for_others(mine);
+    const unsigned now = mine.is_last
+                             ? wait_for_change(phase_, mine.phase + 1, patience_.spins, patience_.yields)
+                             : wait_for_others(mine);
     if (now == mine.phase + 1) {
       if (mine.is_first) {  // not delayed: it has a core
         rounds_alone_ = gain_->take_rounds(take_round);
         gain_->begin(Clock::now());
         release(mine.phase);
       } else {
-        wait_for_change(phase_, mine.phase + 1, spins_);
+        wait_for_change(phase_, mine.phase + 1, patience_.spins, patience_.yields);
       }
     }
     return rounds_alone_;
@@ -72,11 +73,14 @@ class SpinBarrier {
  private:
   using Clock = TeamGain::Clock;
 
-  /// Some microseconds: about the imbalance of a balanced step. None for more threads than CPUs: the one that
-  /// others wait for may need their CPU.
-  static int spins_of(std::size_t threads) {
+  /// How a thread waits before it sleeps: the spins take some microseconds, about the imbalance of a balanced
+  /// step. With more threads than CPUs the one that others wait for may need their CPU.
+  struct Patience {
+    int spins, yields;
+  };
+  static Patience patience_of(std::size_t threads) {
     static const auto processors = static_cast<std::size_t>(omp_get_num_procs());
-    return threads > processors ? 0 : 300;
+    return threads > processors ? Patience{0, 5} : Patience{300, 100};
   }
 
   struct Arrival {
@@ -98,18 +102,19 @@ class SpinBarrier {
   /// For threads before the last one. Reads the clock only in long waits: a step of the smallest cloths takes
   /// as long as a few hundred readings.
   unsigned wait_for_others(const Arrival& mine) {
-    if (!mine.is_first || !gain_) return wait_for_change(phase_, mine.phase, spins_);
-    const int first_spins = spins_ / 10;
+    if (!mine.is_first || !gain_)
+      return wait_for_change(phase_, mine.phase, patience_.spins, patience_.yields);
+    const int first_spins = patience_.spins / 10;
     if (const unsigned now = spin_for_change(phase_, mine.phase, first_spins); now != mine.phase) return now;
     const Clock::time_point begin = Clock::now();
-    const unsigned now = wait_for_change(phase_, mine.phase, spins_ - first_spins);
+    const unsigned now = wait_for_change(phase_, mine.phase, patience_.spins - first_spins, patience_.yields);
     // The last thread may use it next, but not before this thread has arrived again.
     gain_->add_wait(Clock::now() - begin);
     return now;
   }
 
   const std::size_t threads_;
-  const int spins_ = spins_of(threads_);
+  const Patience patience_ = patience_of(threads_);
   TeamGain* const gain_ = nullptr;  // used by the last, the first waiting, or the lone thread
   std::atomic<std::size_t> arrived_{0};
   std::atomic<TeamGain::Duration::rep> longest_wait_{

@@ -34,16 +34,15 @@ T spin_for_change(const std::atomic<T>& value, T old, int spins) {
 }
 
 /// Waits until an atomic's value differs from `old` and returns it, for threads that synchronise every few
-/// microseconds: spins `spins` times, then yields its core some times, then sleeps until notified.
+/// microseconds: spins `spins` times, then yields its core `yields` times, then sleeps until notified.
 ///
 /// OpenMP's own barrier spins for milliseconds by default, which is right on an idle machine. If another
 /// process uses one core, however, the waiting thread occupies the other one, on which the thread it waits
 /// for could run: a step of a 2,500-node cloth then took milliseconds instead of 6 microseconds.
 template <class T>
-T wait_for_change(const std::atomic<T>& value, T old, int spins) {
+T wait_for_change(const std::atomic<T>& value, T old, int spins, int yields = 100) {
   if (const T now = spin_for_change(value, old, spins); now != old) return now;
-  /// If both threads share a core, the other one runs at the first yield.
-  constexpr int yields = 100;
+  // If both threads share a core, the other one runs at the first yield.
   for (int tries = 0; tries < yields; ++tries) {
     std::this_thread::yield();
     if (const T now = value.load(std::memory_order_acquire); now != old) return now;
