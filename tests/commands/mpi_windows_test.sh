@@ -12,6 +12,13 @@ for ranks in 1 2 3; do
 done
 [ "$(nproc)" -lt 2 ] || [ "$(grep -c ',true,ok,' r2/timings.csv)" -eq 3 ] || fail "two ranks are not timed: $(cat r2/timings.csv)"
 
+# Stretches of frames end where windows are compared: ten frames of 7 steps do, and none of 33.
+frames=(bench --scene cloth40k --backend mpi --integrator semi-euler --ranks 2 --threads 1 --rounds 1 --windows 9)
+ends 0 "${frames[@]}" --fps 2857.14 --out frames7
+[ "$(column_of frames7/timings.csv frame_steps)" = 7 ] || fail "frames of 7 steps: $(cat frames7/timings.csv)"
+ends 0 "${frames[@]}" --fps 606.06 --out frames33
+grep -q 'frames of 33 steps are not timed: .*windows are not compared' frames33/timings.csv || fail "frames of 33 steps: $(cat frames33/timings.csv)"
+
 # A wrong result is noticed: ranks that step a cloth with one kind of spring 2 % too stiff.
 make_scene stiff.json cloth40k 's/"stiffness_n_per_m": 200/"stiffness_n_per_m": 204/'
 make_program stiff <<<"MSSIM_SCENE_FILE=$work/stiff.json exec $(realpath "${mssim%/*}/../libexec/mssim/mssim-mpi")"
