@@ -15,7 +15,7 @@ done
 # Stretches of frames end where windows are compared: ten frames of 7 steps do, and none of 33.
 frames=(bench --scene cloth40k --backend mpi --integrator semi-euler --ranks 2 --threads 1 --rounds 1 --windows 9)
 ends 0 "${frames[@]}" --fps 2857.14 --out frames7
-[ "$(column_of frames7/timings.csv frame_steps)" = 7 ] || fail "frames of 7 steps: $(cat frames7/timings.csv)"
+grep -Eq ',true,ok,.*,7,[0-9.]+,[0-9.]+,[0-9.]+,,,,$' frames7/timings.csv || fail "frames of 7 steps: $(cat frames7/timings.csv)"
 ends 0 "${frames[@]}" --fps 606.06 --out frames33
 grep -q 'frames of 33 steps are not timed: .*windows are not compared' frames33/timings.csv || fail "frames of 33 steps: $(cat frames33/timings.csv)"
 
