@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -31,20 +30,26 @@ std::string below(const fs::path& folder) {
   return text.empty() ? "folders that mssim bench --out wrote" : "folders in it that have some: " + text;
 }
 
-/// The result folders that the given ones stand for. Throws UsageError for one that is none.
+/// The result folders that the given ones stand for, each once. Throws UsageError for one that is none.
 std::vector<fs::path> folders_of(const std::vector<std::string>& all_given) {
   std::vector<fs::path> folders;
+  const auto add = [&](const fs::path& folder) {
+    std::error_code error;
+    if (std::ranges::none_of(folders,
+                             [&](const fs::path& other) { return equivalent(other, folder, error); }))
+      folders.push_back(folder);
+  };
   for (const std::string& given : all_given) {
     std::error_code error;
     if (is_web_results(given)) {
-      folders.emplace_back(given);
+      add(given);
       continue;
     }
     if (!fs::is_directory(given, error))
       throw UsageError("there is no folder {}: give folders that mssim bench --out wrote", printable(given));
-    std::vector<fs::path> found = result_folders(given);
+    const std::vector<fs::path> found = result_folders(given);
     if (found.empty()) throw UsageError("{} has no results: give {}", printable(given), below(given));
-    std::ranges::move(found, std::back_inserter(folders));
+    std::ranges::for_each(found, add);
   }
   return folders;
 }
