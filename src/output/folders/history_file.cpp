@@ -56,9 +56,11 @@ void visit_entry(FieldVisitor& fields, HistoryEntry& entry, const std::string& w
               [&](FieldVisitor& row) { visit_row(row, entry.rows.emplace_back()); });
 }
 
-/// A text that FieldVisitor::text() accepts: cut after it has been escaped, which makes it longer.
+/// A text that FieldVisitor::text() accepts: cut after it has been escaped, which makes it longer. One that
+/// has been read stays as it is.
 std::string one_line(const std::string& text) {
-  return printable(printable(text, text.size()), longest_text - 20);
+  const std::string line = printable(text, text.size());
+  return line.size() <= longest_text ? line : printable(line, longest_text - 3);  // and "..."
 }
 
 /// Throws InputError if two rows are one series, also as history_line() writes them.
