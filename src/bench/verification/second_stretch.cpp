@@ -147,7 +147,7 @@ SecondStretch follow(System system, const Integrator& integrator, double dt_s, i
       if (above < 0) has_landed[i] = 1;
     }
     state = reference->state();
-    const State other = step_rounded(*rounded, 1);
+    const State other = step_rounded(*rounded, ahead_s, 1);
     if (!decided || first_bad_node(state)) break;
     // A correct backend reached 1.8 times the rounded reference's deviation (cloths, semi-euler).
     constexpr double margin = 4;

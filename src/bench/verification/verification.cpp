@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "backends/backends.h"
 #include "integrators/stability.h"
@@ -124,9 +125,8 @@ class CheckedWay {
       rounded_ = make_reference(system_, integrator_, dt_s_);
       rounded_->set_state(start_);
     }
-    step_rounded(*rounded_, steps_ - rounded_steps_);
-    rounded_steps_ = steps_;
-    return rounded_->state();
+    const int steps = steps_ - std::exchange(rounded_steps_, steps_);
+    return step_rounded(*rounded_, integrator_.ahead * dt_s_, steps);
   }
 
  private:
@@ -308,15 +308,16 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
   return reference;
 }
 
-State step_rounded(Backend& reference, int steps) {
-  State state;
+State step_rounded(Backend& reference, double ahead_s, int steps) {
+  constexpr double no_floor = -std::numeric_limits<double>::infinity();
   for (int step = 0; step < steps; ++step) {
     reference.step(1);
-    state = reference.state();
+    State state = moved_ahead(reference.state(), ahead_s);
     round_to_single(state);
+    move_back(state, ahead_s, no_floor);  // the reference moves it ahead again
     reference.set_state(state);
   }
-  return state;
+  return reference.state();
 }
 
 Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s,
@@ -340,8 +341,9 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   const auto has_energy = [&] { return std::abs(deviation.energy) <= energy_allowed; };
   if (!(is_near() && has_energy()) && system.nodes() <= most_nodes) {
     const auto rounded = make_reference(system, *reference.integrator, dt_s);
-    const Deviation of_rounded = deviation_from(system, reference.state, energy_of(system, reference.state),
-                                                step_rounded(*rounded, reference.steps));
+    const Deviation of_rounded =
+        deviation_from(system, reference.state, energy_of(system, reference.state),
+                       step_rounded(*rounded, reference.integrator->ahead * dt_s, reference.steps));
     const double share = share_of_rounded(*reference.integrator);
     tolerance = std::max(tolerance, std::min(share * of_rounded.position, largest_tolerance));
     energy_allowed =

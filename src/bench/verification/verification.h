@@ -154,9 +154,11 @@ TimedState read_state(Backend& backend, const State& start, double steps_s);
 /// postponed them by at least `postponed_s`.
 std::string describe_postponed(int steps, double steps_s, double postponed_s);
 
-/// Takes steps and rounds the state to single precision after each, to show the effect of roundings. Returns
-/// the last state.
-State step_rounded(Backend& reference, int steps);
+/// Takes steps and rounds velocities and positions to single precision after each, to show the effect of
+/// roundings. Returns the last state. The positions are those that the stages see, `ahead_s` ahead of the
+/// state's (step_ahead), as in a backend in single precision: while nodes fall alike, roundings have one sign
+/// for many steps, and those of other positions differ.
+State step_rounded(Backend& reference, double ahead_s, int steps);
 
 /// Nodes and tetrahedra that are made without a mesher.
 struct SolidBlock {
