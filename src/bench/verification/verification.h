@@ -225,9 +225,11 @@ SampleEnd sample_end(const System& system, const State& state, int steps, std::s
 /// semi-euler, and 2 to 4 times with rk4, whose steps round four times (cloths and bodies of the paper, 100
 /// to 2,000 steps). If that is more, four times the second reference's deviation per rounding is allowed, in
 /// scenes of up to a million nodes. It takes one and a half times as long as the first, and only runs if an
-/// end exceeds the tolerance otherwise. After a node has met the floor, the way of the fastest node in four
-/// steps is added, or that of the node whose landings are fastest in sum, because a rounding may delay each
-/// landing by a step; to the energy, what gravity does meanwhile to all nodes that land.
+/// end exceeds the tolerance otherwise. It may come near by chance: an end that exceeds this, too, is
+/// compared with up to two more, from starts that are displaced by less than a rounding. After a node has met
+/// the floor, the way of the fastest node in four steps is added, or that of the node whose landings are
+/// fastest in sum, because a rounding may delay each landing by a step; to the energy, what gravity does
+/// meanwhile to all nodes that land.
 std::vector<std::string> check_samples(const System& system, const Integrator& integrator, double dt_s,
                                        const State& start, std::size_t first,
                                        std::span<const SampleEnd> ends);

@@ -339,24 +339,56 @@ TEST(SampleCheck, AllowsWhatFoldsMakeOfRoundingsAndNoMore) {
   EXPECT_THAT(reasons[2], HasSubstr("position error"));
 }
 
+/// A narrow cloth that swings down and folds.
+System narrow_cloth() {
+  SceneSpec spec = find_scene("cloth2500");
+  auto& cloth = std::get<ClothSpec>(spec.content);
+  cloth.rows = 64;
+  cloth.columns = 7;
+  return build_system(spec);
+}
+
 // Roundings of the positions that Verlet's stages see are not those of the state's positions: a reference
 // that rounded the latter came 5.6 times less far than openmp here.
 TEST(SampleCheck, RoundsThePositionsThatAreStepped) {
   constexpr double step_s = 5e-5;
   constexpr int steps = 1000;
-  SceneSpec spec = find_scene("cloth2500");
-  auto& cloth = std::get<ClothSpec>(spec.content);
-  cloth.rows = 64;
-  cloth.columns = 7;
-  const System system = build_system(spec);
+  const System cloth = narrow_cloth();
   for (const std::uint32_t number : {1U, 40U}) {
-    const State start = sample_start(system, number);
-    const auto backend = make_backend(best_host_backend(), system, verlet, step_s, {1, ""});
+    const State start = sample_start(cloth, number);
+    const auto backend = make_backend(best_host_backend(), cloth, verlet, step_s, {1, ""});
     backend->set_state(start);
     backend->step(steps);
-    const SampleEnd end = sample_end(system, backend->state(), steps, 0);
-    EXPECT_THAT(check_samples(system, verlet, step_s, start, 0, {&end, 1}), testing::ElementsAre(""));
+    const SampleEnd end = sample_end(cloth, backend->state(), steps, 0);
+    EXPECT_THAT(check_samples(cloth, verlet, step_s, start, 0, {&end, 1}), testing::ElementsAre(""));
   }
+}
+
+// From this start the rounded reference happens to come a third as far as one whose start is displaced.
+TEST(SampleCheck, RoundsTheReferenceAgainIfItCameNearByChance) {
+  constexpr double step_s = 5e-5;
+  constexpr int steps = 600;
+  const System cloth = narrow_cloth();
+  const Integrator& midpoint = *find_integrator("midpoint");
+  const State start = sample_start(cloth, 2325);
+  State states[2];
+  for (int i = 0; i < 2; ++i) {
+    const auto backend = i == 0 ? make_reference(cloth, midpoint, step_s)
+                                : make_backend(baseline_backend(), cloth, midpoint, step_s, {1, ""});
+    backend->set_state(start);
+    backend->step(steps);
+    states[i] = backend->state();
+  }
+  std::vector<SampleEnd> ends;
+  for (const double times : {1.0, 1.3, 6.0}) {
+    SampleEnd& end = ends.emplace_back(sample_end(cloth, states[1], steps, 0));
+    for (std::size_t node = 0; node < cloth.nodes(); ++node) {
+      const Vec3d& expected = states[0].position[node];
+      end.positions[node] = expected + times * (states[1].position[node] - expected);
+    }
+  }
+  EXPECT_THAT(check_samples(cloth, midpoint, step_s, start, 0, ends),
+              testing::ElementsAre("", "", HasSubstr("position error")));
 }
 
 TEST(SampleCheck, FindsASampleThatIsWrongAtItsEnd) {
