@@ -200,8 +200,10 @@ TEST_F(HistoryFile, ReadsBackWhatWasWritten) {
   history.push_back(entry(3, std::nullopt));
   history[1].rows[0].device = std::string(300, 'd') + '\n';
   history[1].rows[1].integrator = "\xff";
-  history[2].rows[0].device = 'd';  // is cut at a character, not at a byte
-  for (int i = 0; i < 150; ++i) history[2].rows[0].device += "\u00e9";
+  for (std::size_t row = 0; row < 2; ++row) {  // is cut at a character, not at a byte
+    history[2].rows[row].device.assign(row, 'd');
+    for (int i = 0; i < 150; ++i) history[2].rows[row].device += "\u00e9";
+  }
   change_history(folder() / "h.jsonl", [&](std::vector<HistoryEntry>& entries) { entries = history; });
   const std::vector<HistoryEntry> read = read_history(folder() / "h.jsonl");
   ASSERT_EQ(read.size(), history.size());

@@ -370,7 +370,7 @@ TEST(SampleCheck, RoundsTheReferenceAgainIfItCameNearByChance) {
   constexpr int steps = 600;
   const System cloth = narrow_cloth();
   const Integrator& midpoint = *find_integrator("midpoint");
-  const State start = sample_start(cloth, 2325);
+  const State start = sample_start(cloth, 448);
   State states[2];
   for (int i = 0; i < 2; ++i) {
     const auto backend = i == 0 ? make_reference(cloth, midpoint, step_s)
@@ -380,7 +380,7 @@ TEST(SampleCheck, RoundsTheReferenceAgainIfItCameNearByChance) {
     states[i] = backend->state();
   }
   std::vector<SampleEnd> ends;
-  for (const double times : {1.0, 1.3, 6.0}) {
+  for (const double times : {1.0, 3.0, 10.0}) {
     SampleEnd& end = ends.emplace_back(sample_end(cloth, states[1], steps, 0));
     for (std::size_t node = 0; node < cloth.nodes(); ++node) {
       const Vec3d& expected = states[0].position[node];
