@@ -98,8 +98,10 @@ void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& r
     // Processes that read the scene's file would find the floor there.
     const bool reads_scene = info.program != nullptr && info.program->in_ranks;
     const BackendInfo& floorless = reads_scene ? best_host_backend() : info;
+    // Energies count from the floor's real height: from that of in_the_air, all others would be lost in
+    // rounding.
     limit.floor_is_why = is_stable(*make_backend(floorless, in_the_air, integrator, dt_s, request.execution),
-                                   in_the_air, dt_s, search);
+                                   *request.system, dt_s, search);
   }
   limit.why = why_they_differ(integrator, limit.measured, limit.theory, limit.floor_is_why);
 }

@@ -564,6 +564,15 @@ TEST(StepLimit, OfBackwardEulerIsTheFloors) {
   EXPECT_EQ(high.why, "");
 }
 
+TEST(StepLimit, IsNotTheFloorsIfEnergyGrowsInTheAir) {
+  System system = cloth_system(10, 10);
+  system.floor.height = -1000;
+  const StepLimit limit = found_limit("xpbd", system, *find_backend("serial"));
+  ASSERT_GT(limit.measured.unstable_s, 0);
+  EXPECT_FALSE(limit.floor_is_why);
+  EXPECT_THAT(limit.why, AllOf(Not(IsEmpty()), Not(StartsWith("the floor"))));
+}
+
 TEST(StepLimit, IsNoneOnABackendThatIsNeverStable) {
   const StepLimit failed = found_limit("semi-euler", cloth_system(4, 4), astray);
   EXPECT_EQ(failed.lack(), Lack::failed);
